@@ -1,0 +1,208 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "limcycle/analysis/dual.hpp"
+#include "limcycle/analysis/frequency/dense_elimination.hpp"
+#include "limcycle/analysis/frequency/prescribed_motion.hpp"
+#include "limcycle/analysis/frequency/radau_iia.hpp"
+
+namespace limcycle {
+
+/// State of an element on its way, with the derivative of z with respect to the state in which the way began.
+struct ElementState {
+  Mode mode;
+  std::vector<double> z;
+  std::vector<double> sensitivity;  ///< n x n, row-major
+};
+
+/// Radau IIA collocation of one element on one panel of prescribed motion, in one mode: Newton with the exact Jacobian
+/// (one iteration if the law is linear in its state) and, from the same elimination, the derivative of the final state
+/// by the state in which the way began. Cost of a panel: (s n)^3/3 multiplications and about 3 s evaluations per state.
+template <template <class> class Kind>
+class CollocationPanel {
+ public:
+  CollocationPanel(const Kind<double>& element, const PrescribedMotion& motion, int stages)
+      : element_(element),
+        dual_(recast<Kind, Dual<1>>(element)),
+        motion_(motion),
+        table_(radau_iia(stages)),
+        s_(static_cast<std::size_t>(stages)),
+        n_(static_cast<std::size_t>(element.states())) {
+    nodes_.resize(s_);
+    z_.resize(s_ * n_);
+    rates_.resize(s_ * n_);
+    sensitivities_.resize(s_ * n_ * n_);
+    jacobians_.resize(s_ * n_ * n_);
+    dual_z_.resize(n_);
+    dual_rate_.resize(n_);
+    trial_.resize(n_);
+    trial_rate_.resize(n_);
+  }
+
+  std::size_t stages() const { return s_; }
+  double node_fraction(std::size_t stage) const { return table_.c[stage]; }
+  double weight(std::size_t stage) const { return table_.b[stage]; }
+  const MotionNode& node(std::size_t stage) const { return nodes_[stage]; }
+  std::span<const double> state(std::size_t stage) const { return {z_.data() + stage * n_, n_}; }
+  bool finite() const { return n_ == 0 || std::isfinite(rates_.front()); }
+  long evaluations() const { return evaluations_; }
+
+  /// State and sensitivity at the end of the panel.
+  void end(ElementState& state) const {
+    std::copy(z_.end() - static_cast<std::ptrdiff_t>(n_), z_.end(), state.z.begin());
+    std::copy(sensitivities_.end() - static_cast<std::ptrdiff_t>(n_ * n_), sensitivities_.end(),
+              state.sensitivity.begin());
+  }
+
+  /// The collocation polynomial at the part t of the panel that began in `state`.
+  void interpolate(double t, const ElementState& state, std::span<double> z) const {
+    std::array<double, RadauIIA::most_stages + 1> weights;
+    table_.interpolation(t, weights);
+    for (std::size_t p = 0; p < n_; ++p) {
+      z[p] = weights[0] * state.z[p];
+      for (std::size_t i = 0; i < s_; ++i) z[p] += weights[i + 1] * z_[i * n_ + p];
+    }
+  }
+
+  /// Motion at one phase, with the drive of the direction of motion on this panel.
+  MotionNode node_at(int anchor, double local) const {
+    MotionNode node = motion_.at(anchor, local);
+    node.in.drive = direction_ * infinite;
+    return node;
+  }
+
+  /// Carries `state` from one phase to the other in its present mode. False if Newton failed: see hold_or_relax.
+  bool solve(int anchor, double from, double to, const ElementState& state) {
+    place_nodes(anchor, from, to);
+    if (n_ == 0) return true;
+    const double step = (to - from) / motion_.frequency();
+    for (std::size_t i = 0; i < s_; ++i)
+      for (std::size_t p = 0; p < n_; ++p) z_[i * n_ + p] = state.z[p];
+    double before = infinite;
+    for (int iteration = 0; iteration < 12; ++iteration) {
+      double stiffness = 0.0;
+      for (std::size_t i = 0; i < s_; ++i) linearise(i, state.mode);
+      for (const double slope : jacobians_) stiffness = std::max(stiffness, std::abs(step * slope));
+      assemble(step, state);
+      const std::size_t m = s_ * n_, width = m + 1 + n_;
+      if (!eliminate(system_, m, 1 + n_)) return false;
+      for (std::size_t r = 0; r < m; ++r) {
+        z_[r] += system_[r * width + m];
+        for (std::size_t q = 0; q < n_; ++q) sensitivities_[r * n_ + q] = system_[r * width + m + 1 + q];
+      }
+      evaluate_rates(state.mode);
+      double worst = 0.0;
+      for (std::size_t p = 0; p < n_; ++p) {
+        double size = std::numeric_limits<double>::min(), defect = 0.0;
+        for (std::size_t i = 0; i < s_; ++i) {
+          size = std::max({size, std::abs(z_[i * n_ + p]), std::abs(step * rates_[i * n_ + p])});
+          defect = std::max(defect, std::abs(residual(step, state, i, p)));
+        }
+        worst = std::max(worst, defect / size);
+      }
+      if (worst <= 2e-14 * (1.0 + stiffness)) return true;
+      if (!(worst < before) || iteration > 6) return false;
+      before = worst;
+    }
+    return false;
+  }
+
+  /// Where Newton failed: a single state that rests where it is keeps its value, and where `force`d to implicit Euler
+  /// carries it, its equation being monotonic in z. False: halve the panel.
+  bool hold_or_relax(double from, double to, const ElementState& state, bool force) {
+    if (n_ != 1 || !finite()) return false;
+    const double step = (to - from) / motion_.frequency(), start = state.z[0], scale = element_.state_scale(0);
+    const Input<double> in = nodes_[s_ / 2].in;
+    const auto residual_at = [&](double z) {
+      trial_[0] = z;
+      element_.rate(in, state.mode, trial_, trial_rate_);
+      ++evaluations_;
+      return z - start - step * trial_rate_[0];
+    };
+    double reach = scale * 1e-15, low = start - reach, high = start + reach;
+    while (!(residual_at(low) <= 0.0 && residual_at(high) >= 0.0)) {
+      if ((reach *= 8.0) > 1e6 * scale) return false;
+      low = start - reach;
+      high = start + reach;
+    }
+    for (int k = 0; k < 100 && high - low > 1e-17 * scale; ++k) {
+      const double middle = 0.5 * (low + high);
+      (residual_at(middle) < 0.0 ? low : high) = middle;
+    }
+    const double end = 0.5 * (low + high);
+    const bool holds = std::abs(end - start) <= 2e-13 * scale;  // ten times the tolerance of Newton
+    if (!holds && !force) return false;
+    for (std::size_t i = 0; i < s_; ++i) z_[i] = holds ? start : start + table_.c[i] * (end - start);
+    std::fill(sensitivities_.begin(), sensitivities_.end(), 0.0);
+    return true;
+  }
+
+ private:
+  void place_nodes(int anchor, double from, double to) {
+    direction_ = motion_.at(anchor, 0.5 * (from + to)).in.v < 0.0 ? -1.0 : 1.0;
+    for (std::size_t i = 0; i < s_; ++i)
+      nodes_[i] = node_at(anchor, i + 1 == s_ ? to : from + table_.c[i] * (to - from));
+  }
+
+  /// Rates and their derivatives with respect to the state at stage i.
+  void linearise(std::size_t i, Mode mode) {
+    const Input<double>& in = nodes_[i].in;
+    const Input<Dual<1>> input{in.x, in.v, in.drive};
+    for (std::size_t column = 0; column < n_; ++column) {
+      for (std::size_t p = 0; p < n_; ++p) dual_z_[p] = z_[i * n_ + p];
+      dual_z_[column].d[0] = 1.0;
+      dual_.rate(input, mode, dual_z_, dual_rate_);
+      ++evaluations_;
+      for (std::size_t p = 0; p < n_; ++p) {
+        rates_[i * n_ + p] = dual_rate_[p].value;
+        jacobians_[(i * n_ + p) * n_ + column] = dual_rate_[p].d[0];
+      }
+    }
+  }
+
+  void evaluate_rates(Mode mode) {
+    for (std::size_t i = 0; i < s_; ++i) element_.rate(nodes_[i].in, mode, {&z_[i * n_], n_}, {&rates_[i * n_], n_});
+    evaluations_ += static_cast<long>(s_);
+  }
+
+  /// Residual of the collocation equations at stage i, component p.
+  double residual(double step, const ElementState& state, std::size_t i, std::size_t p) const {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < s_; ++j) sum += table_.a[i * s_ + j] * rates_[j * n_ + p];
+    return z_[i * n_ + p] - state.z[p] - step * sum;
+  }
+
+  /// Newton's linear system: the step of the stages, and in the further columns their derivatives by the initial state.
+  void assemble(double step, const ElementState& state) {
+    const std::size_t m = s_ * n_, width = m + 1 + n_;
+    system_.assign(m * width, 0.0);
+    for (std::size_t i = 0; i < s_; ++i) {
+      for (std::size_t p = 0; p < n_; ++p) {
+        double* row = &system_[(i * n_ + p) * width];
+        for (std::size_t j = 0; j < s_; ++j)
+          for (std::size_t q = 0; q < n_; ++q)
+            row[j * n_ + q] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
+        row[i * n_ + p] += 1.0;
+        row[m] = -residual(step, state, i, p);
+        for (std::size_t q = 0; q < n_; ++q) row[m + 1 + q] = state.sensitivity[p * n_ + q];
+      }
+    }
+  }
+
+  const Kind<double>& element_;
+  Kind<Dual<1>> dual_;
+  const PrescribedMotion& motion_;
+  const RadauIIA& table_;
+  std::size_t s_, n_;
+  double direction_ = 1.0;
+  long evaluations_ = 0;
+  std::vector<MotionNode> nodes_;
+  std::vector<double> z_, rates_, sensitivities_, jacobians_, system_, trial_, trial_rate_;
+  std::vector<Dual<1>> dual_z_, dual_rate_;
+};
+
+}  // namespace limcycle

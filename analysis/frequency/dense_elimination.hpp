@@ -1,0 +1,43 @@
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace limcycle {
+
+/// Solves in place an m x m system with `right` right-hand sides, stored row-major as m rows of m + right numbers; the
+/// solutions take the place of the right-hand sides. Gaussian elimination with row pivoting; meant for the few unknowns
+/// of one collocation panel, where a library call costs more than the work. False if a pivot vanishes or is not finite.
+inline bool eliminate(std::vector<double>& system, std::size_t m, std::size_t right) {
+  const std::size_t width = m + right;
+  const auto row = [&](std::size_t i) { return system.data() + i * width; };
+  for (std::size_t k = 0; k < m; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < m; ++i)
+      if (std::abs(row(i)[k]) > std::abs(row(pivot)[k])) pivot = i;
+    const double diagonal = row(pivot)[k];
+    if (!(std::abs(diagonal) > 0.0) || !std::isfinite(diagonal)) return false;
+    if (pivot != k)
+      for (std::size_t j = k; j < width; ++j) std::swap(row(k)[j], row(pivot)[j]);
+    const double* const upper = row(k);
+    const double inverse = 1.0 / diagonal;
+    for (std::size_t i = k + 1; i < m; ++i) {
+      double* const lower = row(i);
+      const double factor = lower[k] * inverse;
+      for (std::size_t j = k + 1; j < width; ++j) lower[j] -= factor * upper[j];
+    }
+  }
+  for (std::size_t k = m; k-- > 0;) {
+    double* const own = row(k);
+    const double inverse = 1.0 / own[k];
+    for (std::size_t r = m; r < width; ++r) {
+      double sum = own[r];
+      for (std::size_t j = k + 1; j < m; ++j) sum -= own[j] * row(j)[r];
+      own[r] = sum * inverse;
+    }
+  }
+  return true;
+}
+
+}  // namespace limcycle

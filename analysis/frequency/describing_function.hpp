@@ -1,0 +1,64 @@
+#pragma once
+#include <complex>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "limcycle/analysis/status.hpp"
+#include "limcycle/models/elements.hpp"
+
+namespace limcycle {
+
+/// How the harmonics of the periodic steady state are computed.
+enum class DfMethod {
+  automatic,   ///< closed form for the gain where there is one, else quadrature
+  fft,         ///< FFT of uniform samples of the periodic steady state, doubled until two resolutions agree
+  quadrature,  ///< nodes graded towards reversals and split at switches
+};
+
+struct DfOptions {
+  int harmonics = 7;       ///< orders 1..harmonics are returned
+  double accuracy = 1e-6;  ///< wanted relative error of the gain, 1e-13..1e-1
+  DfMethod method = DfMethod::automatic;
+};
+
+/// Where a describing function is wanted: the input is bias t + amplitude sin(frequency t) for a friction law (bias:
+/// mean velocity), bias + amplitude sin(frequency t) for another element.
+struct DfPoint {
+  double amplitude = 0.0;  ///< > 0, units of the input
+  double frequency = 0.0;  ///< > 0, rad/s
+  double bias = 0.0;
+};
+
+struct DescribingFunction {
+  std::complex<double> gain;                    ///< N = (b1 + j a1)/A
+  double mean = 0.0;                            ///< mean output
+  std::vector<std::complex<double>> harmonics;  ///< [k-1]: sine + j cosine coefficient of order k, units of the output
+  double dissipation = 0.0;                     ///< work per period against the element, integral of output times rate
+  /// Estimated relative error of the gain: difference of two meshes (or resolutions) with a margin, defect of
+  /// periodicity and roundings. 0 with a gain of exactly 0: no first harmonic above rounding (relay within its
+  /// hysteresis, sliding on a constant level).
+  double error = 0.0;
+  bool symmetric = false;             ///< the periodic state is half-wave symmetric
+  std::string_view method;            ///< "closed-form", "fft" or "quadrature"
+  Status status = Status::converged;  ///< incomplete: the wanted accuracy was not reached, see error
+  long evaluations = 0;               ///< of the element's equations
+};
+
+/// Throws std::invalid_argument quoting the option or coordinate that is out of range.
+void validate(const DfOptions& options);
+void validate(const DfPoint& point);
+
+/// Describing function of one element at one point, from the fixed point of its period map (never from a decayed
+/// transient). A result that is not finite never leaves: its Status says not_finite and the numbers are 0.
+DescribingFunction describing_function(const Element<double>& element, const DfPoint& point,
+                                       const DfOptions& options = {});
+
+/// The whole product amplitudes x frequencies x biases, amplitude slowest. `stop` is asked between points: when it
+/// returns true the points computed so far are returned. `progress` is told how many are done.
+std::vector<DescribingFunction> describing_function_table(const Element<double>& element,
+                                                          const std::vector<DfPoint>& points, const DfOptions& options,
+                                                          const std::function<bool()>& stop = {},
+                                                          const std::function<void(std::size_t)>& progress = {});
+
+}  // namespace limcycle

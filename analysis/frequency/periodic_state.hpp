@@ -1,0 +1,157 @@
+#pragma once
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/frequency/element_march.hpp"
+
+namespace limcycle {
+
+/// The periodic steady state of an element under prescribed motion: the state at the beginning of a period that
+/// returns.
+struct PeriodicState {
+  Status status = Status::converged;
+  ElementState state;              ///< at PrescribedMotion::origin()
+  bool symmetric = false;          ///< half-wave symmetric: what was visited is half a period, the rest mirrors it
+  double defect = 0.0;             ///< bound of how far the state may be from the fixed point, in units of `scale`
+  std::vector<double> scale = {};  ///< size of each state in this motion
+};
+
+/// Finds the periodic state as a fixed point of the period map, by Newton with the map's own derivative (one correction
+/// where the map is affine, as for LuGre and Dahl with exponent 1); never by waiting for a transient to decay.
+///
+/// For an odd element without bias the half-period map followed by mirroring is tried first, which singles out the
+/// half-wave symmetric state where many are periodic (elastic ranges). If that map has none (a relay that never
+/// switches) or the motion is biased, the full map is used, from the virgin state; where it is indifferent (derivative
+/// 1) the state reached is kept.
+template <template <class> class Kind>
+class PeriodicStateSearch {
+ public:
+  /// `tolerance`: how close to the fixed point, in units of state_scale, is close enough.
+  PeriodicStateSearch(ElementMarch<Kind>& march, const PeriodMesh& mesh, bool try_symmetric, double tolerance)
+      : march_(march),
+        mesh_(mesh),
+        n_(march.states()),
+        try_symmetric_(try_symmetric),
+        tolerance_(std::max(tolerance, 4e-15)) {}
+
+  /// `visitor` is restarted before each pass that may be the last; `guess` (or null) is a state known to be close.
+  template <class Visitor>
+  PeriodicState find(Visitor& visitor, const PeriodicState* guess) {
+    ElementState virgin = march_.virgin();
+    NoVisitor nothing;
+    if (guess == nullptr || !(try_symmetric_ && guess->symmetric)) {
+      const Status status = march_.march(mesh_.virgin, virgin, nothing);
+      if (status != Status::converged) return {status, virgin, false, 0.0};
+    }
+    if (try_symmetric_) {
+      PeriodicState result = iterate(guess != nullptr && guess->symmetric ? guess->state : virgin, true, visitor);
+      if (result.status == Status::converged || result.status == Status::not_finite) return result;
+      if (guess != nullptr && guess->symmetric) return result;
+    }
+    // On a finer mesh the virgin state is carried again: where many states are periodic, the guess is not the one.
+    return iterate(virgin, false, visitor);
+  }
+
+ private:
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
+  using Vector = Eigen::VectorXd;
+
+  template <class Visitor>
+  Status pass(ElementState& state, bool half, Visitor& visitor) {
+    state.sensitivity.assign(n_ * n_, 0.0);
+    for (std::size_t p = 0; p < n_; ++p) state.sensitivity[p * n_ + p] = 1.0;
+    march_.restart();
+    Status status = march_.march(mesh_.first, state, visitor);
+    if (half) {
+      state.mode = march_.element().mirror(state.mode);
+      for (double& z : state.z) z = -z;
+      for (double& s : state.sensitivity) s = -s;
+    } else if (status == Status::converged) {
+      status = march_.march(mesh_.second, state, visitor);
+    }
+    for (const double z : state.z)
+      if (!std::isfinite(z)) status = Status::not_finite;
+    return status;
+  }
+
+  double scale(std::size_t p) const { return march_.scale(p); }
+
+  double size(const Vector& r) const {
+    double worst = 0.0;
+    for (std::size_t p = 0; p < n_; ++p) worst = std::max(worst, std::abs(r(static_cast<Eigen::Index>(p))) / scale(p));
+    return worst;
+  }
+
+  /// (M - 1)^-1 r for the derivative M of the map, by an LU with full pivoting that leaves indifferent directions
+  /// alone.
+  Vector correction(const ElementState& image, const Vector& r, double& amplification) const {
+    const auto n = static_cast<Eigen::Index>(n_);
+    Matrix m(n, n);
+    for (Eigen::Index p = 0; p < n; ++p)
+      for (Eigen::Index q = 0; q < n; ++q)
+        m(p, q) = (image.sensitivity[static_cast<std::size_t>(p * n + q)] - (p == q ? 1.0 : 0.0)) *
+                  scale(static_cast<std::size_t>(q)) / scale(static_cast<std::size_t>(p));
+    Vector scaled(n);
+    for (Eigen::Index p = 0; p < n; ++p) scaled(p) = -r(p) / scale(static_cast<std::size_t>(p));
+    Eigen::FullPivLU<Matrix> lu(n, n);
+    lu.setThreshold(1e-11);
+    lu.compute(m);
+    // FullPivLU measures rank against its largest pivot; a map that is indifferent in every direction has only small
+    // ones.
+    if (lu.rank() < n || std::abs(lu.matrixLU()(n - 1, n - 1)) < 1e-11) {
+      amplification = 1.0;
+      return Vector::Zero(n);
+    }
+    amplification = lu.inverse().cwiseAbs().rowwise().sum().maxCoeff();
+    Vector step = lu.solve(scaled);
+    for (Eigen::Index p = 0; p < n; ++p) step(p) *= scale(static_cast<std::size_t>(p));
+    return step;
+  }
+
+  template <class Visitor>
+  PeriodicState iterate(const ElementState& start, bool half, Visitor& visitor) {
+    PeriodicState result{Status::converged, start, half, 0.0};
+    double before = infinite;
+    int foreign_modes = 0;
+    for (int k = 0; k < 200; ++k) {
+      visitor.restart();
+      ElementState image = result.state;
+      result.status = pass(image, half, visitor);
+      if (result.status != Status::converged) return result;
+      if (image.mode != result.state.mode) {
+        if (++foreign_modes > 20) break;
+        result.state = image;
+        continue;
+      }
+      Vector r(static_cast<Eigen::Index>(n_));
+      for (std::size_t p = 0; p < n_; ++p) r(static_cast<Eigen::Index>(p)) = image.z[p] - result.state.z[p];
+      const double now = size(r);
+      double amplification = 1.0;
+      const Vector step = n_ == 0 ? r : correction(image, r, amplification);
+      const double distance = std::max(now, n_ == 0 ? 0.0 : size(step));
+      result.defect = distance + 1e-15 * amplification;
+      result.scale.resize(n_);
+      for (std::size_t p = 0; p < n_; ++p) result.scale[p] = scale(p);
+      const bool indifferent = n_ == 0 || size(step) == 0.0;
+      if (distance <= tolerance_ || (now >= 0.25 * before && distance <= 1e-11) || (indifferent && now <= 1e-14))
+        return result;
+      // Newton as long as it gains; else (a kink of the map) the map itself, which contracts for any sound law.
+      const bool newton = size(step) > 0.0 && (now < 0.5 * before || k % 4 == 0);
+      for (std::size_t p = 0; p < n_; ++p)
+        result.state.z[p] = newton ? result.state.z[p] + step(static_cast<Eigen::Index>(p)) : image.z[p];
+      result.state.mode = image.mode;
+      before = now;
+    }
+    result.status = Status::max_iterations;
+    return result;
+  }
+
+  ElementMarch<Kind>& march_;
+  const PeriodMesh& mesh_;
+  std::size_t n_;
+  bool try_symmetric_;
+  double tolerance_;
+};
+
+}  // namespace limcycle

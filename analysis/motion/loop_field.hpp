@@ -1,0 +1,105 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/dual.hpp"
+#include "limcycle/analysis/motion/state.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// External signals and their rates at time t; the default of a field is the loop's own constants.
+using ExternalSignals = std::function<void(double t, External& value, External& rate)>;
+
+/// The vector field of a loop in its present modes, smooth as long as every guard is >= 0.
+/// State: linear states, then the states of the elements in order. One object serves one thread.
+///
+/// An element that holds a signal (a stuck friction law, a sliding relay) puts out the drive: the outputs of all
+/// holding elements are solved for together, so that the held signals have zero rate.
+class LoopField {
+ public:
+  explicit LoopField(const Loop& loop);
+
+  const Loop& loop() const { return *loop_; }
+  std::size_t size() const { return size_; }
+  std::vector<Mode>& modes() { return modes_; }
+  const std::vector<Mode>& modes() const { return modes_; }
+  void set_external(ExternalSignals signals) { signals_ = std::move(signals); }
+
+  /// dx/dt. Cost O(n^2).
+  void rate(const State& x, State& dx, double t);
+  /// d(dx/dt)/dx and d(dx/dt)/dt, exact (dual numbers through the elements).
+  void jacobian(const State& x, Eigen::MatrixXd& J, double t, State& dfdt);
+
+  /// Number of guards in the present modes, and their values.
+  std::size_t guard_count() const;
+  void guards(const State& x, double t, std::vector<double>& g);
+  /// Performs the switch of the guard that fired: new mode, reset states, a held signal put to exactly zero.
+  void fire(State& x, double t, std::size_t guard);
+  /// The element whose guard this is.
+  std::size_t owner(std::size_t guard) const;
+  /// Modes of elements without history at this state, whose own states are set too.
+  void start(State& x, double t);
+
+  /// Inputs and output of element i at the last evaluated point.
+  const Input<double>& input(std::size_t i) const { return inputs_[i]; }
+  double output(std::size_t i) const { return w_[i]; }
+  double y(const State& x) const;
+  double y_rate(const State& dx) const;
+  /// Position of the first state of element i.
+  std::size_t first_state(std::size_t i) const { return first_state_[i]; }
+
+ private:
+  using DualS = Dual<4>;
+
+  void evaluate(const State& x, double t);
+  void evaluate_element(std::size_t i, const State& x);
+  void look_outside(double t);
+  void solve_held();
+  void find_inputs(const State& x);
+  double hold_row(std::size_t i, Eigen::RowVectorXd& row) const;
+  double drive_of(std::size_t i) const;
+  Held held(std::size_t i) const;
+  void element_gradient(std::size_t i, const State& x);
+  void held_gradient();
+
+  const Loop* loop_;
+  std::size_t size_ = 0;
+  std::size_t n_ = 0, ne_ = 0;
+  std::vector<std::size_t> first_state_;
+  std::vector<Element<DualS>> dual_elements_;
+  std::vector<Mode> modes_;
+  ExternalSignals signals_;
+
+  /// A row with few entries, without its zeros: the loops of this class are small and evaluated millions of times.
+  struct Sparse {
+    std::vector<std::pair<std::size_t, double>> entries;
+    explicit Sparse(const Eigen::RowVectorXd& row);
+    double dot(const double* x) const {
+      double sum = 0.0;
+      for (const auto& [i, c] : entries) sum += c * x[i];
+      return sum;
+    }
+  };
+  struct SparsePort {
+    Sparse C, D, C_v, D_v, c, c_v;
+    std::vector<std::pair<std::size_t, double>> B;
+  };
+  void add_output(std::size_t i, double w);
+
+  std::vector<Sparse> A_, E_;
+  std::vector<SparsePort> ports_;
+  External ext_, ext_rate_;
+  std::vector<double> base_, w_, dX_, E_ext_;
+  std::vector<std::size_t> holding_;
+  std::vector<DualS> dual_z_, dual_dz_;
+  Eigen::RowVectorXd input_gradient_, rate_gradient_;
+  std::vector<Input<double>> inputs_;
+  /// Gradients over the state, and over time in the last column: of the outputs, and of the element states' rates.
+  Eigen::MatrixXd w_gradient_, z_gradient_;
+};
+
+}  // namespace limcycle

@@ -1,0 +1,284 @@
+#include "limcycle/analysis/motion/march.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <variant>
+
+#include "limcycle/analysis/motion/controlled_rodas5p.hpp"
+#include "limcycle/analysis/motion/explicit_steppers.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr std::size_t section_guard = std::numeric_limits<std::size_t>::max();
+constexpr std::array<std::pair<StepperKind, std::string_view>, 5> names{{{StepperKind::automatic, "auto"},
+                                                                         {StepperKind::rodas5p, "rodas5p"},
+                                                                         {StepperKind::dopri5, "dopri5"},
+                                                                         {StepperKind::fehlberg78, "fehlberg78"},
+                                                                         {StepperKind::cash_karp54, "cash-karp54"}}};
+
+using AnyStepper = std::variant<ControlledRodas5p, ControlledDopri5, ControlledFehlberg78, ControlledCashKarp54>;
+
+AnyStepper make(StepperKind kind, const ErrorWeights& w) {
+  switch (kind) {
+    case StepperKind::dopri5:
+      return make_dopri5(w);
+    case StepperKind::fehlberg78:
+      return make_fehlberg78(w);
+    case StepperKind::cash_karp54:
+      return make_cash_karp54(w);
+    default:
+      return ControlledRodas5p(w);
+  }
+}
+
+/// The field as Odeint's explicit steppers want it, and with its Jacobian as the implicit one does.
+auto right_side(LoopField& field) {
+  return [&field](const State& x, State& dx, double t) { field.rate(x, dx, t); };
+}
+auto implicit_system(LoopField& field) {
+  return std::pair(right_side(field), [&field](const State& x, Eigen::MatrixXd& J, double t, State& dfdt) {
+    field.jacobian(x, J, t, dfdt);
+  });
+}
+
+bool finite(const State& x) {
+  return std::ranges::all_of(x, [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+StepperKind stepper_kind(const std::string& name) {
+  for (const auto& [kind, text] : names)
+    if (text == name) return kind;
+  throw std::invalid_argument("stepper must be auto, rodas5p, dopri5, fehlberg78 or cash-karp54, got " + name);
+}
+
+std::string_view to_string(StepperKind kind) { return names[static_cast<std::size_t>(kind)].second; }
+
+StepperKind choose_stepper(const Loop& loop, double rtol) {
+  const bool bristle = std::ranges::any_of(loop.elements, [](const auto& element) {
+    return std::visit([](const auto& e) { return e.states() > 0 && std::isfinite(e.scales().displacement); }, element);
+  });
+  const Eigen::VectorXd poles = loop.A.eigenvalues().cwiseAbs();
+  double slowest = infinite;
+  for (const double pole : poles)
+    if (pole > 1e-9 * poles.maxCoeff()) slowest = std::min(slowest, pole);
+  if (bristle || poles.maxCoeff() > 200.0 * slowest) return StepperKind::rodas5p;
+  return rtol < 1e-8 ? StepperKind::fehlberg78 : StepperKind::dopri5;
+}
+
+void Step::interpolate(double theta, State& x) const {
+  const double h = t1 - t0, left = 1.0 - theta;
+  x.resize(x0.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double chord = x1[i] - x0[i];
+    x[i] = left * x0[i] + theta * x1[i] -
+           theta * left * ((1.0 - 2.0 * theta) * chord + h * (theta * dx1[i] - left * dx0[i]));
+  }
+}
+
+struct March::Stepper {
+  AnyStepper any;
+};
+
+March::~March() = default;
+March::March(March&&) noexcept = default;
+
+March::March(LoopField& field, StepperKind kind, ErrorWeights weights)
+    : field_(field),
+      kind_(kind == StepperKind::automatic ? choose_stepper(field.loop(), weights.rtol) : kind),
+      stepper_(std::make_unique<Stepper>(Stepper{make(kind_, weights)})),
+      weights_(std::move(weights)) {}
+
+void March::begin(State x, double t, std::optional<Section> section) {
+  x_ = std::move(x);
+  t_ = t;
+  section_ = std::move(section);
+  armed_ = false;
+  fresh_ = true;
+  event_times_.clear();
+}
+
+/// Hairer, Norsett, Wanner I (1993), section II.4: a first step that changes the state by a hundredth of itself.
+double March::first_dt() {
+  double size = 0.0, speed = 0.0;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double scale = weights_.atol[i] + weights_.rtol * std::abs(x_[i]);
+    size = std::max(size, std::abs(x_[i]) / scale);
+    speed = std::max(speed, std::abs(step_.dx0[i]) / scale);
+  }
+  const double h = size > 1e-5 && speed > 1e-5 ? 0.01 * size / speed : 1e-6;
+  return std::clamp(h, 1e-12 * (1.0 + std::abs(t_)), 1.0);
+}
+
+bool March::try_step(double& dt) {
+  step_.x1 = x_;
+  step_.t1 = t_;
+  const double tried = dt;
+  const auto result = std::visit(
+      [&]<class S>(S& stepper) {
+        if constexpr (std::is_same_v<S, ControlledRodas5p>)
+          return stepper.try_step(implicit_system(field_), step_.x1, step_.t1, dt);
+        else
+          return stepper.try_step(right_side(field_), step_.x1, step_.t1, dt);
+      },
+      stepper_->any);
+  if (result != boost::numeric::odeint::success) return false;
+  if (finite(step_.x1)) return true;
+  dt = 0.1 * tried;  // a NaN that the error estimate did not see
+  return false;
+}
+
+/// The same step with length h: a whole step of the method, not its interpolant.
+void March::repeat(double h, State& out) {
+  std::visit(
+      [&]<class S>(S& stepper) {
+        if constexpr (std::is_same_v<S, ControlledRodas5p>) {
+          stepper.stepper().repeat_step(implicit_system(field_), out, h, unused_);
+        } else {
+          typename S::stepper_type fresh;  // Odeint's own keeps the rate of another point
+          fresh.do_step(right_side(field_), step_.x0, step_.t0, out, h);
+        }
+      },
+      stepper_->any);
+}
+
+Status March::step(double t_end) {
+  if (t_ >= t_end) return Status::converged;
+  step_.t0 = t_;
+  step_.x0 = x_;
+  step_.switched.reset();
+  step_.on_section = false;
+  field_.rate(x_, step_.dx0, t_);
+  if (!finite(x_) || !finite(step_.dx0)) return Status::not_finite;
+  field_.guards(x_, t_, guards_start_);
+  if (fresh_) {
+    std::visit(
+        [](auto& s) {
+          if constexpr (requires { s.reset(); }) s.reset();
+        },
+        stepper_->any);
+    dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
+    fresh_ = false;
+  }
+  double dt = std::min({dt_, dt_max_, t_end - t_});
+  const bool shortened = dt < dt_;
+  while (!try_step(dt)) {
+    if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12))) return finite(step_.x1) ? Status::stalled : Status::not_finite;
+  }
+  if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers call a step that does not move a success
+  dt_ = shortened ? std::max(dt, dt_) : dt;
+  ++steps_;
+  field_.rate(step_.x1, step_.dx1, step_.t1);
+  double from = 0.0, to = 1.0;
+  std::size_t guard = 0;
+  if (negative_within(guards_start_, from, to, guard)) return land(guard, locate(guard, from, to));
+  x_ = step_.x1;
+  t_ = step_.t1;
+  if (section_ && section_->value(x_) < 0.0) armed_ = true;
+  return Status::converged;
+}
+
+double March::event_value(std::size_t guard, const State& x) {
+  if (guard == section_guard) return -section_->value(x);
+  field_.guards(x, step_.t0, guards_mid_);
+  return guards_mid_[guard];
+}
+
+/// Looks at quarters of the step for the first guard that has turned negative, and brackets it by fractions of the
+/// step.
+bool March::negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard) {
+  const bool watch_section = section_ && (armed_ || section_->value(step_.x0) < 0.0);
+  if (at_start.empty() && !(watch_section && section_->value(step_.x1) >= 0.0)) return false;
+  for (int quarter = 1; quarter <= 4; ++quarter) {
+    to = 0.25 * quarter;
+    if (quarter == 4)
+      work_ = step_.x1;
+    else
+      step_.interpolate(to, work_);
+    if (!at_start.empty()) field_.guards(work_, step_.t0 + to * (step_.t1 - step_.t0), guards_end_);
+    double earliest = infinite;
+    for (std::size_t k = 0; k < at_start.size(); ++k) {
+      if (guards_end_[k] >= 0.0) continue;
+      // Of several that turned negative here, the one that was relatively nearest to zero did so first.
+      const double before = std::max(at_start[k], 0.0);
+      const double when = before / (before - guards_end_[k]);
+      if (when < earliest) {
+        earliest = when;
+        guard = k;
+      }
+    }
+    if (watch_section && section_->value(work_) >= 0.0 && earliest == infinite) {
+      guard = section_guard;
+      earliest = 0.0;
+    }
+    if (earliest < infinite) return true;
+    from = to;
+  }
+  return false;
+}
+
+/// Length of the step after which the guard is zero: bisection and secant on whole steps.
+double March::locate(std::size_t guard, double from, double to) {
+  const double h = step_.t1 - step_.t0;
+  if (from == 0.0 && guard != section_guard && guards_start_[guard] <= 0.0) return 0.0;
+  // A rough bracket from the interpolant costs no steps.
+  double a = from, b = to;
+  for (int i = 0; i < 30; ++i) {
+    const double mid = 0.5 * (a + b);
+    step_.interpolate(mid, work_);
+    (event_value(guard, work_) >= 0.0 ? a : b) = mid;
+  }
+  double low = from * h, high = to * h, at = 0.5 * (a + b) * h;
+  double previous = 0.0, previous_value = 0.0, best = at, best_value = infinite;
+  for (int i = 0; i < 60; ++i) {
+    repeat(at, work_);
+    const double value = event_value(guard, work_);
+    if (std::abs(value) < best_value) {
+      best = at;
+      best_value = std::abs(value);
+    }
+    (value >= 0.0 ? low : high) = at;
+    double next =
+        i == 0 ? at * (1.0 + (value >= 0.0 ? 1e-6 : -1e-6)) : at - value * (at - previous) / (value - previous_value);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    previous = at;
+    previous_value = value;
+    if (value == 0.0 || std::abs(next - at) <= 2e-16 * std::max(h, std::abs(step_.t0)) || high - low < 1e-16 * h) break;
+    at = next;
+  }
+  return best;
+}
+
+Status March::land(std::size_t guard, double h) {
+  if (h > 0.0) {
+    repeat(h, step_.x1);
+  } else {
+    step_.x1 = step_.x0;
+  }
+  step_.t1 = step_.t0 + h;
+  field_.rate(step_.x1, step_.dx1, step_.t1);
+  if (!finite(step_.x1) || !finite(step_.dx1)) return Status::not_finite;
+  x_ = step_.x1;
+  t_ = step_.t1;
+  fresh_ = true;
+  if (guard == section_guard) {
+    step_.on_section = true;
+    armed_ = false;
+    return Status::converged;
+  }
+  step_.switched = field_.owner(guard);
+  field_.fire(x_, t_, guard);
+  ++events_;
+  event_times_.push_back(t_);
+  if (event_times_.size() > 50) event_times_.pop_front();
+  const bool accumulate = event_times_.size() == 50 && t_ - event_times_.front() < 1e-10 * std::max(1.0, std::abs(t_));
+  return accumulate ? Status::chattering : Status::converged;
+}
+
+}  // namespace limcycle

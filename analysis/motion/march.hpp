@@ -1,0 +1,96 @@
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/motion/error_weights.hpp"
+#include "limcycle/analysis/motion/loop_field.hpp"
+#include "limcycle/analysis/status.hpp"
+
+namespace limcycle {
+
+enum class StepperKind { automatic, rodas5p, dopri5, fehlberg78, cash_karp54 };
+
+/// Name as in a case file; throws std::invalid_argument for an unknown one.
+StepperKind stepper_kind(const std::string& name);
+std::string_view to_string(StepperKind kind);
+
+/// The stiff stepper for loops with bristle laws or a stiff linear part, else an explicit one of Odeint: of order 8 for
+/// tight tolerances, of order 5 for loose ones.
+StepperKind choose_stepper(const Loop& loop, double rtol);
+
+/// A surface C X = level in the space of the linear states, crossed in one direction (+1 upwards, -1 downwards).
+struct Section {
+  Eigen::RowVectorXd C;
+  double level = 0.0;
+  int direction = 1;
+  double value(const State& x) const {
+    return direction * ((C * Eigen::Map<const Eigen::VectorXd>(x.data(), C.size())).value() - level);
+  }
+};
+
+/// One accepted step, in which the field is smooth.
+struct Step {
+  double t0 = 0.0, t1 = 0.0;
+  State x0, x1, dx0, dx1;
+  std::optional<std::size_t> switched;  ///< the element that switched at t1
+  bool on_section = false;              ///< t1 is a crossing of the section
+
+  /// State at t0 + theta (t1 - t0), 0 <= theta <= 1: cubic through values and rates, error O(h^4).
+  void interpolate(double theta, State& x) const;
+};
+
+/// Marches a loop step by step through located events: no step spans a switch, no event is stepped over.
+/// An event is located by repeating the step with other lengths until the guard is zero to rounding, so its time is as
+/// accurate as the stepper itself. Events that accumulate end the march with Status::chattering.
+class March {
+ public:
+  March(LoopField& field, StepperKind kind, ErrorWeights weights);
+  ~March();
+  March(March&&) noexcept;
+  March& operator=(March&&) = delete;
+
+  /// Starts at (x, t) in the field's present modes. `section`: also stop at its crossings; a start on it does not
+  /// count.
+  void begin(State x, double t, std::optional<Section> section = {});
+  /// One accepted step, not beyond t_end. Anything but converged means that the march cannot go on.
+  Status step(double t_end);
+
+  const Step& last() const { return step_; }
+  const State& x() const { return x_; }
+  double t() const { return t_; }
+  long steps() const { return steps_; }
+  long events() const { return events_; }
+  StepperKind kind() const { return kind_; }
+  void limit_step(double dt_max) { dt_max_ = dt_max; }
+
+ private:
+  struct Stepper;  ///< one of Odeint's controlled steppers or our own
+
+  bool try_step(double& dt);
+  void repeat(double h, State& out);
+  double first_dt();
+  void find_event();
+  bool negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard);
+  double event_value(std::size_t guard, const State& x);
+  double locate(std::size_t guard, double from, double to);
+  Status land(std::size_t guard, double h);
+
+  LoopField& field_;
+  StepperKind kind_;
+  std::unique_ptr<Stepper> stepper_;
+  ErrorWeights weights_;
+  std::optional<Section> section_;
+  bool armed_ = false;
+  State x_, work_, unused_;
+  double t_ = 0.0, dt_ = 0.0, dt_max_ = infinite;
+  bool fresh_ = true;
+  long steps_ = 0, events_ = 0;
+  Step step_;
+  std::deque<double> event_times_;
+  std::vector<double> guards_start_, guards_end_, guards_mid_;
+};
+
+}  // namespace limcycle

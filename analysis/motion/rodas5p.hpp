@@ -1,0 +1,144 @@
+/// @file
+/// One step of RODAS5P, the implicit method for stiff motion (friction with a stiff bristle above all).
+#pragma once
+
+#include <Eigen/Dense>
+#include <boost/numeric/odeint/stepper/stepper_categories.hpp>
+#include <cstddef>
+#include <functional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "limcycle/analysis/motion/dense_segment.hpp"
+#include "limcycle/analysis/motion/rodas5p_tableau.hpp"
+#include "limcycle/analysis/motion/state.hpp"
+
+namespace limcycle {
+
+/// The object itself, or what a std::reference_wrapper stands for (Odeint users pass systems as std::ref).
+template <class T>
+T& unwrap(T& value) {
+  return value;
+}
+template <class T>
+T& unwrap(std::reference_wrapper<T>& value) {
+  return value.get();
+}
+template <class T>
+T& unwrap(const std::reference_wrapper<T>& value) {
+  return value.get();
+}
+
+/// RODAS5P (Steinebach 2023): Rosenbrock method of 8 stages, order 5 with an embedded solution of order 4, L-stable and
+/// stiffly accurate, for x' = f(x, t). A step solves 8 linear systems with one LU factorisation and calls f 8 times and
+/// the Jacobian once.
+///
+/// Shape: Odeint's error stepper for an implicit system, as odeint::rosenbrock4. `System` is a std::pair or anything
+/// with
+/// - `first(x, dxdt, t)`: the right side; dxdt has the size of x;
+/// - `second(x, J, t, dfdt)`: J(i, j) = df_i/dx_j (Eigen::MatrixXd) and dfdt = partial df/dt (State). Both have their
+/// size
+///   and are zero on entry, so that only what is not zero need be written.
+/// The pair and its parts may be std::ref. J must be the exact Jacobian: the order falls to 1 otherwise.
+///
+/// No error of f or J (NaN, singular matrix) stops a step: it makes xout or xerr NaN or infinite, which
+/// ErrorWeights::norm tells. No heap allocation after the first step of a given size. A copy is independent.
+class Rodas5p {
+ public:
+  using state_type = State;
+  using deriv_type = State;
+  using value_type = double;
+  using time_type = double;
+  using order_type = unsigned short;
+  using stepper_category = boost::numeric::odeint::error_stepper_tag;
+
+  static constexpr order_type stepper_order = 5;
+  static constexpr order_type error_order = 4;  ///< of the embedded solution; the error estimate is O(dt^5)
+  order_type order() const { return stepper_order; }
+
+  /// Step of length dt (not 0, negative runs back) from (x, t): solution of order 5 in xout, its difference from the
+  /// embedded one in xerr. xout may be x.
+  template <class System>
+  void do_step(System&& system, const State& x, double t, State& xout, double dt, State& xerr) {
+    begin(system, x, t);
+    advance(system, xout, dt, xerr);
+  }
+  template <class System>
+  void do_step(System&& system, const State& x, double t, State& xout, double dt) {
+    do_step(system, x, t, xout, dt, unused_error_);
+  }
+  template <class System>
+  void do_step(System&& system, State& x, double t, double dt, State& xerr) {
+    do_step(system, x, t, x, dt, xerr);
+  }
+  template <class System>
+  void do_step(System&& system, State& x, double t, double dt) {
+    do_step(system, x, t, x, dt, unused_error_);
+  }
+
+  /// The step from where the last step began, with another dt: f, J and df/dt there are not evaluated again. Right only
+  /// while the system is the same one (same mode, same parameters). A step must have been done.
+  template <class System>
+  void repeat_step(System&& system, State& xout, double dt, State& xerr) {
+    advance(system, xout, dt, xerr);
+  }
+
+  /// Where the last step began.
+  const State& start_state() const { return x0_; }
+  double start_time() const { return t0_; }
+
+  /// Interpolant of the last step, whether or not anybody accepted it. Cost about that of two stages without f.
+  void interpolant(DenseSegment& segment) const;
+
+  /// Makes room for states of the size of x.
+  void adjust_size(const State& x) { resize(x.size()); }
+
+ private:
+  template <class System>
+  void begin(System& system, const State& x, double t) {
+    resize(x.size());
+    x0_ = x;
+    t0_ = t;
+    jacobian_.setZero();
+    dfdt_.assign(x.size(), 0.0);
+    auto& parts = unwrap(system);
+    unwrap(parts.first)(std::as_const(x0_), f0_, t);
+    unwrap(parts.second)(std::as_const(x0_), jacobian_, t, dfdt_);
+  }
+
+  template <class System>
+  void advance(System& system, State& xout, double dt, State& xerr) {
+    auto& f = unwrap(unwrap(system).first);
+    factorise(dt);
+    solve_stage(0, f0_);
+    for (std::size_t s = 1; s < rodas5p::stages; ++s) {
+      place_stage(s);
+      f(std::as_const(stage_x_), stage_f_, t0_ + rodas5p::node[s] * dt);
+      solve_stage(s, stage_f_);
+    }
+    finish(xout, xerr);
+  }
+
+  void resize(std::size_t n);
+  /// LU of I/(gamma h) - J.
+  void factorise(double h);
+  /// stage_x_ = x0 + sum_j A[s][j] k_j; stages come in order.
+  void place_stage(std::size_t s);
+  /// k_s from f at the stage.
+  void solve_stage(std::size_t s, const State& f);
+  void finish(State& xout, State& xerr);
+
+  template <int N>
+  using Lu = Eigen::PartialPivLU<Eigen::Matrix<double, N, N>>;
+
+  State x0_, f0_, dfdt_, x1_, stage_x_, stage_f_, unused_error_;
+  Eigen::MatrixXd jacobian_;
+  std::vector<double> k_;  ///< the stages, one after the other
+  double t0_ = 0;
+  double h_ = 0;
+  /// Small systems are solved at fixed size, which is about three times as fast.
+  std::variant<Lu<Eigen::Dynamic>, Lu<1>, Lu<2>, Lu<3>, Lu<4>, Lu<5>, Lu<6>, Lu<7>, Lu<8>> lu_;
+};
+
+}  // namespace limcycle

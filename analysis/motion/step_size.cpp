@@ -1,0 +1,39 @@
+#include "limcycle/analysis/motion/step_size.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limcycle {
+
+namespace {
+
+constexpr double safety = 0.9;
+constexpr double most_growth = 6;
+constexpr double most_shrinking = 0.2;
+constexpr double exponent = 1.0 / 5;  // error = phi h^5
+/// Below this an error says more about rounding than about the trend.
+constexpr double least_error = 0.01;
+
+}  // namespace
+
+double StepSizeControl::after_success(double h, double error) {
+  double factor = safety * std::pow(error, -exponent);  // error 0: infinity, limited below
+  if (old_h_ != 0) {
+    const double bounded = std::max(error, least_error);
+    const double predicted = safety * std::abs(h / old_h_) * std::pow(old_error_ / (bounded * bounded), exponent);
+    factor = std::min(factor, predicted);
+  }
+  factor = std::clamp(factor, most_shrinking, rejected_ ? 1.0 : most_growth);
+  old_h_ = h;
+  old_error_ = std::max(error, least_error);
+  rejected_ = false;
+  return h * factor;
+}
+
+double StepSizeControl::after_failure(double h, double error) {
+  rejected_ = true;
+  // An infinite error gives the shortest step. The upper limit keeps a step that just failed from being tried again.
+  return h * std::clamp(safety * std::pow(error, -exponent), most_shrinking, safety);
+}
+
+}  // namespace limcycle

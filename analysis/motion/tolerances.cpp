@@ -1,0 +1,77 @@
+#include "limcycle/analysis/motion/tolerances.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <stdexcept>
+
+namespace limcycle {
+namespace {
+
+using Eigen::Index;
+
+/// Frequencies at which the linear part has something to say: moduli of its poles.
+std::vector<double> pole_frequencies(const Loop& loop) {
+  std::vector<double> found;
+  const Eigen::VectorXcd poles = loop.A.eigenvalues();
+  const double largest = poles.cwiseAbs().maxCoeff();
+  for (const auto& pole : poles)
+    if (std::abs(pole) > 1e-9 * largest) found.push_back(std::abs(pole));
+  if (found.empty()) found.push_back(1.0);
+  return found;
+}
+
+Scales scales_of(const Element<double>& element) {
+  return std::visit([](const auto& e) { return e.scales(); }, element);
+}
+
+}  // namespace
+
+State typical_sizes(const Loop& loop) {
+  const Index n = loop.states();
+  Eigen::VectorXd size = Eigen::VectorXd::Zero(n);
+  for (const double w : pole_frequencies(loop)) {
+    Eigen::MatrixXcd M =
+        std::complex<double>(0.0, w) * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<std::complex<double>>();
+    const Eigen::MatrixXcd response = M.fullPivLu().solve(loop.B.cast<std::complex<double>>());
+    for (Index i = 0; i < n; ++i)
+      for (Index k = 0; k < response.cols(); ++k) {
+        const double level = std::abs(response(i, k)) * scales_of(loop.elements[static_cast<std::size_t>(k)]).output;
+        if (std::isfinite(level)) size(i) = std::max(size(i), level);
+      }
+  }
+  const double largest = size.maxCoeff();
+  State result;
+  for (Index i = 0; i < n; ++i)
+    result.push_back(size(i) > 1e-9 * largest ? size(i) : largest > 0.0 ? 1e-9 * largest : 1.0);
+  for (const auto& element : loop.elements)
+    std::visit(
+        [&](const auto& e) {
+          for (int k = 0; k < e.states(); ++k) result.push_back(e.state_scale(k));
+        },
+        element);
+  return result;
+}
+
+ErrorWeights loop_weights(const Loop& loop, double rtol) {
+  if (!(rtol > 0.0 && rtol <= 0.1))
+    throw std::invalid_argument("rtol must be in (0, 0.1], got " + std::to_string(rtol));
+  ErrorWeights weights{rtol, typical_sizes(loop)};
+  const auto n = static_cast<std::size_t>(loop.states());
+  for (std::size_t i = 0; i < n; ++i) weights.atol[i] *= 1e-3;
+  for (std::size_t k = 0; k < loop.elements.size(); ++k) {
+    const Scales scales = scales_of(loop.elements[k]);
+    const auto limit = [&](const Eigen::RowVectorXd& row, double scale) {
+      if (!std::isfinite(scale)) return;
+      for (std::size_t i = 0; i < n; ++i)
+        if (const double part = std::abs(row(static_cast<Index>(i))); part > 0.0)
+          weights.atol[i] = std::min(weights.atol[i], scale / part);
+    };
+    if (loop.ports[k].path != "loop.friction") continue;
+    limit(loop.ports[k].C, scales.displacement);
+    limit(loop.ports[k].C_v, scales.velocity);
+  }
+  for (auto& value : weights.atol) value *= rtol;
+  return weights;
+}
+
+}  // namespace limcycle

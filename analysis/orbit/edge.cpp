@@ -1,0 +1,96 @@
+#include "limcycle/analysis/orbit/edge.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/measure.hpp"
+#include "limcycle/analysis/orbit/turning_points.hpp"
+
+namespace limcycle {
+namespace {
+
+enum class Trend { shrinks, grows, neither };
+
+/// Do the swings of y grow or shrink before the motion has turned 60 times? A motion that does not turn for 20 periods
+/// has shrunk; one that still swings as much after 60 turns has grown before its swings were first looked at.
+Trend trend(const Loop& loop, const LoopState& from, double period, const SettleOptions& options) {
+  LoopField field(loop);
+  field.modes() = from.modes;
+  March march(field, StepperKind::automatic, loop_weights(loop, options.rtol));
+  march.begin(from.x, 0.0);
+  TurningPoints turning;
+  double reference = 0.0;  // the fourth swing: the first ones still take shape
+  while (march.steps() < options.max_steps && turning.points().size() < 60) {
+    const double patience = (turning.points().empty() ? 0.0 : turning.points().back().t) + 20.0 * period;
+    if (march.t() >= patience) return Trend::shrinks;
+    if (march.step(patience) != Status::converged || (options.stop && options.stop())) return Trend::neither;
+    if (!turning.feed(march.t(), field.y(march.x())) || turning.points().size() < 5) continue;
+    if (reference == 0.0) reference = turning.swing(0);
+    if (turning.swing(0) > 1.6 * reference) return Trend::grows;
+    if (turning.swing(0) < 0.5 * reference) return Trend::shrinks;
+  }
+  return turning.points().size() < 60 ? Trend::neither : Trend::grows;
+}
+
+/// Neighbouring scales between which shrinking turns into growing (or back), nearest to 1 first.
+std::optional<std::pair<double, double>> bracket(const std::function<Trend(double)>& trend_at) {
+  constexpr std::array<double, 10> scales{0.1, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 3.0};
+  std::optional<std::pair<double, double>> best;
+  Trend previous = Trend::neither;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const Trend here = trend_at(scales[i]);
+    const bool changed = i > 0 && here != previous && here != Trend::neither && previous != Trend::neither;
+    const auto distance = [](double a, double b) { return std::abs(std::log(a * b)); };
+    if (changed && (!best || distance(scales[i - 1], scales[i]) < distance(best->first, best->second)))
+      best = {scales[i - 1], scales[i]};
+    previous = here;
+  }
+  return best;
+}
+
+/// The state after a time.
+std::optional<LoopState> after(const Loop& loop, const LoopState& from, double time) {
+  LoopField field(loop);
+  field.modes() = from.modes;
+  March march(field, StepperKind::automatic, loop_weights(loop, 1e-11));
+  march.begin(from.x, 0.0);
+  while (march.t() < time)
+    if (march.steps() > 200000 || march.step(time) != Status::converged) return std::nullopt;
+  return LoopState{march.x(), field.modes()};
+}
+
+}  // namespace
+
+ShootingResult edge_cycle(const Loop& loop, const std::function<LoopState(double)>& ray, double period,
+                          const SettleOptions& options) {
+  ShootingResult none;
+  none.why = "no border between growing and shrinking motions was found near it";
+  const auto trend_at = [&](double scale) { return trend(loop, ray(scale), period, options); };
+  const auto found = bracket(trend_at);
+  if (!found) return none;
+  auto [low, high] = *found;
+  const Trend below = trend_at(low);
+  for (int i = 0; i < 45 && high - low > 1e-12 * high; ++i) {
+    if (options.stop && options.stop()) return none;
+    const double mid = 0.5 * (low + high);
+    (trend_at(mid) == below ? low : high) = mid;
+  }
+  ShootingOptions shooting = options.shooting;
+  shooting.warm_maps = 0;
+  shooting.max_maps = 120;
+  for (const double periods : {2.0, 3.0, 1.0, 4.0}) {
+    const auto lingering = after(loop, ray(low), periods * period);
+    Trace trace;
+    if (!lingering || record(loop, *lingering, 1.2 * period, 1e-9, 400, trace) != Status::converged) continue;
+    for (const bool half : {symmetry(loop).has_value(), false}) {
+      auto shot = shoot(loop, *lingering, choose_section(loop, trace), half, shooting);
+      if (shot.status == Status::converged && shot.cycle.stable == false) return shot;
+    }
+  }
+  none.status = Status::stalled;
+  none.why = "growing and shrinking motions are separated near it, but shooting did not find the cycle between them";
+  return none;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,63 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/status.hpp"
+
+namespace limcycle {
+
+/// Point reflection under which a loop of odd elements is invariant: x -> 2 centre - x, modes mirrored.
+struct Reflection {
+  Eigen::VectorXd centre;  ///< linear states; element states are reflected at 0
+
+  LoopState of(const Loop& loop, const LoopState& state) const;
+};
+
+/// The reflection, if every element is odd and none is biased at the rest point of the linear part.
+std::optional<Reflection> symmetry(const Loop& loop);
+
+/// First return to a section, or with a reflection half of it: the flow to the mirrored section, reflected back.
+/// One object serves one thread; a map costs the integration of one (half) period.
+class ReturnMap {
+ public:
+  struct Options {
+    double rtol = 1e-11;
+    long max_steps = 200000;
+    std::function<bool()> stop;
+  };
+  struct Result {
+    Status status = Status::converged;
+    LoopState state;    ///< on the section
+    double time = 0.0;  ///< of the (half) period
+    State largest;  ///< largest |state| met, per component (linear states from the centre of the reflection, if any)
+  };
+
+  ReturnMap(const Loop& loop, Section section, std::optional<Reflection> half, Options options);
+
+  /// From a state on the section to the next one. Status max_iterations: it did not come back within the step budget.
+  Result operator()(const LoopState& from);
+  /// From anywhere to the section.
+  Result approach(const LoopState& from);
+
+  const Section& section() const { return section_; }
+  bool half() const { return half_.has_value(); }
+  const std::optional<Reflection>& reflection() const { return half_; }
+  const Options& options() const { return options_; }
+  long steps() const { return steps_; }
+  void set_rtol(double rtol) { options_.rtol = rtol; }
+
+ private:
+  Result run(const LoopState& from, const Section& target);
+
+  const Loop* loop_;
+  LoopField field_;
+  Section section_;
+  std::optional<Reflection> half_;
+  Options options_;
+  long steps_ = 0;
+};
+
+}  // namespace limcycle

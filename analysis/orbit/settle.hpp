@@ -1,0 +1,45 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "limcycle/analysis/orbit/shooting.hpp"
+
+namespace limcycle {
+
+/// What a motion comes to.
+enum class Outcome { rest, sliding, cycle, divergence, undecided };
+std::string_view to_string(Outcome outcome);
+
+struct SettleOptions {
+  double rtol = 1e-8;
+  double amplitude_floor = 1e-9;   ///< swings of y below this have died out
+  double amplitude_ceiling = 1e6;  ///< |y| beyond this has diverged
+  long max_steps = 60000;          ///< the horizon: steps, not seconds, so that it follows the loop's own time scales
+  ShootingOptions shooting;
+  std::span<const Cycle> known;  ///< cycles found before: recognised by period and swing (to 1e-4) without shooting
+  std::function<bool()> stop;
+};
+
+/// What is reached from one initial state.
+struct Settled {
+  Outcome outcome = Outcome::undecided;
+  std::string why;                     ///< one sentence
+  std::optional<ShootingResult> shot;  ///< for a new cycle
+  std::optional<std::size_t> known;    ///< index of the known cycle that was reached
+  Trace trace;
+  double time = 0.0;  ///< simulated, s
+  long steps = 0;
+};
+
+/// Simulates from `start` until it is clear what is reached. A cycle is one only when shooting from the motion finds a
+/// stable periodic solution with the same swing: a decaying stick-slip, whose swings shrink for ever, never is. Rest is
+/// one only when every rate has decayed faster than 1/t: slow hunting, which waits at rest for thousands of seconds
+/// while an integrator winds up, never is. What neither test decides within the budget is undecided.
+Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options);
+
+/// State in which y (from the rest point of the linear part, elements without history) is displaced by `displacement`.
+LoopState displaced(const Loop& loop, double displacement);
+
+}  // namespace limcycle

@@ -1,0 +1,39 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "limcycle/analysis/orbit/return_map.hpp"
+
+namespace limcycle {
+
+struct ShootingOptions {
+  double rtol = 3e-12;       ///< of the integration; the answer is no better than this
+  double tolerance = 1e-10;  ///< on the scaled residual |P(x) - x| of the return map
+  int warm_maps = 4;         ///< plain maps before the first Newton step (0: start from the guess itself)
+  int max_maps = 400;        ///< budget
+  long max_steps_per_map = 200000;
+  std::function<bool()> stop;
+};
+
+/// A cycle found by shooting, or why there is none.
+struct ShootingResult {
+  Status status = Status::no_cycle;
+  Cycle cycle;                    ///< meaningful only if status is converged
+  std::string why;                ///< one sentence
+  int maps = 0;                   ///< return maps computed
+  double multiplier_error = 0.0;  ///< estimated absolute error of the Floquet multipliers of the map
+};
+
+/// Section through a trace on which the loop returns transversally: y at 27 % of its swing above the middle (off the
+/// middle, where relays switch), in the direction in which y moves faster.
+Section choose_section(const Loop& loop, const Trace& trace);
+
+/// Solves x = P(x) for the return map on `section`, from a guess near the cycle; of the half map if the loop has an odd
+/// symmetry and the guess shows it (`half`). A few plain maps first (cold Newton breaks down on stick-slip), then
+/// Newton with the Jacobian by differences, kept as long as it contracts, with plain maps as the fallback. The answer
+/// is solved for at two integration tolerances, whose disagreement is the error estimate; the Jacobian at the answer
+/// gives the multipliers. Finds unstable cycles as well (with warm_maps = 0).
+ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& section, bool half,
+                     const ShootingOptions& options = {});
+
+}  // namespace limcycle

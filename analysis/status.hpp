@@ -1,0 +1,54 @@
+/// @file
+/// How a method of analysis ended: the one enumeration that every result carries.
+#pragma once
+
+#include <string_view>
+
+namespace limcycle {
+
+/// How a method ended. Only `converged` and `no_cycle` are answers; every other value says why there is none (or why
+/// the answer is partial) and numbers that come with it are the best known, to be used with that reservation. Bad input
+/// is not a status: it throws std::invalid_argument.
+enum class Status {
+  /// Finished: the result meets the tolerance that was asked for.
+  converged,
+  /// The budget of iterations, steps or evaluations was used up first.
+  max_iterations,
+  /// No further progress is possible (step too small, singular Jacobian) and the tolerance is not met.
+  stalled,
+  /// A NaN or infinity appeared, or the function is undefined where it is needed.
+  not_finite,
+  /// Finished: there is no cycle (no root, motion comes to rest) in the region that was searched.
+  no_cycle,
+  /// Switching events accumulate without end (Zeno behaviour) and the motion cannot be carried past them.
+  chattering,
+  /// Finished, but a check says that something may be missing (e.g. a region stayed undecided).
+  incomplete,
+  /// The caller asked to stop; what was computed until then is kept.
+  interrupted
+};
+
+/// Name of the status, spelled as the enumerator.
+constexpr std::string_view to_string(Status status) {
+  switch (status) {
+    case Status::converged:
+      return "converged";
+    case Status::max_iterations:
+      return "max_iterations";
+    case Status::stalled:
+      return "stalled";
+    case Status::not_finite:
+      return "not_finite";
+    case Status::no_cycle:
+      return "no_cycle";
+    case Status::chattering:
+      return "chattering";
+    case Status::incomplete:
+      return "incomplete";
+    case Status::interrupted:
+      return "interrupted";
+  }
+  return "unknown";
+}
+
+}  // namespace limcycle

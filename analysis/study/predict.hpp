@@ -1,0 +1,85 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/frequency/root_search.hpp"
+#include "limcycle/analysis/orbit/settle.hpp"
+#include "limcycle/analysis/status.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// Box chosen from the loop's own scales: the response to the element's output level over the band of the loop's poles.
+SearchBox default_search_box(const Loop& loop);
+
+struct PredictOptions {
+  std::optional<SearchBox> search;                         ///< default: default_search_box
+  int starts = 4;                                          ///< simulations from different initial states
+  double accuracy = 1e-8;                                  ///< wanted relative error of period and amplitude of a cycle
+  std::function<bool()> stop;                              ///< asked often; true ends the work and keeps what is there
+  std::function<void(double, std::string_view)> progress;  ///< fraction done (0..1), what is being done
+};
+
+/// What a prediction turned out to be worth.
+enum class Verdict { confirmed, biased, wrong, undecided };  // "wrong" is printed "false"
+
+/// One root of 1 + N(A,w) G(jw) = 0.
+struct Prediction {
+  std::string method = "describing-function";
+  double amplitude = 0.0;        ///< of y's first harmonic
+  double frequency = 0.0;        ///< rad/s
+  double input_amplitude = 0.0;  ///< of the element's input
+  double residual = 0.0;         ///< |1 + N G| at the root
+  std::optional<bool> stable;    ///< Loeb's rule; empty if it does not decide
+  Verdict verdict = Verdict::undecided;
+  std::optional<std::size_t> cycle;  ///< index of the matching cycle
+  std::string why;                   ///< one sentence
+};
+
+/// What a simulation from one start reached.
+struct OutcomeOfStart {
+  std::string start;  ///< the initial state in words
+  Outcome outcome = Outcome::undecided;
+  std::string why;  ///< one sentence
+  std::optional<std::size_t> cycle;
+  Trace trace;  ///< the run, for pictures
+};
+
+struct Missed {
+  std::string method;
+  std::size_t cycle;
+};
+
+/// Nyquist curve of the linear part and the -1/N family, for the picture.
+struct NyquistPicture {
+  std::vector<double> frequency;
+  std::vector<std::complex<double>> G;
+  std::vector<double> family_amplitude;  ///< amplitudes along each member
+  std::vector<double> family_frequency;  ///< one member per frequency
+  std::vector<std::vector<std::complex<double>>> minus_inverse_N;
+};
+
+/// Both curves over the search box; points where N or G does not exist are NaN or left out.
+NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box);
+
+struct PredictReport {
+  SearchBox search;
+  std::vector<Cycle> cycles;
+  std::vector<Prediction> predictions;
+  std::vector<Missed> missed;
+  std::vector<OutcomeOfStart> outcomes;
+  NyquistPicture nyquist;
+  std::vector<std::string> notes;  ///< what a user must know: methods that do not apply, searches that are incomplete
+  Status status = Status::converged;
+};
+
+/// Every limit cycle that the describing function predicts in the search box, what really happens from several starts,
+/// and a verdict for each prediction.
+PredictReport predict(const Loop& loop, const PredictOptions& options = {});
+
+std::string_view to_string(Verdict verdict);
+
+}  // namespace limcycle

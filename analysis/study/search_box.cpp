@@ -1,0 +1,36 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/study/predict.hpp"
+
+namespace limcycle {
+
+/// Two decades around the loop's poles; amplitudes up to three times the largest response to the element's level there
+/// (at s = (0.1 + j) w, so that an undamped resonance does not count as infinite), six decades down.
+SearchBox default_search_box(const Loop& loop) {
+  double slow = infinite, fast = 0.0;
+  const Eigen::VectorXd poles = loop.A.eigenvalues().cwiseAbs();
+  for (const double pole : poles)
+    if (pole > 1e-9 * poles.maxCoeff()) {
+      slow = std::min(slow, pole);
+      fast = std::max(fast, pole);
+    }
+  if (!std::isfinite(slow)) slow = fast = 1.0;
+  if (loop.delay > 0.0) fast = std::max(fast, 1.0 / loop.delay);
+  SearchBox box{0.0, 0.0, 0.01 * slow, 100.0 * fast};
+  const auto main = std::ssize(loop.elements) - 1;
+  const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
+  double largest = 0.0;
+  for (int i = 0; i <= 200; ++i) {
+    const double w = 0.1 * slow * std::pow(100.0 * fast / slow, i / 200.0);
+    const double level = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(main, main)) * scales.output;
+    if (std::isfinite(level)) largest = std::max(largest, level);
+  }
+  if (!(largest > 0.0)) largest = 1.0;
+  box.amplitude_max = 3.0 * largest;
+  box.amplitude_min = 1e-6 * box.amplitude_max;
+  return box;
+}
+
+}  // namespace limcycle

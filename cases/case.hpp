@@ -1,0 +1,71 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/cases/input_error.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// [df]: where and how describing functions are wanted. Lists are expanded.
+struct DfSection {
+  std::vector<double> amplitude, frequency, bias{0.0};
+  DfOptions options;
+
+  std::size_t size() const { return amplitude.size() * frequency.size() * bias.size(); }
+
+  /// The whole product, amplitude slowest, then frequency, then bias.
+  std::vector<DfPoint> points() const;
+};
+
+/// A case file, read and validated.
+struct Case {
+  std::string title;                   ///< default: name of the file without folder and extension
+  std::string file;                    ///< as named on the command line
+  std::string text;                    ///< bytes of the file
+  std::string sha256;                  ///< of these bytes, 64 hexadecimal digits
+  std::vector<std::string> overrides;  ///< "PATH=VALUE" in the order in which they were applied
+
+  std::optional<LoopParts> loop;           ///< empty: a case for describing functions of a lone element
+  std::optional<Element<double>> element;  ///< the lone element; empty if there is a loop
+  std::string element_path;                ///< "loop.friction" or "loop.element", of the element that `df` asks about
+
+  std::optional<DfSection> df;
+  std::optional<SimulateOptions> simulate;  ///< duration, initial, force, reference, stepper, rtol, sample are set
+  PredictOptions predict;                   ///< search (from [search]), starts and accuracy are set
+  std::vector<std::string> methods;         ///< [predict] methods; empty: all there are
+};
+
+/// Bytes that a case file may have.
+inline constexpr std::size_t largest_case_file = std::size_t{1} << 20;
+
+/// Reads and validates a case file, with `overrides` ("PATH=VALUE", VALUE in TOML syntax) applied in order. Everything
+/// in it is checked before this returns, from the parameter tables of the models, their own rules and those of the
+/// loop. Throws InputError for anything wrong with the file, its contents or an override.
+Case load_case(const std::string& file, const std::vector<std::string>& overrides = {});
+
+/// The same from text; `file` serves messages only.
+Case read_case(std::string_view text, const std::string& file, const std::vector<std::string>& overrides = {});
+
+/// What a command needs from a case; each throws an InputError that says which section is missing.
+const LoopParts& need_loop(const Case& from);
+const DfSection& need_df(const Case& from);
+const SimulateOptions& need_simulate(const Case& from);
+
+/// The element whose describing function `df` computes: the lone element, else the friction, else the forward element.
+const Element<double>& df_element(const Case& from);
+
+/// Kind of a law, element, plant or controller as a case file spells it.
+template <class... Kinds>
+std::string_view kind_of(const std::variant<Kinds...>& any) {
+  return std::visit([]<class K>(const K&) { return K::kind; }, any);
+}
+
+/// SHA-256 of some bytes (FIPS 180-4), 64 lower-case hexadecimal digits.
+std::string sha256(std::string_view bytes);
+
+}  // namespace limcycle

@@ -1,0 +1,75 @@
+#include "limcycle/reports/check.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/output.hpp"
+
+namespace limcycle {
+namespace {
+
+/// Poles of the linear part without its elements. A delay makes them infinitely many; then nothing is said.
+void describe_poles(const Loop& loop, CheckSummary& summary) {
+  summary.order = static_cast<int>(loop.states());
+  summary.delay = loop.delay;
+  if (loop.delay > 0.0) return;
+  if (loop.states() == 0) {
+    summary.stable = true;
+    return;
+  }
+  const Eigen::VectorXcd poles = loop.A.eigenvalues();
+  summary.slowest_pole = poles.real().maxCoeff();
+  // A pole at zero comes out as rounding of the others, a repeated one as the root of it.
+  const double fastest = poles.cwiseAbs().maxCoeff();
+  const bool repeated = (poles.array().abs() <= 1e-7 * fastest).count() > 1;
+  if (std::abs(*summary.slowest_pole) <= (repeated ? 1e-7 : 1e-12) * fastest) summary.slowest_pole = 0.0;
+  summary.stable = *summary.slowest_pole < 0.0;
+}
+
+CheckSummary summary_of(const Case& from) {
+  CheckSummary summary;
+  if (from.loop) {
+    const Loop loop = build_loop(*from.loop);
+    summary.plant = kind_of(from.loop->plant);
+    summary.controller = kind_of(from.loop->controller);
+    for (std::size_t i = 0; i < loop.elements.size(); ++i)
+      summary.elements.push_back({loop.ports[i].path, std::string(kind_of(loop.elements[i]))});
+    summary.states = state_names(loop);
+    describe_poles(loop, summary);
+    summary.search = from.predict.search ? from.predict.search : default_search_box(loop);
+    summary.search_from_case = from.predict.search.has_value();
+  } else {
+    summary.elements.push_back({from.element_path, std::string(kind_of(*from.element))});
+    const int states = std::visit([](const auto& element) { return element.states(); }, *from.element);
+    for (int i = 0; i < states; ++i)
+      summary.states.push_back(from.element_path + (states == 1 ? ".z" : fmt::format(".z{}", i + 1)));
+  }
+  if (from.df)
+    summary.sections.push_back(fmt::format("df: {} x {} x {} points", from.df->amplitude.size(),
+                                           from.df->frequency.size(), from.df->bias.size()));
+  if (from.simulate) summary.sections.push_back(fmt::format("simulate: {} s", from.simulate->duration));
+  return summary;
+}
+
+int check(const CommonFlags& flags) {
+  const Case from = load_case(flags);
+  const auto summary = summary_of(from);
+  const auto made = provenance(flags, &from);
+  Output output(flags);
+  output.text(check_text(made, summary));
+  if (output.wants_json()) output.json(check_json(made, summary));
+  if (output.wants_csv()) output.csv(check_csv(made, summary));
+  output.finish();
+  return exit_done;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<CommonFlags>();
+  add_command(program, action, "check", "Validate a case file and tell what it holds", true, flags,
+              [flags] { return check(*flags); });
+}
+
+}  // namespace limcycle

@@ -1,0 +1,58 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "limcycle/cases/case.hpp"
+#include "limcycle/reports/provenance.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace limcycle {
+
+/// How the program ends.
+enum ExitCode : int {
+  exit_done = 0,       ///< whether or not a cycle exists
+  exit_disagreed = 1,  ///< a claim or a required agreement failed
+  exit_bad_input = 2,  ///< wrong usage or input (InputError, std::invalid_argument)
+  exit_no_answer = 3   ///< a method could not answer, a result could not be written, or a defect of the program
+};
+
+/// What every subcommand understands.
+struct CommonFlags {
+  std::string case_file;
+  std::vector<std::string> set;  ///< --set PATH=VALUE, in order
+  std::string json, csv;         ///< file, "-" for stdout, empty: not wanted
+  std::string output;            ///< -o: file for what would go to stdout; empty: stdout
+  std::uint64_t seed = 0;
+  int threads = 1;
+  std::string isa = "auto";
+  bool quiet = false;
+};
+
+/// What the command line asked for; set while it is parsed, run afterwards. The result is the exit code.
+using Action = std::function<int()>;
+
+/// Declares subcommand `name` with the common flags; with `takes_case` also the positional CASE. Options of its own are
+/// added to what is returned. `run` becomes the action when the subcommand is chosen.
+CLI::App* add_command(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
+                      bool takes_case, const std::shared_ptr<CommonFlags>& flags, Action run);
+
+/// The case of the command line, read and validated. Throws InputError.
+Case load_case(const CommonFlags& flags);
+
+/// Who made a result, with which settings, from what. `from`: the case, or null if the command has none.
+Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
+
+// Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.
+void add_check(CLI::App& program, Action& action);
+void add_df(CLI::App& program, Action& action);
+void add_laws(CLI::App& program, Action& action);
+void add_predict(CLI::App& program, Action& action);
+void add_simulate(CLI::App& program, Action& action);
+
+}  // namespace limcycle

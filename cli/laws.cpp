@@ -1,0 +1,47 @@
+#include "limcycle/reports/laws.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/output.hpp"
+
+namespace limcycle {
+namespace {
+
+int laws(const CommonFlags& flags, const std::string& kind) {
+  auto entries = catalogue();
+  if (!kind.empty()) {
+    std::vector<std::string> kinds;
+    for (const auto& entry : entries)
+      if (std::ranges::find(kinds, entry.kind) == kinds.end()) kinds.push_back(entry.kind);
+    std::erase_if(entries, [&](const auto& entry) { return entry.kind != kind; });
+    if (entries.empty())
+      throw InputError({.file = {},
+                        .line = 0,
+                        .override = {},
+                        .key = "laws",
+                        .value = {},
+                        .rule = "unknown kind '" + kind + "'",
+                        .suggestion = suggest(kind, kinds)});
+  }
+  Output output(flags);
+  output.text(kind.empty() ? laws_text(entries) : law_text(entries));
+  if (output.wants_json()) output.json(laws_json(provenance(flags), entries));
+  if (output.wants_csv()) output.csv(laws_csv(entries));
+  output.finish();
+  return exit_done;
+}
+
+}  // namespace
+
+void add_laws(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<CommonFlags>();
+  const auto kind = std::make_shared<std::string>();
+  auto* command =
+      add_command(program, action, "laws", "Laws, elements, plants and controllers: parameters, units, equations",
+                  false, flags, [flags, kind] { return laws(*flags, *kind); });
+  command->add_option("KIND", *kind, "One of them, in full")->type_name("NAME");
+}
+
+}  // namespace limcycle

@@ -1,0 +1,100 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "build_info.hpp"
+#include "limcycle/cases/input_error.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/output.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr void (*commands[])(CLI::App&, Action&) = {add_predict, add_df, add_simulate, add_check, add_laws};
+
+InputError usage(const std::string& rule, const std::string& suggestion = {}) {
+  return InputError(
+      {.file = {}, .line = 0, .override = {}, .key = {}, .value = {}, .rule = rule, .suggestion = suggestion});
+}
+
+std::string version_text() {
+  return std::string("limcycle ") + build_info::version + " (" + build_info::commit + ", " + build_info::compiler +
+         ", " + build_info::build_type + ")";
+}
+
+/// A word where a command should stand, before the parser makes something else of it.
+void check_command(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2) throw usage("a command is needed", "'limcycle --help' lists them");
+  const std::string word = argv[1];
+  if (word.starts_with('-')) return;
+  std::vector<std::string> names;
+  for (const auto* command : program.get_subcommands({})) names.push_back(command->get_name());
+  if (std::ranges::find(names, word) == names.end())
+    throw usage("unknown command '" + word + "'", suggest(word, names));
+}
+
+/// What the parser could not place: a misspelt option or a second case.
+InputError unexpected(const CLI::App& program) {
+  const auto chosen = program.get_subcommands();
+  const std::string command = chosen.empty() ? "" : chosen.front()->get_name() + ": ";
+  const auto left = program.remaining(true);
+  const std::string word = left.empty() ? std::string() : left.front();
+  if (!word.starts_with('-') || chosen.empty()) return usage(command + "unexpected argument '" + word + "'");
+  std::vector<std::string> names;
+  for (const auto* option : chosen.front()->get_options())
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  return usage(command + "unknown option '" + word + "'", suggest(word.substr(0, word.find('=')), names));
+}
+
+int run(int argc, char** argv) {
+  CLI::App program{"Limit cycles of feedback loops with friction: predicted, and checked in the time domain",
+                   "limcycle"};
+  Action action;
+  program.set_version_flag("--version", version_text(), "Print the version and exit");
+  program.require_subcommand(1);
+  for (const auto add : commands) add(program, action);
+  for (auto* command : program.get_subcommands({}))
+    command->set_version_flag("--version", version_text(), "Print the version and exit");
+  try {
+    check_command(program, argc, argv);
+    program.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    std::cout << program.help() << std::flush;
+    return exit_done;
+  } catch (const CLI::CallForVersion&) {
+    std::cout << version_text() << std::endl;
+    return exit_done;
+  } catch (const CLI::ExtrasError&) {
+    throw unexpected(program);
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = program.get_subcommands();
+    throw usage((chosen.empty() ? "" : chosen.front()->get_name() + ": ") + error.what());
+  }
+  return action();
+}
+
+int complain(const std::string& message, ExitCode code) {
+  std::cerr << "limcycle: " + one_line(message, 2000) + "\n" << std::flush;
+  return code;
+}
+
+}  // namespace
+}  // namespace limcycle
+
+int main(int argc, char** argv) {
+  using namespace limcycle;
+  try {
+    return run(argc, argv);
+  } catch (const InputError& error) {
+    return complain(error.what(), exit_bad_input);
+  } catch (const std::invalid_argument& error) {
+    return complain(error.what(), exit_bad_input);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory", exit_no_answer);
+  } catch (const OutputError& error) {
+    return complain(error.what(), exit_no_answer);
+  } catch (const std::exception& error) {
+    return complain(std::string("internal error: ") + error.what(), exit_no_answer);
+  }
+}

@@ -1,0 +1,56 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limcycle/cli/command.hpp"
+
+namespace limcycle {
+
+/// A result could not be written (full disk, closed pipe): exit code 3.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Where a command's documents go, as the flags say: the text to stdout or to --output, JSON and CSV to their files.
+/// With "-" for one of them stdout carries that document and nothing else; the text is then dropped unless --output
+/// names a file for it.
+///
+/// The constructor checks that every file can be opened, before anything is computed, without touching what stands in
+/// it; it throws InputError otherwise. Files that it had to create and that were never written are removed again.
+class Output {
+ public:
+  explicit Output(const CommonFlags& flags);
+  ~Output();
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  bool wants_json() const { return !json_.empty(); }
+  bool wants_csv() const { return !csv_.empty(); }
+  bool wants_text() const { return !text_.empty(); }
+
+  /// Write the whole document at once, into a new file that then takes the place of the old one, so that a full disk
+  /// never costs an older result. A write that fails is kept for finish(), so that the others still go out.
+  void text(std::string_view document) { write(text_, document); }
+  void json(std::string_view document) { write(json_, document); }
+  void csv(std::string_view document) { write(csv_, document); }
+
+  /// Any other file (an HTML page, say) under the same rules: check_file() first, then, when there is something,
+  /// file().
+  void check_file(const std::string& flag, const std::string& path);
+  void file(const std::string& path, std::string_view document) { write(path, document); }
+
+  /// Throws OutputError naming the first document that could not be written completely.
+  void finish();
+
+ private:
+  void write(const std::string& path, std::string_view document);
+
+  std::string text_, json_, csv_;     // "-" is stdout, empty: not wanted
+  std::vector<std::string> created_;  // by check_file(), not written yet
+  std::string failure_;
+};
+
+}  // namespace limcycle

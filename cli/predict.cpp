@@ -1,0 +1,108 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/reports/csv.hpp"
+#include "limcycle/reports/html.hpp"
+#include "limcycle/reports/json.hpp"
+#include "limcycle/reports/picture.hpp"
+#include "limcycle/reports/text.hpp"
+
+namespace limcycle {
+namespace {
+
+struct PredictFlags : CommonFlags {
+  std::string html;      ///< --html
+  std::string pictures;  ///< --svg
+  bool require_agreement = false;
+};
+
+/// -o names a page or a picture by its ending; the text then stays on stdout.
+void sort_out(PredictFlags& flags) {
+  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  if (flags.pictures.empty() && flags.output.ends_with(".svg")) flags.pictures = std::exchange(flags.output, {});
+}
+
+/// Metres and newtons where there is something mechanical, else bare numbers.
+Units units_of(const LoopParts& loop) {
+  const auto plant = kind_of(loop.plant);
+  const bool mechanical = loop.friction || plant == "mass" || plant == "belt" || plant == "two-mass";
+  return mechanical ? Units{} : Units{"", ""};
+}
+
+/// The case file once more, for the page; empty if it has changed since it was read.
+std::string text_of(const Case& from) {
+  std::ifstream stream(from.file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return sha256(text) == from.sha256 ? text : std::string();
+}
+
+int exit_code(const PredictReport& report, bool require_agreement) {
+  const bool nothing = report.cycles.empty() && report.predictions.empty() && report.outcomes.empty();
+  const bool answered = report.status == Status::converged || report.status == Status::no_cycle;
+  if (report.status == Status::not_finite || (nothing && !answered)) return exit_no_answer;
+  if (!require_agreement) return exit_done;
+  const auto any = [&](Verdict verdict) {
+    return std::any_of(report.predictions.begin(), report.predictions.end(),
+                       [&](const auto& one) { return one.verdict == verdict; });
+  };
+  if (any(Verdict::wrong) || any(Verdict::biased) || !report.missed.empty()) return exit_disagreed;
+  // What was not decided is no agreement.
+  return any(Verdict::undecided) || !answered ? exit_no_answer : exit_done;
+}
+
+int run(PredictFlags flags) {
+  sort_out(flags);
+  const Case from = load_case(flags);
+  const LoopParts& parts = need_loop(from);
+  const Units units = units_of(parts);
+  Output output(flags);
+  output.check_file("--html", flags.html);
+  output.check_file("--svg", flags.pictures);
+
+  PredictReport report;
+  {
+    Progress progress(flags.quiet);
+    PredictOptions options = from.predict;
+    options.stop = interrupted;
+    options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
+    catch_interrupts();
+    report = predict(build_loop(parts), options);
+  }
+  const auto made = provenance(flags, &from);
+  std::string text = predict_text(from.title, report, units);
+  if (!flags.html.empty()) {
+    output.file(flags.html, predict_page(report, made, text_of(from), units));
+    text += "\nreport: " + flags.html + "\n";
+  }
+  if (!flags.pictures.empty()) output.file(flags.pictures, predict_picture(report, units));
+  output.text(text);
+  if (output.wants_json()) output.json(predict_json(made, report));
+  if (output.wants_csv()) output.csv(predict_csv(report));
+  output.finish();
+  if (report.status == Status::interrupted && !flags.quiet)
+    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  return exit_code(report, flags.require_agreement);
+}
+
+}  // namespace
+
+void add_predict(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<PredictFlags>();
+  CLI::App* command = add_command(program, action, "predict",
+                                  "Every limit cycle, predicted and checked in the time domain, with a verdict", true,
+                                  flags, [flags] { return run(*flags); });
+  command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
+      ->type_name("FILE");
+  command->add_option("--svg", flags->pictures, "Write a picture to FILE (so does -o FILE.svg)")->type_name("FILE");
+  command->add_flag("--require-agreement", flags->require_agreement,
+                    "Exit with 1 if a prediction is false or biased, or a limit cycle is missed");
+}
+
+}  // namespace limcycle

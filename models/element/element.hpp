@@ -1,0 +1,100 @@
+#pragma once
+#include <complex>
+#include <concepts>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "limcycle/models/parameter.hpp"
+#include "limcycle/models/scalar.hpp"
+
+namespace limcycle {
+
+/// What an element sees of its surroundings at one instant.
+template <class S>
+struct Input {
+  S x{};      ///< input signal (friction: relative displacement, m)
+  S v{};      ///< its rate (friction: relative velocity, m/s)
+  S drive{};  ///< the output that would hold the signal named by `Held` at its present value; +-infinity where the
+              ///< surroundings cannot be held (prescribed motion), with the sign of the coming motion
+};
+
+/// Discrete part of an element's state; its meaning is the element's own. Changed only at located events.
+struct Mode {
+  std::int64_t value = 0;
+  bool operator==(const Mode&) const = default;
+};
+
+/// Which signal an element keeps at zero in its present mode, its output then being the drive.
+enum class Held { nothing, input, rate };
+
+/// Sizes at which an element's behaviour changes; infinite where it has no such size. They set tolerances and meshes.
+struct Scales {
+  double displacement = infinite;  ///< input change over which the internal state settles (bristle: Fs/sigma0, m)
+  double velocity = infinite;      ///< input rate over which the output changes (Stribeck velocity, m/s)
+  double output = 1.0;             ///< typical size of the output (N)
+};
+
+/// An element maps a signal and its rate to an output. It is a value that holds parameters only: state and mode are
+/// passed in, the rate is handed out, so that one object serves many threads and methods.
+///
+/// Every element offers
+///  - `kind`, `equation`, `source`, `parameters()`, `validate()`: what it is;
+///  - `states()`: number of continuous states; `rate(in, mode, z, dz)`; `output(in, mode, z)`;
+///  - `odd()`: output changes sign when input and state do, `mirror(mode)` being the mode of the mirrored motion;
+///  - `scales()`, `state_scale(i)`.
+/// Elements with modes (see HasModes) add guards, which are >= 0 as long as the mode lasts, and the next mode.
+template <class E, class S>
+concept ElementOn = requires(const E e, const Input<S> in, Mode mode, std::span<const S> z, std::span<S> dz, int i) {
+  { E::kind } -> std::convertible_to<std::string_view>;
+  { e.states() } -> std::same_as<int>;
+  { e.output(in, mode, z) } -> std::same_as<S>;
+  e.rate(in, mode, z, dz);
+  { e.odd() } -> std::same_as<bool>;
+  { e.mirror(mode) } -> std::same_as<Mode>;
+  { e.scales() } -> std::same_as<Scales>;
+  { e.state_scale(i) } -> std::same_as<double>;
+};
+
+/// Optional: an element whose equations change at located events. `guard` writes `guards(mode)` values that are
+/// non-negative while the mode lasts; when guard k turns negative `next` gives the mode that follows, and may reset the
+/// state; `start` gives the mode of an element without history at that input.
+template <class E, class S>
+concept HasModes = requires(const E e, const Input<S> in, Mode mode, std::span<const S> z, std::span<S> g, int k,
+                            std::span<double> z_out, const Input<double> at) {
+  { e.guards(mode) } -> std::same_as<int>;
+  e.guard(in, mode, z, g);
+  { e.next(at, mode, z_out, k) } -> std::same_as<Mode>;
+  { e.start(at, z_out) } -> std::same_as<Mode>;
+};
+
+/// Optional: an element that can hold a signal at zero (set-valued laws stick, an ideal relay slides).
+template <class E>
+concept CanHold = requires(const E e, Mode mode) {
+  { e.held(mode) } -> std::same_as<Held>;
+};
+
+/// Optional: an output that depends on the input rate (so the rate must be known before the output).
+template <class E>
+concept NeedsRate = requires {
+  requires E::output_needs_rate;
+};
+
+/// Optional: closed-form describing function N(A, w) for the input bias + A sin wt (friction: bias t + A sin wt);
+/// empty where the closed form does not hold.
+template <class E>
+concept HasExactDescribingFunction = requires(const E e, double a) {
+  { e.exact_describing_function(a, a, a) } -> std::same_as<std::optional<std::complex<double>>>;
+};
+
+/// Base of elements without internal state, modes or memory.
+template <class S>
+struct Memoryless {
+  int states() const { return 0; }
+  void rate(const Input<S>&, Mode, std::span<const S>, std::span<S>) const {}
+  Mode mirror(Mode mode) const { return {-mode.value}; }
+  double state_scale(int) const { return 1.0; }
+};
+
+}  // namespace limcycle

@@ -1,0 +1,39 @@
+#pragma once
+#include "limcycle/models/friction/levels.hpp"
+
+namespace limcycle {
+
+/// Dahl friction: dF/dx = sigma0 |1 - s F/Fc|^i sgn(1 - s F/Fc) with s = sgn(v); state z = F/sigma0 (m).
+/// One state; rate-independent; local memory; drifts under biased forces; |F| <= Fc is invariant for i >= 1; passive.
+/// Dahl (1968, 1976).
+template <class S>
+struct Dahl {
+  S Fc{}, sigma0{}, exponent{1.0};
+
+  static constexpr std::string_view kind = "dahl";
+  static constexpr std::string_view equation =
+      "dz/dt = v |1 - s sigma0 z/Fc|^exponent sgn(1 - s sigma0 z/Fc), s = sgn(v);  F = sigma0 z";
+  static constexpr std::string_view source =
+      "Dahl (1968), Aerospace Corp. TOR-0158(3107-18)-1; Dahl (1976), AIAA J. 14(12)";
+
+  static std::vector<Parameter<Dahl, S>> parameters() {
+    return {{"Fc", "N", "sliding (Coulomb) level", &Dahl::Fc, positive},
+            {"sigma0", "N/m", "bristle stiffness", &Dahl::sigma0, positive},
+            {"exponent", "1", "shape of the approach to Fc", &Dahl::exponent, not_negative, false}};
+  }
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+
+  int states() const { return 1; }
+  void rate(const Input<S>& in, Mode, std::span<const S> z, std::span<S> dz) const {
+    using std::abs;
+    const S left = S(1.0) - sign(in.v) * sigma0 * z[0] / Fc;
+    dz[0] = in.v * sign(left) * power(abs(left), exponent);
+  }
+  S output(const Input<S>&, Mode, std::span<const S> z) const { return sigma0 * z[0]; }
+  bool odd() const { return true; }
+  Mode mirror(Mode mode) const { return mode; }
+  Scales scales() const { return {.displacement = value_of(Fc / sigma0), .output = value_of(Fc)}; }
+  double state_scale(int) const { return value_of(Fc / sigma0); }
+};
+
+}  // namespace limcycle

@@ -1,0 +1,37 @@
+#pragma once
+#include "limcycle/models/friction/stick_slip.hpp"
+
+namespace limcycle {
+
+/// Static friction with a Stribeck curve: F = g(v) sgn(v) + sigma2 v while sliding, |F| <= Fs at rest.
+/// No state, no memory, no drift; passive because g > 0.
+template <class S>
+struct Stribeck : StickSlip<S, StribeckCurve<S>> {
+  S sigma2{0.0};
+
+  static constexpr std::string_view kind = "stribeck";
+  static constexpr std::string_view equation =
+      "F = g(v) sgn(v) + sigma2 v, v != 0;  |F| <= Fs, balancing the drive, v = 0;  g = Fc + (Fs - Fc) "
+      "exp(-|v/vs|^delta)";
+  static constexpr std::string_view source =
+      "Stribeck (1902); exponential curve after Bo and Pavelescu (1982), not confirmed";
+
+  static std::vector<Parameter<Stribeck, S>> parameters() {
+    auto table = StribeckCurve<S>::template stribeck_table<Stribeck>();
+    table.push_back({"sigma2", "N s/m", "viscous friction", &Stribeck::sigma2, not_negative, false});
+    return table;
+  }
+  std::optional<BrokenRule> validate() const { return this->validate_levels(); }
+
+  S output(const Input<S>& in, Mode mode, std::span<const S>) const {
+    if (mode == this->stuck) return in.drive;
+    // The mode, not the sign of v, chooses the side: v itself may be a rounding error away from zero.
+    using std::abs;
+    const S g = this->level(abs(in.v), mode == this->forward);
+    return (mode == this->forward ? g : -g) + sigma2 * in.v;
+  }
+  bool odd() const { return this->symmetric(); }
+  Scales scales() const { return {.velocity = value_of(this->vs), .output = value_of(this->Fs)}; }
+};
+
+}  // namespace limcycle

@@ -1,0 +1,76 @@
+#include "limcycle/models/linear/controllers.hpp"
+
+namespace limcycle {
+namespace {
+
+StateSpace sized(Eigen::Index n) {
+  return {Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, 1), Eigen::MatrixXd::Zero(1, n),
+          Eigen::MatrixXd::Zero(1, 1)};
+}
+
+std::vector<std::string> numbered(Eigen::Index n) {
+  std::vector<std::string> names;
+  for (Eigen::Index i = 0; i < n; ++i) names.push_back("c" + std::to_string(i + 1));
+  return names;
+}
+
+}  // namespace
+
+ControllerModel NoController::model() const {
+  ControllerModel controller{sized(0), 0.0, {}};
+  controller.ss.D(0, 0) = 1.0;
+  return controller;
+}
+
+ControllerModel Pid::model() const {
+  const bool integral = ki != 0.0, filtered = kd != 0.0 && tf > 0.0;
+  const Eigen::Index n = (integral ? 1 : 0) + (filtered ? 1 : 0);
+  ControllerModel controller{sized(n), kd != 0.0 && !filtered ? kd : 0.0, {}};
+  auto& [A, B, C, D] = controller.ss;
+  D(0, 0) = kp;
+  if (integral) {  // state: integral of e
+    B(0, 0) = 1.0;
+    C(0, 0) = ki;
+    controller.state_names.emplace_back("I");
+  }
+  if (filtered) {  // kd s/(tf s + 1) = kd/tf - (kd/tf)/(tf s + 1); state: filtered e
+    const Eigen::Index i = n - 1;
+    A(i, i) = -1.0 / tf;
+    B(i, 0) = 1.0 / tf;
+    C(0, i) = -kd / tf;
+    D(0, 0) += kd / tf;
+    controller.state_names.emplace_back("e_filtered");
+  }
+  return controller;
+}
+
+std::optional<BrokenRule> TransferFunctionController::validate() const {
+  try {
+    if (numerator.empty()) return BrokenRule{"numerator", "must not be empty"};
+    realise(numerator, denominator);
+  } catch (const std::invalid_argument& error) {
+    return BrokenRule{denominator.empty() ? "denominator" : "numerator", error.what()};
+  }
+  return std::nullopt;
+}
+
+ControllerModel TransferFunctionController::model() const {
+  StateSpace g = realise(numerator, denominator);
+  auto names = numbered(g.states());
+  return {std::move(g), 0.0, std::move(names)};
+}
+
+std::optional<BrokenRule> StateSpaceController::validate() const {
+  const auto n = A.rows();
+  if (A.cols() != n) return BrokenRule{"A", "must be square"};
+  if (B.rows() != n || B.cols() != 1) return BrokenRule{"B", "must be one column with as many rows as A"};
+  if (C.cols() != n || C.rows() != 1) return BrokenRule{"C", "must be one row with as many columns as A"};
+  if (D.size() > 1) return BrokenRule{"D", "must be a single number [[d]]"};
+  return std::nullopt;
+}
+
+ControllerModel StateSpaceController::model() const {
+  return {{A, B, C, D.size() == 1 ? D : Eigen::MatrixXd(Eigen::MatrixXd::Zero(1, 1))}, 0.0, numbered(A.rows())};
+}
+
+}  // namespace limcycle

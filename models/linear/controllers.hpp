@@ -1,0 +1,99 @@
+#pragma once
+#include <string>
+#include <variant>
+
+#include "limcycle/models/linear/state_space.hpp"
+#include "limcycle/models/parameter.hpp"
+
+namespace limcycle {
+
+/// Linear part of a controller: dx/dt = A x + B e, u = C x + D e + D_rate de/dt.
+struct ControllerModel {
+  StateSpace ss;
+  double D_rate = 0.0;
+  std::vector<std::string> state_names;
+};
+
+/// What may stand between any controller and the plant; 0 or infinity: absent.
+struct Actuator {
+  double saturation{infinite};  ///< the command is limited to +-saturation
+  double lag{0.0};              ///< time constant of a first-order actuator, s
+
+  template <class Owner>
+  static void append_table(std::vector<Parameter<Owner, double>>& table) {
+    table.push_back(
+        {"saturation", "N", "limit of the command", &Owner::saturation, {0.0, infinite, true, false}, false});
+    table.push_back({"lag", "s", "time constant of the actuator", &Owner::lag, not_negative, false});
+  }
+};
+
+/// No controller: u = 0 with friction; u = e before a forward element.
+struct NoController : Actuator {
+  static constexpr std::string_view kind = "none";
+  static constexpr std::string_view equation = "u = 0 with friction alone; u = e before an element";
+  static std::vector<Parameter<NoController, double>> parameters() {
+    std::vector<Parameter<NoController, double>> table;
+    append_table(table);
+    return table;
+  }
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+  ControllerModel model() const;
+};
+
+/// u = kp e + ki int(e) + kd de/dt, the derivative filtered by 1/(tf s + 1) when tf > 0.
+struct Pid : Actuator {
+  double kp{}, ki{0.0}, kd{0.0}, tf{0.0};
+  static constexpr std::string_view kind = "pid";
+  static constexpr std::string_view equation =
+      "u = kp e + ki int(e) + kd de/dt; tf > 0: derivative filtered by 1/(tf s + 1)";
+  static std::vector<Parameter<Pid, double>> parameters() {
+    std::vector<Parameter<Pid, double>> table{
+        {"kp", "N/m", "proportional gain", &Pid::kp, any_number},
+        {"ki", "N/(m s)", "integral gain", &Pid::ki, any_number, false},
+        {"kd", "N s/m", "derivative gain", &Pid::kd, any_number, false},
+        {"tf", "s", "time constant of the derivative filter", &Pid::tf, not_negative, false}};
+    append_table(table);
+    return table;
+  }
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+  ControllerModel model() const;
+};
+
+/// u = numerator(s)/denominator(s) e, proper.
+struct TransferFunctionController : Actuator {
+  std::vector<double> numerator, denominator;
+  static constexpr std::string_view kind = "transfer-function";
+  static constexpr std::string_view equation = "u = numerator(s)/denominator(s) e, highest power first";
+  static std::vector<Parameter<TransferFunctionController, double>> parameters() {
+    using Self = TransferFunctionController;
+    std::vector<Parameter<Self, double>> table{
+        {"numerator", "1", "coefficients, highest power first", &Self::numerator},
+        {"denominator", "1", "coefficients, highest power first", &Self::denominator}};
+    append_table(table);
+    return table;
+  }
+  std::optional<BrokenRule> validate() const;
+  ControllerModel model() const;
+};
+
+/// dx/dt = A x + B e, u = C x + D e.
+struct StateSpaceController : Actuator {
+  Eigen::MatrixXd A, B, C, D{Eigen::MatrixXd(0, 0)};
+  static constexpr std::string_view kind = "state-space";
+  static constexpr std::string_view equation = "dx/dt = A x + B e, u = C x + D e";
+  static std::vector<Parameter<StateSpaceController, double>> parameters() {
+    using Self = StateSpaceController;
+    std::vector<Parameter<Self, double>> table{{"A", "1", "rows as lists", &Self::A},
+                                               {"B", "1", "rows as lists", &Self::B},
+                                               {"C", "1", "rows as lists", &Self::C},
+                                               {"D", "1", "feed-through", &Self::D, any_number, false}};
+    append_table(table);
+    return table;
+  }
+  std::optional<BrokenRule> validate() const;
+  ControllerModel model() const;
+};
+
+using Controller = std::variant<NoController, Pid, TransferFunctionController, StateSpaceController>;
+
+}  // namespace limcycle

@@ -1,0 +1,110 @@
+#include "limcycle/models/linear/plants.hpp"
+
+#include <algorithm>
+
+namespace limcycle {
+namespace {
+
+/// Ports of a plant that is known by its input-output behaviour only: friction acts where u does, rubbing at y.
+PlantModel from_input_output(const StateSpace& g, double delay) {
+  PlantModel plant;
+  plant.A = g.A;
+  plant.B_u = plant.B_F = g.B.col(0);
+  plant.C_y = g.C.row(0);
+  plant.delay = delay;
+  plant.C_v = plant.C_y * plant.A;
+  plant.C_x = plant.C_y;
+  for (Eigen::Index i = 0; i < g.states(); ++i) plant.state_names.push_back("x" + std::to_string(i + 1));
+  return plant;
+}
+
+PlantModel oscillator(double mass, double damping, double stiffness) {
+  PlantModel plant;
+  plant.A.resize(2, 2);
+  plant.A << 0.0, 1.0, -stiffness / mass, -damping / mass;
+  plant.B_u = plant.B_F = Eigen::Vector2d(0.0, 1.0 / mass);
+  plant.C_y = plant.C_x = Eigen::RowVector2d(1.0, 0.0);
+  plant.C_v = Eigen::RowVector2d(0.0, 1.0);
+  plant.state_names = {"y", "v"};
+  return plant;
+}
+
+std::optional<BrokenRule> strictly_proper(const std::string& key, const auto& realisation) {
+  try {
+    const StateSpace g = realisation();
+    if (g.states() == 0 || g.D(0, 0) != 0.0)
+      return BrokenRule{key, "must have a lower degree than the denominator: the plant must be strictly proper"};
+  } catch (const std::invalid_argument& error) {
+    return BrokenRule{key, error.what()};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+PlantModel Mass::model() const { return oscillator(mass, damping, stiffness); }
+
+PlantModel Belt::model() const {
+  PlantModel plant = oscillator(mass, damping, stiffness);
+  plant.v0 = -speed;
+  return plant;
+}
+
+PlantModel TwoMass::model() const {
+  PlantModel plant;
+  plant.A = Eigen::MatrixXd::Zero(4, 4);
+  plant.A.row(0) << 0.0, 1.0, 0.0, 0.0;
+  plant.A.row(1) << -stiffness / motor_mass, -damping / motor_mass, stiffness / motor_mass, damping / motor_mass;
+  plant.A.row(2) << 0.0, 0.0, 0.0, 1.0;
+  plant.A.row(3) << stiffness / load_mass, damping / load_mass, -stiffness / load_mass, -damping / load_mass;
+  plant.B_u = Eigen::Vector4d(0.0, 1.0 / motor_mass, 0.0, 0.0);
+  plant.B_F = plant.B_u;
+  if (friction_on.index == 1) plant.B_F = Eigen::Vector4d(0.0, 0.0, 0.0, 1.0 / load_mass);
+  const Eigen::Index rub = friction_on.index == 0 ? 0 : 2;
+  plant.C_x = Eigen::RowVectorXd::Unit(4, rub);
+  plant.C_v = Eigen::RowVectorXd::Unit(4, rub + 1);
+  plant.C_y = Eigen::RowVectorXd::Unit(4, measured.index == 0 ? 0 : 2);
+  plant.state_names = {"y_motor", "v_motor", "y_load", "v_load"};
+  return plant;
+}
+
+std::optional<BrokenRule> TransferFunction::validate() const {
+  if (std::ranges::all_of(denominator, [](double c) { return c == 0.0; }))
+    return BrokenRule{"denominator", "must not be empty or zero"};
+  if (std::ranges::all_of(numerator, [](double c) { return c == 0.0; }))
+    return BrokenRule{"numerator", "must not be empty or zero"};
+  return strictly_proper("numerator", [this] { return realise(numerator, denominator); });
+}
+
+PlantModel TransferFunction::model() const { return from_input_output(realise(numerator, denominator), delay); }
+
+std::optional<BrokenRule> ZeroPoleGain::validate() const {
+  if (poles.empty()) return BrokenRule{"poles", "must not be empty"};
+  if (gain == 0.0) return BrokenRule{"gain", "must not be zero"};
+  return strictly_proper("zeros", [this] { return realise_zpk(zeros, poles, gain); });
+}
+
+PlantModel ZeroPoleGain::model() const { return from_input_output(realise_zpk(zeros, poles, gain), delay); }
+
+std::optional<BrokenRule> StateSpacePlant::validate() const {
+  const auto n = A.rows();
+  if (n == 0 || A.cols() != n) return BrokenRule{"A", "must be square and not empty"};
+  if (B.rows() != n || B.cols() != 1) return BrokenRule{"B", "must be one column with as many rows as A"};
+  if (C.cols() != n || C.rows() != 1) return BrokenRule{"C", "must be one row with as many columns as A"};
+  if (D.size() > 1 || (D.size() == 1 && D(0, 0) != 0.0))
+    return BrokenRule{"D", "must be zero: the plant must be strictly proper"};
+  if (B_friction.size() != 0 && (B_friction.rows() != n || B_friction.cols() != 1))
+    return BrokenRule{"B_friction", "must be one column with as many rows as A"};
+  if (C_velocity.size() != 0 && (C_velocity.cols() != n || C_velocity.rows() != 1))
+    return BrokenRule{"C_velocity", "must be one row with as many columns as A"};
+  return std::nullopt;
+}
+
+PlantModel StateSpacePlant::model() const {
+  PlantModel plant = from_input_output({A, B, C, D}, 0.0);
+  if (B_friction.size() != 0) plant.B_F = B_friction.col(0);
+  if (C_velocity.size() != 0) plant.C_v = C_velocity.row(0);
+  return plant;
+}
+
+}  // namespace limcycle

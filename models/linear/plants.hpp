@@ -1,0 +1,124 @@
+#pragma once
+#include <string>
+#include <variant>
+
+#include "limcycle/models/linear/state_space.hpp"
+#include "limcycle/models/parameter.hpp"
+
+namespace limcycle {
+
+/// Linear part of a plant: dx/dt = A x + B_u u - B_F F, y = C_y x (delayed by `delay`), rubbing velocity
+/// v = C_v x + v0, rubbing displacement C_x x. A plant without a friction port has empty B_F, C_v, C_x.
+struct PlantModel {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd B_u, B_F;
+  Eigen::RowVectorXd C_y, C_v, C_x;
+  double v0 = 0.0;
+  double delay = 0.0;
+  std::vector<std::string> state_names;
+};
+
+/// m dv/dt = u - stiffness y - damping v - F(v).
+struct Mass {
+  double mass{}, damping{0.0}, stiffness{0.0};
+  static constexpr std::string_view kind = "mass";
+  static constexpr std::string_view equation = "mass dv/dt = u - damping v - stiffness y - F(v), dy/dt = v";
+  static std::vector<Parameter<Mass, double>> parameters() {
+    return {{"mass", "kg", "mass", &Mass::mass, positive},
+            {"damping", "N s/m", "viscous damping", &Mass::damping, any_number, false},
+            {"stiffness", "N/m", "spring to ground", &Mass::stiffness, any_number, false}};
+  }
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+  PlantModel model() const;
+};
+
+/// Two masses joined by a spring and a damper; u acts on the motor, friction rubs at the motor or the load.
+struct TwoMass {
+  double motor_mass{}, load_mass{}, stiffness{}, damping{0.0};
+  Choice friction_on{}, measured{1};
+  static constexpr std::string_view kind = "two-mass";
+  static constexpr std::string_view equation =
+      "motor_mass dv_m/dt = u - stiffness (y_m - y_l) - damping (v_m - v_l) [- F], "
+      "load_mass dv_l/dt = stiffness (y_m - y_l) + damping (v_m - v_l) [- F]";
+  static constexpr std::string_view sides[] = {"motor", "load"};
+  static std::vector<Parameter<TwoMass, double>> parameters() {
+    return {{"motor_mass", "kg", "mass on which u acts", &TwoMass::motor_mass, positive},
+            {"load_mass", "kg", "mass behind the spring", &TwoMass::load_mass, positive},
+            {"stiffness", "N/m", "spring between the masses", &TwoMass::stiffness, positive},
+            {"damping", "N s/m", "damper between the masses", &TwoMass::damping, any_number, false},
+            {"friction_on", "1", "which mass rubs", &TwoMass::friction_on, any_number, false, "", sides},
+            {"measured", "1", "whose position is y", &TwoMass::measured, any_number, false, "", sides}};
+  }
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+  PlantModel model() const;
+};
+
+/// Mass on a belt that runs at `speed`: m dv/dt = u - k y - c v - F(v - speed).
+struct Belt {
+  double mass{}, stiffness{}, damping{0.0}, speed{};
+  static constexpr std::string_view kind = "belt";
+  static constexpr std::string_view equation = "mass dv/dt = u - stiffness y - damping v - F(v - speed), dy/dt = v";
+  static std::vector<Parameter<Belt, double>> parameters() {
+    return {{"mass", "kg", "mass", &Belt::mass, positive},
+            {"stiffness", "N/m", "spring to ground", &Belt::stiffness, positive},
+            {"damping", "N s/m", "viscous damping", &Belt::damping, any_number, false},
+            {"speed", "m/s", "velocity of the belt", &Belt::speed, any_number}};
+  }
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+  PlantModel model() const;
+};
+
+/// y = numerator(s)/denominator(s) exp(-delay s) u, friction acting as a negative u. Friction needs relative degree 2.
+struct TransferFunction {
+  std::vector<double> numerator, denominator;
+  double delay{0.0};
+  static constexpr std::string_view kind = "transfer-function";
+  static constexpr std::string_view equation =
+      "y = numerator(s)/denominator(s) exp(-delay s) (u - F), highest power first";
+  static std::vector<Parameter<TransferFunction, double>> parameters() {
+    return {{"numerator", "1", "coefficients, highest power first", &TransferFunction::numerator},
+            {"denominator", "1", "coefficients, highest power first", &TransferFunction::denominator},
+            {"delay", "s", "dead time", &TransferFunction::delay, not_negative, false}};
+  }
+  std::optional<BrokenRule> validate() const;
+  PlantModel model() const;
+};
+
+/// y = gain prod(s - zeros)/prod(s - poles) exp(-delay s) u.
+struct ZeroPoleGain {
+  std::vector<std::complex<double>> zeros, poles;
+  double gain{}, delay{0.0};
+  static constexpr std::string_view kind = "zpk";
+  static constexpr std::string_view equation = "y = gain prod(s - zeros)/prod(s - poles) exp(-delay s) (u - F)";
+  static std::vector<Parameter<ZeroPoleGain, double>> parameters() {
+    return {{"zeros", "1/s", "numbers or [re, im] pairs", &ZeroPoleGain::zeros},
+            {"poles", "1/s", "numbers or [re, im] pairs", &ZeroPoleGain::poles},
+            {"gain", "1", "factor", &ZeroPoleGain::gain},
+            {"delay", "s", "dead time", &ZeroPoleGain::delay, not_negative, false}};
+  }
+  std::optional<BrokenRule> validate() const;
+  PlantModel model() const;
+};
+
+/// dx/dt = A x + B u - B_friction F, y = C x; rubbing velocity C_velocity x (default d/dt of y).
+struct StateSpacePlant {
+  Eigen::MatrixXd A, B, C, D{Eigen::MatrixXd(0, 0)}, B_friction{Eigen::MatrixXd(0, 0)},
+      C_velocity{Eigen::MatrixXd(0, 0)};
+  static constexpr std::string_view kind = "state-space";
+  static constexpr std::string_view equation = "dx/dt = A x + B u - B_friction F, y = C x, v = C_velocity x";
+  static std::vector<Parameter<StateSpacePlant, double>> parameters() {
+    return {{"A", "1", "rows as lists", &StateSpacePlant::A},
+            {"B", "1", "rows as lists", &StateSpacePlant::B},
+            {"C", "1", "rows as lists", &StateSpacePlant::C},
+            {"D", "1", "must be zero in a loop", &StateSpacePlant::D, any_number, false},
+            {"B_friction", "1", "force column, default B", &StateSpacePlant::B_friction, any_number, false},
+            {"C_velocity", "1", "row of the rubbing velocity, default d/dt of y", &StateSpacePlant::C_velocity,
+             any_number, false}};
+  }
+  std::optional<BrokenRule> validate() const;
+  PlantModel model() const;
+};
+
+using Plant = std::variant<Mass, TwoMass, Belt, TransferFunction, ZeroPoleGain, StateSpacePlant>;
+
+}  // namespace limcycle

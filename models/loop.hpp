@@ -1,0 +1,76 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/models/elements.hpp"
+#include "limcycle/models/linear/controllers.hpp"
+#include "limcycle/models/linear/plants.hpp"
+
+namespace limcycle {
+
+/// What a loop is made of, as a case file says it.
+struct LoopParts {
+  Plant plant;
+  Controller controller;
+  std::optional<Element<double>> element;   ///< in series after the controller
+  std::optional<Element<double>> friction;  ///< opposes the rubbing velocity of the plant
+  double reference = 0.0;                   ///< set-point r at t = 0
+  double reference_rate = 0.0;              ///< dr/dt of a ramp
+  double load = 0.0;                        ///< constant force added to the plant's input
+};
+
+/// Signals from outside, in the order of the columns below: the constant 1, r, dr/dt, force.
+using External = Eigen::Vector4d;
+enum ExternalIndex : Eigen::Index { constant_one = 0, reference_value = 1, reference_slope = 2, external_force = 3 };
+
+/// Where element i is connected: input x = C X + D w + c ext, rate v = C_v X + D_v w + c_v ext, with X the linear
+/// state, w the outputs of all elements. D is strictly lower triangular over the elements: they are evaluated in order.
+struct Port {
+  Eigen::RowVectorXd C, D, C_v, D_v;
+  Eigen::RowVector4d c, c_v;
+  Eigen::RowVectorXd C_delayed;  ///< part of the input row that reads X(t - delay)
+  std::string path;              ///< "loop.friction", "loop.element", "loop.controller.saturation"
+};
+
+/// Lur'e form: linear part  dX/dt = A X + A_delayed X(t - delay) + B w + E ext,  y = C_y X,  with nonlinear elements
+/// w_i = element_i(x_i, v_i, own state) in feedback. Friction enters with its sign: its column of B is negative.
+///
+/// With a ramp reference the states are measured from the steadily moving point X_r t, so that cycles about it are
+/// periodic; `ramp_output_rate` = C_y X_r tells how fast y moves on the average.
+struct Loop {
+  Eigen::MatrixXd A, A_delayed, B;
+  Eigen::Matrix<double, Eigen::Dynamic, 4> E;
+  Eigen::RowVectorXd C_y;
+  std::vector<Element<double>> elements;
+  std::vector<Port> ports;
+  External external = External::Zero();
+  double delay = 0.0;
+  double ramp_output_rate = 0.0;
+  std::vector<std::string> state_names;
+
+  Eigen::Index states() const { return A.rows(); }
+
+  /// Closed-loop matrix H(jw) from element outputs w to element inputs x, n_e x n_e, exact with delay. The condition
+  /// for a harmonic balance with one element is 1 - N H = 0; the loop's G of the literature is -H. Cost O(n^3).
+  Eigen::MatrixXcd element_response(double w) const { return element_response(std::complex<double>(0.0, w)); }
+  /// The same at any s off the poles.
+  Eigen::MatrixXcd element_response(std::complex<double> s) const;
+
+  /// Response of y to the outputs of the elements, 1 x n_e.
+  Eigen::RowVectorXcd output_response(double w) const;
+
+  /// Rest point of the linear part without elements: A X + E ext = 0 in the least-squares sense; `exact` tells whether
+  /// it solves the equation.
+  Eigen::VectorXd rest_point(bool& exact) const;
+};
+
+/// First rule that the combination of parts breaks (relative degree, algebraic loop, ...), or nothing.
+/// The key is a path such as "loop.plant".
+std::optional<BrokenRule> validate(const LoopParts& parts);
+
+/// Joins the parts. Throws std::invalid_argument with the rule if validate() finds one.
+Loop build_loop(const LoopParts& parts);
+
+}  // namespace limcycle

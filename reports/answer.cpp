@@ -1,0 +1,181 @@
+#include "limcycle/reports/answer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/reports/number.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr int digits = 4;  // in sentences; the tables show all that are right
+
+std::string counted(std::size_t n, const std::string& noun) {
+  return n == 1 ? "one " + noun : fmt::format("{} {}s", n, noun);
+}
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string size_of(const Cycle& cycle, const Units& units) {
+  return fmt::format("period {} s and amplitude {}", with_digits(cycle.period, digits),
+                     Units::attach(with_digits(cycle.amplitude, digits), units.y));
+}
+
+std::size_t count(const PredictReport& report, Outcome outcome) {
+  return static_cast<std::size_t>(std::count_if(report.outcomes.begin(), report.outcomes.end(),
+                                                [&](const auto& one) { return one.outcome == outcome; }));
+}
+
+std::string phrase(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::rest:
+      return "comes to rest";
+    case Outcome::sliding:
+      return "ends in steady sliding";
+    case Outcome::cycle:
+      return "reaches a limit cycle";
+    case Outcome::divergence:
+      return "diverges";
+    case Outcome::undecided:
+      return "is undecided";
+  }
+  return "is undecided";
+}
+
+/// "from all 4 starts it comes to rest", or the outcomes with their counts.
+std::string fates(const PredictReport& report) {
+  const std::size_t n = report.outcomes.size();
+  std::string out;
+  for (const Outcome outcome :
+       {Outcome::cycle, Outcome::rest, Outcome::sliding, Outcome::divergence, Outcome::undecided}) {
+    const std::size_t k = count(report, outcome);
+    if (k == 0) continue;
+    if (k == n)
+      return n == 1 ? "from its only start it " + phrase(outcome)
+                    : fmt::format("from all {} starts it {}", n, phrase(outcome));
+    out += (out.empty() ? "" : ", ") + fmt::format("from {} of {} starts it {}", k, n, phrase(outcome));
+  }
+  return out;
+}
+
+std::string without_cycle(const PredictReport& report) {
+  if (report.outcomes.empty()) return "What this loop does was not checked in the time domain.";
+  if (count(report, Outcome::undecided) > 0)
+    return "Whether this loop has a limit cycle was not decided: " + fates(report) + ".";
+  if (count(report, Outcome::divergence) > 0)
+    return "This loop has no limit cycle that was found: " + fates(report) + ".";
+  return "This loop does not hunt: " + fates(report) + ".";
+}
+
+std::string with_cycles(const PredictReport& report, const Units& units) {
+  std::vector<const Cycle*> stable, others;
+  for (const auto& cycle : report.cycles) (cycle.stable.value_or(false) ? stable : others).push_back(&cycle);
+  std::string out;
+  if (stable.empty()) {
+    const bool unstable = report.cycles.front().stable.has_value();
+    out = fmt::format("This loop has a limit cycle of {}, {}", size_of(report.cycles.front(), units),
+                      unstable ? "but it is unstable: neighbours leave it" : "whose stability was not decided");
+    if (report.cycles.size() > 1) out += fmt::format(" (and {} more)", report.cycles.size() - 1);
+    return out + (report.outcomes.empty() ? "." : "; " + fates(report) + ".");
+  }
+  const bool sticks = std::any_of(stable.begin(), stable.end(), [](auto* c) { return c->sticking_fraction > 0.0; });
+  out = sticks ? "This loop hunts: it " : "This loop oscillates: it ";
+  if (stable.size() == 1) {
+    out += "settles into a limit cycle of " + size_of(*stable[0], units) + ".";
+  } else {
+    out += fmt::format("has {} stable limit cycles, of", stable.size());
+    for (std::size_t i = 0; i < stable.size(); ++i)
+      out += (i == 0 ? " " : i + 1 < stable.size() ? ", " : " and ") + size_of(*stable[i], units);
+    out += ".";
+  }
+  if (!others.empty())
+    out += fmt::format(" {} not stable or undecided.",
+                       others.size() == 1 ? "One more is" : fmt::format("{} more are", others.size()));
+  if (count(report, Outcome::cycle) < report.outcomes.size()) out += " " + capital(fates(report)) + ".";
+  return out;
+}
+
+/// "2.4 % too small" of a prediction against the truth.
+std::string deviation(double predicted, double truth) {
+  const double share = 100.0 * (predicted - truth) / truth;
+  if (!std::isfinite(share)) return "not comparable";
+  if (std::abs(share) < 0.01) return "right within 0.01 %";
+  return fmt::format("{} % too {}", with_digits(std::abs(share), 2), share > 0.0 ? "large" : "small");
+}
+
+std::string of_one(const PredictReport& report, const Prediction& one, const Units& units) {
+  const std::string size =
+      fmt::format("amplitude {}, frequency {} rad/s", Units::attach(with_digits(one.amplitude, digits), units.y),
+                  with_digits(one.frequency, digits));
+  if (one.verdict == Verdict::wrong) return "predicts a limit cycle (" + size + ") that does not exist";
+  if (one.verdict == Verdict::undecided || !one.cycle || *one.cycle >= report.cycles.size())
+    return "predicts a limit cycle (" + size + ") that could be neither confirmed nor refuted";
+  const Cycle& cycle = report.cycles[*one.cycle];
+  return fmt::format("predicts it{}: first harmonic {}, frequency {}",
+                     one.verdict == Verdict::biased ? " with a bias" : "",
+                     deviation(one.amplitude, cycle.first_harmonic), deviation(one.frequency, cycle.frequency()));
+}
+
+std::string of_many(const std::vector<const Prediction*>& predictions) {
+  std::string out = fmt::format("predicts {}:", counted(predictions.size(), "limit cycle"));
+  bool first = true;
+  for (const Verdict verdict : {Verdict::confirmed, Verdict::biased, Verdict::wrong, Verdict::undecided}) {
+    const auto k =
+        std::count_if(predictions.begin(), predictions.end(), [&](auto* p) { return p->verdict == verdict; });
+    if (k == 0) continue;
+    out += fmt::format("{} {} {}", first ? "" : ",", k, to_string(verdict));
+    first = false;
+  }
+  return out;
+}
+
+std::string worth_of(const std::string& method, const PredictReport& report, const Units& units) {
+  std::vector<const Prediction*> own;
+  for (const auto& one : report.predictions)
+    if (one.method == method) own.push_back(&one);
+  const auto missed = static_cast<std::size_t>(
+      std::count_if(report.missed.begin(), report.missed.end(), [&](const auto& one) { return one.method == method; }));
+  const std::string subject = capital(method_in_words(method)) + " ";
+  if (own.empty() && missed == 0) {
+    const bool agrees = report.cycles.empty() && count(report, Outcome::undecided) == 0;
+    return subject + (agrees ? "predicts none either." : "predicts no limit cycle in the search box.");
+  }
+  const std::string which = report.cycles.size() == 1 ? "it" : counted(missed, "limit cycle");
+  if (own.empty()) return subject + "predicts no limit cycle in the search box and misses " + which + ".";
+  std::string out = subject + (own.size() == 1 ? of_one(report, *own[0], units) : of_many(own));
+  if (missed > 0) out += ", and misses " + (report.cycles.size() == 1 ? "the one that exists" : which);
+  return out + ".";
+}
+
+}  // namespace
+
+std::string method_in_words(const std::string& method) {
+  if (method == "describing-function") return "the describing function";
+  if (method == "composite-describing-function") return "the composite describing function";
+  if (method == "harmonic-balance") return "harmonic balance";
+  return method;
+}
+
+Answer answer(const PredictReport& report, const Units& units) {
+  Answer out;
+  out.what_happens = report.cycles.empty() ? without_cycle(report) : with_cycles(report, units);
+  if (report.status == Status::interrupted) out.what_happens = "Interrupted; as far as it went: " + out.what_happens;
+  std::vector<std::string> methods;
+  const auto add = [&](const std::string& method) {
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
+  };
+  // A describing function that found nothing leaves its curves behind; without them it was not applicable (see the
+  // notes).
+  if (!report.nyquist.frequency.empty()) add("describing-function");
+  for (const auto& one : report.predictions) add(one.method);
+  for (const auto& one : report.missed) add(one.method);
+  for (const auto& method : methods) out.worth.push_back(worth_of(method, report, units));
+  return out;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,33 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/models/parameter.hpp"
+
+namespace limcycle {
+
+/// One parameter of a kind, as its parameter table says it, without the type of its owner.
+struct ParameterEntry {
+  std::string key, unit, meaning;
+  std::string type;  ///< "number", "list", "choice", "matrix", "complex list"
+  Range range;       ///< of a number, or of each entry of a list
+  bool required = true;
+  std::optional<double> default_value;  ///< of a number that is not required; infinite: absent unless given
+  std::string default_name;             ///< of a choice
+  std::string default_from;             ///< key whose value is the default; empty: none
+  std::vector<std::string> choices;
+};
+
+/// One law, element, plant or controller.
+struct CatalogueEntry {
+  std::string group;  ///< "friction", "element", "plant" or "controller"
+  std::string kind, equation, source;
+  std::optional<int> states, most_states;  ///< continuous states, least and most; empty: as many as the parameters say
+  std::vector<ParameterEntry> parameters;
+};
+
+/// All that this version has, from the parameter tables of the models: friction laws, elements, plants, controllers.
+std::vector<CatalogueEntry> catalogue();
+
+}  // namespace limcycle

@@ -1,0 +1,38 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/frequency/root_search.hpp"
+#include "limcycle/reports/provenance.hpp"
+
+namespace limcycle {
+
+/// What `limcycle check` tells about a valid case.
+struct CheckSummary {
+  struct Part {
+    std::string path, kind;
+  };
+  std::optional<std::string> plant, controller;  ///< kinds; empty for a case of a lone element
+  std::vector<Part> elements;                    ///< in the order of evaluation
+  std::vector<std::string> states;               ///< linear part, then elements
+  int order = 0;                                 ///< of the linear part
+  double delay = 0.0;                            ///< s
+  std::optional<double> slowest_pole;  ///< largest real part of the poles without the elements, 1/s; empty with delay
+  std::optional<bool> stable;          ///< is the linear part stable without the elements
+  std::optional<SearchBox> search;
+  bool search_from_case = false;
+  std::vector<std::string> sections;  ///< what the case has for which command, in words
+};
+
+std::string check_text(const Provenance& provenance, const CheckSummary& summary);
+
+/// {"plant", "controller", "elements": [{"path", "kind"}], "states", "order", "delay", "slowest_pole", "stable",
+///  "search": {"amplitude": [from, to], "frequency": [from, to], "from_case"}|null}
+std::string check_json(const Provenance& provenance, const CheckSummary& summary);
+
+/// The same in one row: title,plant,controller,elements,states,order,delay,slowest_pole,stable,amplitude_from,
+/// amplitude_to,frequency_from,frequency_to; lists joined by blanks.
+std::string check_csv(const Provenance& provenance, const CheckSummary& summary);
+
+}  // namespace limcycle

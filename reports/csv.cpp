@@ -1,0 +1,139 @@
+#include "limcycle/reports/csv.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <stdexcept>
+
+#include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/number.hpp"
+
+namespace limcycle {
+namespace {
+
+std::string yes_no(const std::optional<bool>& value) { return value ? (*value ? "true" : "false") : ""; }
+
+std::string index(const std::optional<std::size_t>& value) { return value ? std::to_string(*value) : ""; }
+
+/// Columns of predict: a row fills those it knows by name, the others stay empty.
+constexpr std::string_view predict_columns[] = {
+    "kind",      "index",    "method",  "amplitude",     "first_harmonic", "period",
+    "frequency", "offset",   "stable",  "multiplier_re", "multiplier_im",  "sticking_fraction",
+    "error",     "residual", "verdict", "cycle",         "start",          "outcome",
+    "why"};
+
+struct Cell {
+  std::string_view column;
+  std::string text;
+};
+
+void add_row(std::string& out, std::initializer_list<Cell> cells) {
+  std::vector<std::string> fields(std::size(predict_columns));
+  for (const auto& cell : cells) {
+    const auto at = std::find(std::begin(predict_columns), std::end(predict_columns), cell.column);
+    fields.at(static_cast<std::size_t>(at - std::begin(predict_columns))) = cell.text;
+  }
+  out += csv_line(fields);
+}
+
+void add_cycle(std::string& out, std::size_t i, const Cycle& cycle) {
+  const bool known = !cycle.multipliers.empty();
+  add_row(out, {{"kind", "cycle"},
+                {"index", std::to_string(i)},
+                {"method", cycle.method},
+                {"amplitude", shortest(cycle.amplitude)},
+                {"first_harmonic", shortest(cycle.first_harmonic)},
+                {"period", shortest(cycle.period)},
+                {"frequency", shortest(cycle.frequency())},
+                {"offset", shortest(cycle.offset)},
+                {"stable", yes_no(cycle.stable)},
+                {"multiplier_re", known ? shortest(cycle.multipliers.front().real()) : ""},
+                {"multiplier_im", known ? shortest(cycle.multipliers.front().imag()) : ""},
+                {"sticking_fraction", shortest(cycle.sticking_fraction)},
+                {"error", shortest(cycle.error)},
+                {"residual", shortest(cycle.residual)}});
+}
+
+void add_prediction(std::string& out, std::size_t i, const Prediction& prediction) {
+  // A prediction is of y's first harmonic, which is the column that compares with that of a cycle.
+  add_row(out, {{"kind", "prediction"},
+                {"index", std::to_string(i)},
+                {"method", prediction.method},
+                {"amplitude", shortest(prediction.amplitude)},
+                {"frequency", shortest(prediction.frequency)},
+                {"stable", yes_no(prediction.stable)},
+                {"residual", shortest(prediction.residual)},
+                {"verdict", std::string(to_string(prediction.verdict))},
+                {"cycle", index(prediction.cycle)},
+                {"why", prediction.why}});
+}
+
+}  // namespace
+
+std::string df_csv(const std::vector<DfPoint>& points, const std::vector<DescribingFunction>& results) {
+  if (results.size() > points.size()) throw std::invalid_argument("more describing functions than points");
+  std::size_t orders = 0;
+  for (const auto& result : results) orders = std::max(orders, result.harmonics.size());
+  std::vector<std::string> names = {"amplitude", "frequency", "bias", "gain_re", "gain_im", "mean"};
+  for (std::size_t k = 1; k <= orders; ++k) {
+    names.push_back("harmonic_" + std::to_string(k) + "_sine");
+    names.push_back("harmonic_" + std::to_string(k) + "_cosine");
+  }
+  for (const char* name : {"dissipation", "error", "method", "status"}) names.emplace_back(name);
+  std::string out;
+  out += csv_line(names);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto& r = results[i];
+    const bool answered = r.status != Status::not_finite;
+    const auto known = [&](double value) { return answered ? shortest(value) : std::string(); };
+    std::vector<std::string> row = {shortest(points[i].amplitude), shortest(points[i].frequency),
+                                    shortest(points[i].bias),      known(r.gain.real()),
+                                    known(r.gain.imag()),          known(r.mean)};
+    for (std::size_t k = 0; k < orders; ++k) {
+      row.push_back(k < r.harmonics.size() ? known(r.harmonics[k].real()) : "");
+      row.push_back(k < r.harmonics.size() ? known(r.harmonics[k].imag()) : "");
+    }
+    row.insert(row.end(),
+               {known(r.dissipation), known(r.error), std::string(r.method), std::string(to_string(r.status))});
+    out += csv_line(row);
+  }
+  return out;
+}
+
+std::string predict_csv(const PredictReport& report) {
+  std::string out;
+  out += csv_line({std::begin(predict_columns), std::end(predict_columns)});
+  for (std::size_t i = 0; i < report.cycles.size(); ++i) add_cycle(out, i, report.cycles[i]);
+  for (std::size_t i = 0; i < report.predictions.size(); ++i) add_prediction(out, i, report.predictions[i]);
+  for (std::size_t i = 0; i < report.missed.size(); ++i)
+    add_row(out, {{"kind", "missed"},
+                  {"index", std::to_string(i)},
+                  {"method", report.missed[i].method},
+                  {"cycle", std::to_string(report.missed[i].cycle)}});
+  for (std::size_t i = 0; i < report.outcomes.size(); ++i) {
+    const auto& outcome = report.outcomes[i];
+    add_row(out, {{"kind", "outcome"},
+                  {"index", std::to_string(i)},
+                  {"cycle", index(outcome.cycle)},
+                  {"start", outcome.start},
+                  {"outcome", std::string(to_string(outcome.outcome))},
+                  {"why", outcome.why}});
+  }
+  return out;
+}
+
+std::string simulate_csv(const Simulation& run) {
+  std::string out;
+  out += csv_line(run.columns);
+  for (const auto& row : run.rows) {
+    bool first = true;
+    for (const double value : row) {
+      if (!first) out += ',';
+      first = false;
+      out += shortest(value);
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace limcycle

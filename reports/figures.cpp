@@ -1,0 +1,248 @@
+#include "limcycle/reports/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/nyquist_window.hpp"
+#include "limcycle/reports/thin.hpp"
+
+namespace limcycle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t points_of_cycle = 1000;
+constexpr std::size_t points_of_run = 1500;
+constexpr std::size_t points_of_family = 2000;
+
+/// Seven digits are more than a screen can show.
+Json rounded(double value) {
+  return std::isfinite(value) ? Json(std::stod(fmt::format("{:.7g}", value))) : Json(nullptr);
+}
+
+Json picked(const std::vector<double>& values, const std::vector<std::size_t>& index) {
+  Json out = Json::array();
+  for (const std::size_t i : index) out.push_back(i < values.size() ? rounded(values[i]) : Json(nullptr));
+  return out;
+}
+
+std::string text_of(const Json& data) {
+  std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;  // "</script>" and "<!--" must not appear inside the page's script element
+  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return safe;
+}
+
+bool drawable(const Trace& trace) {
+  const std::size_t n = trace.t.size();
+  return n >= 2 && trace.y.size() == n && trace.rate.size() == n;
+}
+
+bool has_element(const Trace& trace) {
+  const std::size_t n = trace.t.size();
+  return trace.input.size() == n && trace.velocity.size() == n && trace.output.size() == n;
+}
+
+struct Extent {
+  double least = INFINITY, greatest = -INFINITY;
+};
+
+Extent extent(const std::vector<double>& values) {
+  Extent out;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    out.least = std::min(out.least, value);
+    out.greatest = std::max(out.greatest, value);
+  }
+  return out;
+}
+
+std::string between(const std::vector<double>& values, const std::string& unit) {
+  const Extent range = extent(values);
+  return fmt::format("between {} and {}", with_digits(range.least, 3),
+                     Units::attach(with_digits(range.greatest, 3), unit));
+}
+
+/// What is drawn in the time domain: a cycle if there is one (a stable one first), else the first run that can be
+/// drawn.
+struct Shown {
+  const Trace* trace = nullptr;
+  const Cycle* cycle = nullptr;
+  std::string name;
+};
+
+Shown shown(const PredictReport& report) {
+  for (const bool stable : {true, false})
+    for (std::size_t i = 0; i < report.cycles.size(); ++i) {
+      const auto& cycle = report.cycles[i];
+      if (drawable(cycle.trace) && cycle.stable.value_or(false) == stable)
+        return {&cycle.trace, &cycle, fmt::format("limit cycle {}", i)};
+    }
+  for (const auto& outcome : report.outcomes)
+    if (drawable(outcome.trace)) return {&outcome.trace, nullptr, "simulation from " + outcome.start};
+  return {};
+}
+
+Json labels(const Units& units) {
+  const auto with_unit = [](const char* name, const std::string& unit) {
+    return unit.empty() ? std::string(name) : fmt::format("{} ({})", name, unit);
+  };
+  const std::string rate = units.y.empty() ? "1/s" : units.y + "/s";
+  return {{"y", with_unit("y", units.y)},
+          {"rate", with_unit("dy/dt", rate)},
+          {"input", with_unit("element's input", units.y)},
+          {"velocity", with_unit("its rate", rate)},
+          {"output", with_unit(units.force.empty() ? "element's output" : "force", units.force)}};
+}
+
+/// One curve with the samples that are stuck marked.
+Json curve(const Trace& trace, std::size_t most, double sticking, bool& whole) {
+  const auto stuck = stuck_samples(trace, sticking);
+  const Thinned kept = thin(trace, most, stuck);
+  whole = kept.whole;
+  Json marks = Json::array();
+  for (const std::size_t i : kept.index) marks.push_back(i < stuck.size() && stuck[i] ? 1 : 0);
+  Json out = {{"t", picked(trace.t, kept.index)},
+              {"y", picked(trace.y, kept.index)},
+              {"rate", picked(trace.rate, kept.index)},
+              {"stuck", marks}};
+  if (has_element(trace)) {
+    out["input"] = picked(trace.input, kept.index);
+    out["velocity"] = picked(trace.velocity, kept.index);
+    out["output"] = picked(trace.output, kept.index);
+  }
+  return out;
+}
+
+Figure nyquist_figure(const PredictReport& report) {
+  const auto& picture = report.nyquist;
+  Json G = {{"re", Json::array()}, {"im", Json::array()}, {"w", Json::array()}};
+  const std::size_t stride = picture.G.size() / 2000 + 1;
+  for (std::size_t i = 0; i < std::min(picture.G.size(), picture.frequency.size()); i += stride) {
+    G["re"].push_back(rounded(picture.G[i].real()));
+    G["im"].push_back(rounded(picture.G[i].imag()));
+    G["w"].push_back(rounded(picture.frequency[i]));
+  }
+  Json family = {{"re", Json::array()}, {"im", Json::array()}, {"A", Json::array()}, {"w", Json::array()}};
+  std::size_t points = 0;
+  for (const auto& member : picture.minus_inverse_N) points += member.size();
+  const std::size_t skip = points / points_of_family + 1;
+  for (std::size_t m = 0; m < picture.minus_inverse_N.size(); ++m) {
+    const auto& member = picture.minus_inverse_N[m];
+    for (std::size_t i = 0; i < member.size(); i += skip) {
+      family["re"].push_back(rounded(member[i].real()));
+      family["im"].push_back(rounded(member[i].imag()));
+      family["A"].push_back(i < picture.family_amplitude.size() ? rounded(picture.family_amplitude[i]) : Json(nullptr));
+      family["w"].push_back(m < picture.family_frequency.size() ? rounded(picture.family_frequency[m]) : Json(nullptr));
+    }
+    for (const char* key : {"re", "im", "A", "w"}) family[key].push_back(nullptr);  // lifts the pen
+  }
+  Json roots = Json::array();
+  std::vector<std::complex<double>> places;
+  std::string crossings;
+  for (const auto& one : report.predictions) {
+    if (one.method != "describing-function") continue;
+    const auto place = response_at(picture, one.frequency);
+    if (!place) continue;
+    places.push_back(*place);
+    roots.push_back({{"re", rounded(place->real())},
+                     {"im", rounded(place->imag())},
+                     {"A", rounded(one.input_amplitude)},
+                     {"w", rounded(one.frequency)},
+                     {"verdict", to_string(one.verdict)}});
+    crossings +=
+        fmt::format("{} amplitude {} and {} rad/s ({})", crossings.empty() ? "" : ";",
+                    with_digits(one.input_amplitude, 3), with_digits(one.frequency, 3), to_string(one.verdict));
+  }
+  const auto box = nyquist_window(picture, places);
+  const Json window = {{"re", {box.re_from, box.re_to}}, {"im", {box.im_from, box.im_to}}};
+  return {"nyquist", "Nyquist plot and describing function",
+          places.empty() ? "The Nyquist curve G(jω) of the linear part and the curves −1/N(A,ω) of the element have no "
+                           "point in common "
+                           "at equal frequency: the describing function predicts no limit cycle."
+                         : "The Nyquist curve G(jω) of the linear part meets the curves −1/N(A,ω) of the element at" +
+                               crossings + ".",
+          text_of({{"G", G}, {"family", family}, {"roots", roots}, {"window", window}})};
+}
+
+Figure time_figure(const Shown& what, const Units& units) {
+  bool whole = true;
+  Json run = curve(*what.trace, points_of_cycle, what.cycle ? what.cycle->sticking_fraction : 0.0, whole);
+  std::string finding = what.cycle ? fmt::format("Over the period of {} s", with_digits(what.cycle->period, 4))
+                                   : fmt::format("In the {}{}", what.name, whole ? "" : " (its first part)");
+  finding += " y moves " + between(what.trace->y, units.y);
+  if (has_element(*what.trace))
+    finding += fmt::format(" and the {} {}", units.force.empty() ? "element's output" : "force",
+                           between(what.trace->output, units.force));
+  if (what.cycle && what.cycle->sticking_fraction > 0.0)
+    finding += fmt::format("; it sticks for {} of the time", as_percent(what.cycle->sticking_fraction));
+  return {"time", what.cycle ? "One period in time, twice" : "Simulation in time", finding + ".",
+          text_of({{"run", run}, {"labels", labels(units)}, {"name", what.name}, {"repeat", what.cycle != nullptr}})};
+}
+
+Figure phase_figure(const PredictReport& report, const Units& units) {
+  Json cycles = Json::array(), runs = Json::array();
+  bool all_whole = true;
+  bool whole = true;
+  for (std::size_t i = 0; i < report.cycles.size(); ++i) {
+    const auto& cycle = report.cycles[i];
+    if (!drawable(cycle.trace)) continue;
+    Json one = curve(cycle.trace, points_of_cycle, cycle.sticking_fraction, whole);
+    one["name"] = fmt::format("limit cycle {}", i);
+    one["stable"] = cycle.stable.value_or(true);
+    cycles.push_back(std::move(one));
+  }
+  for (const auto& outcome : report.outcomes) {
+    if (!drawable(outcome.trace)) continue;
+    Json one = curve(outcome.trace, points_of_run, 0.0, whole);
+    all_whole = all_whole && whole;
+    one["name"] = "from " + outcome.start + (whole ? "" : " (first part)");
+    runs.push_back(std::move(one));
+  }
+  std::string finding = cycles.empty()
+                            ? "No closed orbit"
+                            : fmt::format("{} closed {}", cycles.size(), cycles.size() == 1 ? "orbit" : "orbits");
+  finding += fmt::format(" in the plane of y and dy/dt, and {} {} from different starts", runs.size(),
+                         runs.size() == 1 ? "simulation" : "simulations");
+  std::vector<std::string> ends;
+  for (const auto& outcome : report.outcomes) {
+    const std::string end(to_string(outcome.outcome));
+    if (std::find(ends.begin(), ends.end(), end) == ends.end()) ends.push_back(end);
+  }
+  if (!ends.empty()) finding += fmt::format(", which end in: {}", fmt::join(ends, ", "));
+  if (!cycles.empty() && !runs.empty()) finding += "; the first view is on the cycles";
+  if (!all_whole) finding += "; of long simulations only the first part is drawn";
+  return {"phase", "Phase plane", finding + ".",
+          text_of({{"cycles", cycles}, {"runs", runs}, {"labels", labels(units)}})};
+}
+
+Figure loop_figure(const Shown& what, const Units& units) {
+  bool whole = true;
+  const Json run = curve(*what.trace, points_of_cycle, what.cycle ? what.cycle->sticking_fraction : 0.0, whole);
+  const std::string output = units.force.empty() ? "output" : "force";
+  return {"loop", "Hysteresis: " + output + " against displacement and rate",
+          fmt::format("The element's {} lies {}, while its input moves {} and its rate {}{}.", output,
+                      between(what.trace->output, units.force), between(what.trace->input, units.y),
+                      between(what.trace->velocity, units.y.empty() ? "1/s" : units.y + "/s"),
+                      whole ? "" : " (only the first part is drawn)"),
+          text_of({{"run", run}, {"labels", labels(units)}, {"name", what.name}})};
+}
+
+}  // namespace
+
+std::vector<Figure> predict_figures(const PredictReport& report, const Units& units) {
+  std::vector<Figure> out;
+  if (report.nyquist.G.size() >= 2) out.push_back(nyquist_figure(report));
+  const Shown what = shown(report);
+  if (!what.trace) return out;
+  out.push_back(time_figure(what, units));
+  out.push_back(phase_figure(report, units));
+  if (has_element(*what.trace)) out.push_back(loop_figure(what, units));
+  return out;
+}
+
+}  // namespace limcycle

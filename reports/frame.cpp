@@ -1,0 +1,62 @@
+#include "limcycle/reports/frame.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace limcycle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string replaced(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace
+
+std::string json_document(const std::string& command, const Provenance& from, const std::string& body) {
+  const auto text_or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  Json top{
+      {"schema", "limcycle/1"},
+      {"command", command},
+      {"case",
+       {{"title", text_or_null(from.title)}, {"file", text_or_null(from.file)}, {"sha256", text_or_null(from.sha256)}}},
+      {"provenance",
+       {{"version", from.version},
+        {"commit", from.commit},
+        {"compiler", from.compiler},
+        {"build_type", from.build_type},
+        {"seed", from.seed},
+        {"isa", from.isa},
+        {"threads", from.threads},
+        {"overrides", from.overrides}}}};
+  const Json members = Json::parse(body);
+  for (const auto& [key, value] : members.items()) top[key] = value;
+  std::string text = "{";
+  bool first = true;
+  for (const auto& [key, value] : top.items()) {
+    text += std::exchange(first, false) ? "\n  " : ",\n  ";
+    text += replaced(key) + ": ";
+    if (!value.is_array() || value.empty() || !value.front().is_structured()) {
+      text += replaced(value);
+      continue;
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) text += (i == 0 ? "[\n    " : ",\n    ") + replaced(value[i]);
+    text += "\n  ]";
+  }
+  return text + "\n}\n";
+}
+
+std::string csv_line(const std::vector<std::string>& fields) {
+  std::string line;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (i > 0) line += ',';
+    if (fields[i].find_first_of(",\"\r\n") == std::string::npos) {
+      line += fields[i];
+      continue;
+    }
+    line += '"';
+    for (const char c : fields[i]) line += c == '"' ? std::string("\"\"") : std::string(1, c);
+    line += '"';
+  }
+  return line + '\n';
+}
+
+}  // namespace limcycle

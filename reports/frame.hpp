@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "limcycle/reports/provenance.hpp"
+
+namespace limcycle {
+
+/// JSON document of schema "limcycle/1": schema, command, case and provenance, then the members of `body`, itself the
+/// text of a JSON object. Without a case its title, file and sha256 are null. Text that is not UTF-8 is replaced.
+std::string json_document(const std::string& command, const Provenance& provenance, const std::string& body);
+
+/// One line of CSV (RFC 4180, ended by a newline only).
+std::string csv_line(const std::vector<std::string>& fields);
+
+}  // namespace limcycle

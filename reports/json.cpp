@@ -1,0 +1,125 @@
+#include "limcycle/reports/json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "limcycle/reports/frame.hpp"
+
+namespace limcycle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json pair(std::complex<double> value) { return Json::array({number(value.real()), number(value.imag())}); }
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+std::string text_of(const std::string& command, const Provenance& provenance, const Json& body) {
+  return json_document(command, provenance, body.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Json cycle_json(const Cycle& cycle) {
+  Json multipliers = Json::array();
+  for (const auto& multiplier : cycle.multipliers) multipliers.push_back(pair(multiplier));
+  return {{"amplitude", number(cycle.amplitude)},
+          {"first_harmonic", number(cycle.first_harmonic)},
+          {"period", number(cycle.period)},
+          {"frequency", number(cycle.frequency())},
+          {"offset", number(cycle.offset)},
+          {"stable", or_null(cycle.stable)},
+          {"multipliers", multipliers},
+          {"sticking_fraction", number(cycle.sticking_fraction)},
+          {"method", cycle.method},
+          {"error", number(cycle.error)},
+          {"residual", number(cycle.residual)},
+          {"half_wave_symmetric", cycle.half_wave_symmetric}};
+}
+
+Json prediction_json(const Prediction& prediction) {
+  return {{"method", prediction.method},
+          {"amplitude", number(prediction.amplitude)},
+          {"frequency", number(prediction.frequency)},
+          {"stable", or_null(prediction.stable)},
+          {"verdict", to_string(prediction.verdict)},
+          {"cycle", or_null(prediction.cycle)},
+          {"input_amplitude", number(prediction.input_amplitude)},
+          {"residual", number(prediction.residual)},
+          {"why", prediction.why}};
+}
+
+Json point_json(const DfPoint& point, const DescribingFunction& result) {
+  // A result without an answer holds zeros, which are not numbers that exist.
+  const bool answered = result.status != Status::not_finite;
+  const auto known = [&](double value) { return answered ? number(value) : Json(nullptr); };
+  Json harmonics = Json::array();
+  for (const auto& harmonic : result.harmonics)
+    harmonics.push_back(Json::array({known(harmonic.real()), known(harmonic.imag())}));
+  return {{"amplitude", number(point.amplitude)},
+          {"frequency", number(point.frequency)},
+          {"bias", number(point.bias)},
+          {"gain", Json::array({known(result.gain.real()), known(result.gain.imag())})},
+          {"mean", known(result.mean)},
+          {"harmonics", harmonics},
+          {"dissipation", known(result.dissipation)},
+          {"error", known(result.error)},
+          {"method", result.method},
+          {"status", to_string(result.status)}};
+}
+
+}  // namespace
+
+std::string df_json(const Provenance& provenance, const std::vector<DfPoint>& points,
+                    const std::vector<DescribingFunction>& results) {
+  if (results.size() > points.size()) throw std::invalid_argument("more describing functions than points");
+  Json top;
+  top["points"] = Json::array();
+  for (std::size_t i = 0; i < results.size(); ++i) top["points"].push_back(point_json(points[i], results[i]));
+  top["status"] = to_string(results.size() < points.size() ? Status::interrupted : Status::converged);
+  return text_of("df", provenance, top);
+}
+
+std::string predict_json(const Provenance& provenance, const PredictReport& report) {
+  Json top;
+  for (const char* key : {"cycles", "predictions", "missed", "outcomes"}) top[key] = Json::array();
+  for (const auto& cycle : report.cycles) top["cycles"].push_back(cycle_json(cycle));
+  for (const auto& prediction : report.predictions) top["predictions"].push_back(prediction_json(prediction));
+  for (const auto& missed : report.missed)
+    top["missed"].push_back({{"method", missed.method}, {"cycle", missed.cycle}});
+  for (const auto& outcome : report.outcomes)
+    top["outcomes"].push_back({{"start", outcome.start},
+                               {"outcome", to_string(outcome.outcome)},
+                               {"cycle", or_null(outcome.cycle)},
+                               {"why", outcome.why}});
+  top["search"] = {
+      {"amplitude", Json::array({number(report.search.amplitude_min), number(report.search.amplitude_max)})},
+      {"frequency", Json::array({number(report.search.frequency_min), number(report.search.frequency_max)})}};
+  top["notes"] = report.notes;
+  top["status"] = to_string(report.status);
+  return text_of("predict", provenance, top);
+}
+
+std::string simulate_json(const Provenance& provenance, const Simulation& run) {
+  Json top;
+  top["columns"] = run.columns;
+  top["rows"] = Json::array();
+  for (const auto& row : run.rows) {
+    Json line = Json::array();
+    for (const double value : row) line.push_back(number(value));
+    top["rows"].push_back(std::move(line));
+  }
+  top["events"] = Json::array();
+  for (const auto& event : run.events) top["events"].push_back({{"t", number(event.t)}, {"what", event.what}});
+  top["stepper"] = run.stepper;
+  top["steps"] = run.steps;
+  top["status"] = to_string(run.status);
+  top["why"] = run.why;
+  return text_of("simulate", provenance, top);
+}
+
+}  // namespace limcycle

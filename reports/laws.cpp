@@ -1,0 +1,145 @@
+#include "limcycle/reports/laws.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/table.hpp"
+
+namespace limcycle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string states_text(const CatalogueEntry& entry) {
+  if (!entry.states) return "any";
+  return *entry.states == *entry.most_states ? std::to_string(*entry.states)
+                                             : fmt::format("{}-{}", *entry.states, *entry.most_states);
+}
+
+std::string heading(const std::string& group) {
+  if (group == "friction") return "Friction laws ([loop.friction], or [loop.element])";
+  if (group == "element") return "Elements ([loop.element])";
+  return group == "plant" ? "Plants ([loop.plant])" : "Controllers ([loop.controller])";
+}
+
+/// Cut at a word, so that a listing has one line a kind.
+std::string shortened(const std::string& text, std::size_t width) {
+  if (text.size() <= width) return text;
+  const auto space = text.rfind(' ', width - 3);
+  return text.substr(0, space) + "...";
+}
+
+std::string default_text(const ParameterEntry& parameter) {
+  if (parameter.required) return "required";
+  if (!parameter.default_from.empty()) return "as " + parameter.default_from;
+  if (parameter.default_value)
+    return std::isfinite(*parameter.default_value) ? shortest(*parameter.default_value) : "none";
+  return parameter.default_name.empty() ? "none" : parameter.default_name;
+}
+
+std::string range_text(const ParameterEntry& parameter) {
+  if (parameter.type == "choice") return fmt::format("{}", fmt::join(parameter.choices, " | "));
+  const Range& range = parameter.range;
+  const std::string low = (range.low_open ? "> " : ">= ") + shortest(range.low);
+  const std::string high = (range.high_open ? "< " : "<= ") + shortest(range.high);
+  const bool below = std::isfinite(range.low), above = std::isfinite(range.high);
+  const std::string of = parameter.type == "number" ? "" : parameter.type == "complex list" ? "list" : parameter.type;
+  const std::string limits = below && above ? low + " and " + high : below ? low : above ? high : "";
+  if (limits.empty()) return of.empty() ? "any" : of;
+  return of.empty() ? limits : of + " of numbers " + limits;
+}
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json parameter_json(const ParameterEntry& parameter) {
+  Json value = text_or_null(parameter.default_name);
+  if (parameter.default_value) value = number_or_null(*parameter.default_value);
+  return {{"key", parameter.key},
+          {"unit", parameter.unit},
+          {"type", parameter.type},
+          {"required", parameter.required},
+          {"default", value},
+          {"default_from", text_or_null(parameter.default_from)},
+          {"range",
+           {{"low", number_or_null(parameter.range.low)},
+            {"high", number_or_null(parameter.range.high)},
+            {"low_open", parameter.range.low_open},
+            {"high_open", parameter.range.high_open}}},
+          {"choices", parameter.choices},
+          {"meaning", parameter.meaning}};
+}
+
+}  // namespace
+
+std::string laws_text(const std::vector<CatalogueEntry>& entries) {
+  std::string text, group;
+  const auto widest = std::ranges::max(entries, {}, [](const auto& entry) { return entry.kind.size(); }).kind.size();
+  for (const auto& entry : entries) {
+    if (entry.group != group) {
+      group = entry.group;
+      text +=
+          fmt::format("{}{}\n  {:<{}}  states  equation\n", text.empty() ? "" : "\n", heading(group), "kind", widest);
+    }
+    text += fmt::format("  {:<{}}  {:>6}  {}\n", entry.kind, widest, states_text(entry), shortened(entry.equation, 88));
+  }
+  return text + "\n'limcycle laws KIND' tells the parameters, units, defaults and source of one of them.\n";
+}
+
+std::string law_text(const std::vector<CatalogueEntry>& entries) {
+  std::string text;
+  for (const auto& entry : entries) {
+    if (!text.empty()) text += '\n';
+    text += fmt::format("{} ({})\n{}states: {}\n", entry.kind, entry.group == "friction" ? "friction law" : entry.group,
+                        wrapped(entry.equation, 98, 2), states_text(entry));
+    if (!entry.source.empty()) text += wrapped("source: " + entry.source, 98);
+    Table table{.columns = {{"key", "", Align::left},
+                            {"unit", "", Align::left},
+                            {"default", "", Align::left},
+                            {"valid", "", Align::left},
+                            {"meaning", "", Align::left}},
+                .rows = {}};
+    for (const auto& parameter : entry.parameters)
+      table.rows.push_back({parameter.key, parameter.unit == "1" ? "-" : parameter.unit, default_text(parameter),
+                            range_text(parameter), parameter.meaning});
+    if (!table.rows.empty()) text += '\n' + table.text(120);
+  }
+  return text;
+}
+
+std::string laws_json(const Provenance& provenance, const std::vector<CatalogueEntry>& entries) {
+  Json laws = Json::array();
+  for (const auto& entry : entries) {
+    Json parameters = Json::array();
+    for (const auto& parameter : entry.parameters) parameters.push_back(parameter_json(parameter));
+    laws.push_back({{"group", entry.group},
+                    {"kind", entry.kind},
+                    {"states", entry.states ? Json(*entry.states) : Json(nullptr)},
+                    {"most_states", entry.most_states ? Json(*entry.most_states) : Json(nullptr)},
+                    {"equation", entry.equation},
+                    {"source", text_or_null(entry.source)},
+                    {"parameters", parameters}});
+  }
+  return json_document("laws", provenance, Json{{"laws", laws}}.dump());
+}
+
+std::string laws_csv(const std::vector<CatalogueEntry>& entries) {
+  std::string text =
+      csv_line({"group", "kind", "key", "unit", "type", "required", "default", "low", "high", "meaning"});
+  for (const auto& entry : entries) {
+    if (entry.parameters.empty()) text += csv_line({entry.group, entry.kind, "", "", "", "", "", "", "", ""});
+    for (const auto& p : entry.parameters)
+      text += csv_line({entry.group, entry.kind, p.key, p.unit, p.type, p.required ? "true" : "false",
+                        p.default_value ? shortest(*p.default_value) : p.default_name + p.default_from,
+                        shortest(p.range.low), shortest(p.range.high), p.meaning});
+  }
+  return text;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,77 @@
+#include "limcycle/reports/number.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace limcycle {
+namespace {
+
+constexpr int least_digits = 2;
+constexpr int most_digits = 12;
+constexpr int digits_of_unknown = 4;
+
+/// Decimal exponent of the leading digit after rounding to `digits`: 9.996 with 3 digits has 1.
+int leading_place(double value, int digits) {
+  const std::string text = fmt::format("{:.{}e}", std::abs(value), digits - 1);
+  return std::stoi(text.substr(text.find('e') + 1));
+}
+
+/// Decimal place of the last digit that an absolute error leaves: all of 10^place, not less.
+int last_place(double error) { return static_cast<int>(std::floor(std::log10(2.0 * error))); }
+
+/// `whole`: an integer part is printed in full even if it has more digits than asked for.
+std::string printed(double value, int digits, bool whole) {
+  if (!std::isfinite(value)) return "-";
+  if (value == 0.0) return "0";
+  digits = std::clamp(digits, 1, 17);
+  const int place = leading_place(value, digits);
+  const bool plain = place >= -4 && place < 7 && (whole || digits > place);
+  return plain ? fmt::format("{:.{}f}", value, std::max(digits - 1 - place, 0))
+               : fmt::format("{:.{}e}", value, digits - 1);
+}
+
+}  // namespace
+
+std::string shortest(double value) {
+  if (!std::isfinite(value)) return {};
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  return {buffer, end};
+}
+
+std::string with_digits(double value, int digits) { return printed(value, digits, true); }
+
+std::string with_error(double value, double relative_error) {
+  if (!std::isfinite(value) || value == 0.0) return with_digits(value, 1);
+  if (!std::isfinite(relative_error)) return with_digits(value, digits_of_unknown);
+  const double error = std::abs(value) * relative_error;
+  if (!(error > 0.0)) return printed(value, most_digits, false);
+  if (!std::isfinite(error)) return printed(value, least_digits, false);
+  const auto digits_of = [&](int guess) {
+    return std::clamp(leading_place(value, guess) - last_place(error) + 1, least_digits, most_digits);
+  };
+  return printed(value, digits_of(digits_of(most_digits)), false);  // twice: 9.9996 may become 10.000
+}
+
+std::string with_absolute_error(double value, double error) {
+  if (std::isfinite(value) && std::isfinite(error) && std::abs(value) <= error) return "0";
+  return with_error(value, value == 0.0 ? 0.0 : error / std::abs(value));
+}
+
+std::string as_error(double value) {
+  if (!std::isfinite(value)) return "-";
+  return value == 0.0 ? "0" : fmt::format("{:.1e}", value);
+}
+
+std::string as_percent(double share) {
+  if (!std::isfinite(share)) return "-";
+  const double percent = 100.0 * share;
+  if (percent > 0.0 && percent < 0.1) return "<0.1 %";
+  if (percent < 100.0 && percent > 99.9) return ">99.9 %";
+  return fmt::format("{:.{}f} %", percent, percent == std::round(percent) ? 0 : 1);
+}
+
+}  // namespace limcycle

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+
+namespace limcycle {
+
+/// Shortest decimal text that reads back as the same double ("0.1", "1e-06"). Empty for NaN and infinities.
+std::string shortest(double value);
+
+/// `digits` significant digits (1..17), plain or with an exponent, whichever is readable: plain for 1e-4 <= |value| <
+/// 1e7.
+/// "-" for NaN and infinities.
+std::string with_digits(double value, int digits);
+
+/// As many digits as are right: the last one shown is in the decimal place of twice the error, so that it is off by
+/// less than 6 units and all before it are right but for a carry. Between 2 and 12 significant digits. `relative_error`
+/// is relative to `value`; 0 means exact, NaN or infinity means unknown (4 digits are shown).
+std::string with_error(double value, double relative_error);
+
+/// A number whose error is known absolutely, such as a mean that is nearly zero: 0 where the error is larger.
+std::string with_absolute_error(double value, double error);
+
+/// An error estimate itself: two digits with an exponent ("1.2e-10"), "0" for zero.
+std::string as_error(double value);
+
+/// A share as per cent, three digits ("62.1 %"); a share that is not 0 or 1 is never printed as 0 % or 100 %.
+std::string as_percent(double share);
+
+}  // namespace limcycle

@@ -1,0 +1,109 @@
+#include "limcycle/reports/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/reports/answer.hpp"
+#include "limcycle/reports/number.hpp"
+
+namespace limcycle {
+namespace {
+
+std::string in_words(const std::optional<bool>& value) { return value ? (*value ? "yes" : "no") : "?"; }
+
+std::string index(const std::optional<std::size_t>& value) { return value ? std::to_string(*value) : "-"; }
+
+std::string section(const std::string& heading, const std::string& body) { return "\n" + heading + "\n" + body; }
+
+/// "LABEL  text", the text wrapped under itself.
+std::string item(const std::string& label, std::size_t width, const std::string& text) {
+  const std::string body = wrapped(text, 80, width + 2);
+  const std::size_t own = std::min(display_width(label), width);
+  return label + std::string(width + 2 - own, ' ') + (body.size() > width + 2 ? body.substr(width + 2) : "\n");
+}
+
+std::string outcomes(const PredictReport& report) {
+  std::string out;
+  for (const auto& one : report.outcomes) {
+    std::string label(to_string(one.outcome));
+    if (one.cycle) label += fmt::format(" {}", *one.cycle);
+    out += item(label, 10, "from " + one.start + (one.why.empty() ? "" : ": " + one.why));
+  }
+  return out;
+}
+
+std::string reasons(const PredictReport& report) {
+  std::string out;
+  for (std::size_t i = 0; i < report.predictions.size(); ++i)
+    if (!report.predictions[i].why.empty()) out += item(fmt::format("{}:", i), 2, report.predictions[i].why);
+  return out;
+}
+
+}  // namespace
+
+Table cycle_table(const PredictReport& report, const Units& units) {
+  Table table{{{"#", "", Align::left},
+               {"period", "s"},
+               {"amplitude", units.y},
+               {"1st harm.", units.y},
+               {"offset", units.y},
+               {"stable", ""},
+               {"stuck", ""},
+               {"error", ""}},
+              {}};
+  for (std::size_t i = 0; i < report.cycles.size(); ++i) {
+    const auto& cycle = report.cycles[i];
+    // The error is of period and amplitude. An offset is a mean over the same orbit: it has that of the amplitude in
+    // absolute terms; seven digits of the harmonic are enough to compare it with a prediction.
+    const double error = cycle.error * cycle.amplitude;
+    const double of_harmonic = std::max(cycle.error, 0.6e-6);
+    table.rows.push_back({std::to_string(i), with_error(cycle.period, cycle.error),
+                          with_error(cycle.amplitude, cycle.error), with_error(cycle.first_harmonic, of_harmonic),
+                          with_absolute_error(cycle.offset, error), in_words(cycle.stable),
+                          as_percent(cycle.sticking_fraction), as_error(cycle.error)});
+  }
+  return table;
+}
+
+Table prediction_table(const PredictReport& report, const Units& units) {
+  Table table{{{"#", "", Align::left},
+               {"method", "", Align::left},
+               {"1st harm.", units.y},
+               {"frequency", "rad/s"},
+               {"stable", ""},
+               {"verdict", "", Align::left},
+               {"cycle", ""}},
+              {}};
+  for (std::size_t i = 0; i < report.predictions.size(); ++i) {
+    const auto& one = report.predictions[i];
+    table.rows.push_back({std::to_string(i), one.method, with_digits(one.amplitude, 6), with_digits(one.frequency, 6),
+                          in_words(one.stable), std::string(to_string(one.verdict)), index(one.cycle)});
+  }
+  return table;
+}
+
+std::string predict_text(const std::string& title, const PredictReport& report, const Units& units) {
+  const Answer words = answer(report, units);
+  std::string out = wrapped(title) + "\n" + wrapped(words.what_happens);
+  for (const auto& sentence : words.worth) out += wrapped(sentence);
+  if (!report.cycles.empty()) out += section("Limit cycles", cycle_table(report, units).text());
+  if (!report.predictions.empty())
+    out += section("Predictions", prediction_table(report, units).text() + reasons(report));
+  if (!report.outcomes.empty()) out += section("Reached in simulation", outcomes(report));
+  const auto& box = report.search;
+  out += section("Search box",
+                 wrapped(fmt::format("amplitude of the element's input {:g} to {:g}, frequency {:g} to {:g} rad/s",
+                                     box.amplitude_min, box.amplitude_max, box.frequency_min, box.frequency_max)));
+  if (!report.notes.empty()) {
+    std::string notes;
+    for (const auto& note : report.notes) notes += item("-", 1, note);
+    out += section("Notes", notes);
+  }
+  if (report.status != Status::converged && report.status != Status::no_cycle)
+    out += fmt::format("\nStatus: {}\n", to_string(report.status));
+  return out;
+}
+
+}  // namespace limcycle

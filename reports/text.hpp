@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/units.hpp"
+
+namespace limcycle {
+
+/// Results for a reader at a terminal, at most 80 columns wide, with units and no more digits than are right.
+
+/// The answer in words, then cycles, predictions with verdicts, what each start reached, notes.
+std::string predict_text(const std::string& title, const PredictReport& report, const Units& units);
+
+/// All points up to `longest_table`; beyond that a summary and where to get them.
+std::string df_text(const std::string& title, const std::vector<DfPoint>& points,
+                    const std::vector<DescribingFunction>& results);
+inline constexpr std::size_t longest_table = 200;
+
+/// Summary of a run: how it ended, the range of each column, the located events.
+std::string simulate_text(const std::string& title, const Simulation& run);
+
+/// The tables of predict_text, for other formats.
+Table cycle_table(const PredictReport& report, const Units& units);
+Table prediction_table(const PredictReport& report, const Units& units);
+
+}  // namespace limcycle

@@ -1,0 +1,22 @@
+#pragma once
+#include <vector>
+
+#include "limcycle/analysis/cycle.hpp"
+
+namespace limcycle {
+
+/// Which samples of a trace a picture needs.
+struct Thinned {
+  std::vector<std::size_t> index;  ///< increasing
+  bool whole = true;               ///< false: only the first part, the rest would have been a scribble
+};
+
+/// At most about `most` samples (and each change of `keep_changes`, if given), evenly spaced along the curve
+/// (t, y, rate, output), each scaled to its own range, so that jumps and corners keep their shape while long rests cost
+/// little. A trace so long that neighbours would be more than `coarsest` of the picture apart is cut. Cost: O(samples).
+Thinned thin(const Trace& trace, std::size_t most, const std::vector<bool>& keep_changes = {}, double coarsest = 0.03);
+
+/// Which samples are stuck: those with the least |velocity| that together last `fraction` of the time of the trace.
+std::vector<bool> stuck_samples(const Trace& trace, double fraction);
+
+}  // namespace limcycle

@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+
+namespace limcycle {
+
+/// Units to print. They follow the case: metres and newtons for a servo or a belt, rad and N m where the file says so,
+/// none for a loop of bare transfer functions.
+struct Units {
+  std::string y = "m";      ///< of the measured output; empty: none
+  std::string force = "N";  ///< of the element's output
+
+  /// "0.0639 m", or the bare number where there is no unit.
+  static std::string attach(const std::string& number, const std::string& unit) {
+    return unit.empty() ? number : number + " " + unit;
+  }
+};
+
+}  // namespace limcycle

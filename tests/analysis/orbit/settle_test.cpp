@@ -1,0 +1,86 @@
+#include "limcycle/analysis/orbit/settle.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "limcycle/analysis/orbit/turning_points.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using namespace limcycle::test;
+
+namespace {
+
+Settled run(const Loop& loop, double displacement, double floor = 1e-7) {
+  SettleOptions options;
+  options.amplitude_floor = floor;
+  options.amplitude_ceiling = 1e4;
+  return settle(loop, displaced(loop, displacement), options);
+}
+
+}  // namespace
+
+TEST_CASE("stick-slip that decays for ever (Fs = Fc under integral action) is never a cycle") {
+  for (const double start : {1.0, 0.01, 1e-4}) {
+    CHECK(run(servo(coulomb(1.0, 1.0, 0.4)), start).outcome != Outcome::cycle);
+    CHECK(run(servo(lugre(1.0, 1.0)), start).outcome != Outcome::cycle);
+    CHECK(run(servo(stribeck(1.0, 1.0, 1e-3)), start).outcome != Outcome::cycle);
+  }
+}
+
+TEST_CASE("slow hunting is never rest: Fs 1 % and 0.1 % above Fc") {
+  // Ideal stiction: amplitude is proportional to Fs - Fc, the waiting time to its inverse (claim B7).
+  for (const double excess : {1e-2, 1e-3}) {
+    const auto settled = run(servo(coulomb(1.0 + excess, 1.0, 0.4)), 1.0);
+    REQUIRE(settled.outcome == Outcome::cycle);
+    CHECK(settled.shot->cycle.amplitude == Approx(0.01313061 * excess / 0.1).epsilon(1e-5));
+    CHECK(settled.shot->cycle.period * excess == Approx(7.65).epsilon(0.02));
+  }
+  const auto bristle = run(servo(lugre(1.01, 1.0)), 1.0);
+  REQUIRE(bristle.outcome == Outcome::cycle);
+  CHECK(bristle.shot->cycle.period > 700.0);
+}
+
+TEST_CASE("a servo without integral action comes to rest with an error") {
+  auto parts = servo_parts(coulomb(1.5, 1.0));
+  parts.controller = pid(3.0, 0.0, 1.0);
+  CHECK(run(build_loop(parts), 2.0).outcome == Outcome::rest);
+  parts.friction = lugre();
+  CHECK(run(build_loop(parts), 2.0).outcome == Outcome::rest);
+}
+
+TEST_CASE("a fast belt slides") {
+  LoopParts parts;
+  parts.plant = Belt{1.0, 2.0, 0.5, 2.0};
+  parts.friction = lugre();
+  CHECK(run(build_loop(parts), 0.0).outcome == Outcome::sliding);
+  parts.friction = coulomb(1.5, 1.0);
+  CHECK(run(build_loop(parts), 0.0).outcome == Outcome::sliding);
+}
+
+TEST_CASE("an unstable loop diverges") {
+  auto parts = servo_parts(coulomb(1.5, 1.0));
+  parts.controller = pid(-3.0, 0.0, 0.0);
+  CHECK(run(build_loop(parts), 1.0).outcome == Outcome::divergence);
+}
+
+TEST_CASE("a linear-looking decay slower than any patience is not called a cycle") {
+  // Undamped-looking oscillator: damping ratio 1e-5, no effective nonlinearity.
+  LoopParts parts;
+  parts.plant = TransferFunction{{1.0}, {1.0, 2e-5, 1.0}, 0.0};
+  parts.controller = pid(0.0, 0.0, 0.0);
+  parts.element = saturation(1.0);
+  CHECK(run(build_loop(parts), 0.5, 1e-3).outcome != Outcome::cycle);
+}
+
+TEST_CASE("turning points: confirmed by a return of 3 % of the last swing, small tremble ignored") {
+  TurningPoints turning;
+  for (int i = 0; i <= 4000; ++i) {
+    const double t = 0.01 * i;
+    turning.feed(t, std::sin(t) + 2e-3 * std::sin(40.0 * t));
+  }
+  // After the start (where any reversal counts) one for each half period of the slow sine.
+  std::size_t late = 0;
+  for (const auto& point : turning.points()) late += point.t > 8.0 ? 1 : 0;
+  CHECK(late == 10);
+  CHECK(turning.swing(0) == Approx(2.0).epsilon(2e-3));
+}

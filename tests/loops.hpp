@@ -1,0 +1,87 @@
+#pragma once
+#include <cmath>
+#include <vector>
+
+#include "limcycle/models/loop.hpp"
+
+/// Loops that several tests use.
+namespace limcycle::test {
+
+template <class Law>
+Law with_levels(double Fs, double Fc) {
+  Law law;
+  law.Fs = law.Fs_minus = Fs;
+  law.Fc = law.Fc_minus = Fc;
+  return law;
+}
+
+/// The LuGre set of Canudas de Wit et al. (1995).
+inline LuGre<double> lugre(double Fs = 1.5, double Fc = 1.0, double sigma2 = 0.4) {
+  auto law = with_levels<LuGre<double>>(Fs, Fc);
+  law.vs = 1e-3;
+  law.sigma0 = 1e5;
+  law.sigma1 = std::sqrt(1e5);
+  law.sigma2 = sigma2;
+  return law;
+}
+
+inline Coulomb<double> coulomb(double Fs, double Fc, double sigma2 = 0.0) {
+  auto law = with_levels<Coulomb<double>>(Fs, Fc);
+  law.sigma2 = sigma2;
+  return law;
+}
+
+inline Stribeck<double> stribeck(double Fs, double Fc, double vs) {
+  auto law = with_levels<Stribeck<double>>(Fs, Fc);
+  law.vs = vs;
+  return law;
+}
+
+inline Relay<double> relay(double level, double hysteresis = 0.0, double dead_zone = 0.0) {
+  Relay<double> element;
+  element.level = level;
+  element.hysteresis = hysteresis;
+  element.dead_zone = dead_zone;
+  return element;
+}
+
+inline Saturation<double> saturation(double limit) {
+  Saturation<double> element;
+  element.limit = limit;
+  return element;
+}
+
+inline Pid pid(double kp, double ki, double kd) {
+  Pid controller;
+  controller.kp = kp;
+  controller.ki = ki;
+  controller.kd = kd;
+  return controller;
+}
+
+/// m = 1 kg under PID (3, 4, 6): the servo of the 1995 paper.
+inline LoopParts servo_parts(Element<double> friction) {
+  LoopParts parts;
+  parts.plant = Mass{1.0, 0.0, 0.0};
+  parts.controller = pid(3.0, 4.0, 6.0);
+  parts.friction = std::move(friction);
+  return parts;
+}
+inline Loop servo(Element<double> friction) { return build_loop(servo_parts(std::move(friction))); }
+
+/// m = 1 kg, k = 2 N/m on a belt at 0.1 m/s.
+inline Loop belt(Element<double> friction) {
+  LoopParts parts;
+  parts.plant = Belt{1.0, 2.0, 0.0, 0.1};
+  parts.friction = std::move(friction);
+  return build_loop(parts);
+}
+
+inline Loop forward(Element<double> element, std::vector<double> numerator, std::vector<double> denominator) {
+  LoopParts parts;
+  parts.plant = TransferFunction{std::move(numerator), std::move(denominator), 0.0};
+  parts.element = std::move(element);
+  return build_loop(parts);
+}
+
+}  // namespace limcycle::test

@@ -1,0 +1,128 @@
+#include "limcycle/reports/html.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "limcycle/reports/figures.hpp"
+#include "limcycle/reports/page/page.hpp"
+#include "limcycle/reports/plotly.hpp"
+#include "limcycle/tests/reports/sample_report.hpp"
+
+using namespace limcycle;
+using Json = nlohmann::json;
+
+namespace {
+
+Provenance made() {
+  Provenance from;
+  from.version = "1.2.3";
+  from.title = "<script>alert('title')</script>";
+  from.file = "a case's \"file\".toml";
+  from.overrides = {"loop.plant.kind=\"mass\""};
+  return from;
+}
+
+/// The page without the library, in which anything may stand.
+std::string page(const PredictReport& report, const std::string& case_text = "a = 1 # </pre><script>bad()</script>") {
+  std::string text = predict_page(report, made(), case_text, {});
+  const auto at = text.find(limcycle::plotly_script());
+  REQUIRE(at != std::string::npos);
+  return text.erase(at, plotly_script().size());
+}
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("escaping for HTML") {
+  CHECK(html_escaped("a < b & c > \"d\" 'e'") == "a &lt; b &amp; c &gt; &quot;d&quot; &#39;e&#39;");
+  CHECK(html_escaped("ω\n\x01") == "ω\n ");
+  CHECK(html_escaped("\xC0\xAF\xED\xA0\x80") == "\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD");
+  CHECK(html_escaped("\xE6\x91") == "\xEF\xBF\xBD\xEF\xBF\xBD");
+}
+
+TEST_CASE("nothing that a user wrote becomes markup") {
+  auto report = sample::hunting();
+  report.outcomes[0].start = "</script><script>start()</script><!--";
+  report.notes = {"<img src=x onerror=note()>"};
+  const auto text = page(report);
+  for (const char* part : {"<script>alert", "<script>bad", "<script>start", "<img src=x", "<!--"})
+    CHECK_FALSE(holds(text, part));
+  CHECK(holds(text, "&lt;script&gt;alert(&#39;title&#39;)&lt;/script&gt;"));
+  // Four figures, the library, the script; the same number of closing tags.
+  CHECK(count(text, "<script") == 6);
+  CHECK(count(text, "</script>") == 6);
+}
+
+TEST_CASE("the page says the verdict, shows the tables and how to make it again") {
+  const auto text = page(sample::relay());
+  CHECK(holds(text, "This loop oscillates"));
+  CHECK(holds(text, "<td class=\"left confirmed\">confirmed</td>"));
+  CHECK(holds(text, "<td class=\"left false\">false</td>"));
+  CHECK(holds(text, "a = 1 # &lt;/pre&gt;"));
+  CHECK(holds(text, html_escaped("limcycle predict 'a case'\\''s \"file\".toml' --set 'loop.plant.kind=\"mass\"'")));
+  CHECK(text.find("This loop oscillates") < text.find("<table"));
+}
+
+TEST_CASE("the page asks nothing of the network") {
+  const auto text = page(sample::hunting());
+  CHECK(holds(text, "default-src 'none'"));
+  CHECK_FALSE(std::regex_search(text, std::regex("(src|href)\\s*=\\s*[\"'](?!data:)")));
+  CHECK_FALSE(holds(text, "http://"));
+  CHECK_FALSE(holds(text, "https://"));
+  CHECK_FALSE(holds(text, "@import"));
+}
+
+TEST_CASE("each figure says in words what it shows") {
+  const auto figures = predict_figures(sample::hunting(), {});
+  REQUIRE(figures.size() == 4);
+  const auto text = page(sample::hunting());
+  for (const auto& figure : figures) {
+    CHECK(figure.finding.size() > 40);
+    CHECK(holds(text, "<figcaption>" + html_escaped(figure.finding)));
+    CHECK(holds(text, "data-figure=\"" + figure.id + "\" tabindex=\"0\" role=\"img\" aria-label=\""));
+    CHECK(holds(std::string(page_script()), "\n  " + figure.id + "(d) {"));
+  }
+  CHECK(holds(figures[1].finding, "y moves between -0.0639 and 0.0639 m"));
+  CHECK(holds(figures[1].finding, "it sticks for 50 % of the time"));
+}
+
+TEST_CASE("figures hold JSON without what would end their element, and few points") {
+  auto report = sample::hunting();
+  report.outcomes[0].trace = sample::stick_slip_trace(1.0, 24.0, 50001);
+  report.outcomes[0].start = "</script>";
+  report.nyquist.G[1] = {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  for (const auto& figure : predict_figures(report, {})) {
+    CHECK(figure.data.find('<') == std::string::npos);
+    const auto data = Json::parse(figure.data);
+    if (figure.id == "nyquist") CHECK(data["G"]["re"][1].is_null());
+    if (figure.id != "phase") continue;
+    CHECK(data["runs"][0]["name"] == "from </script>");
+    for (const auto& run : data["runs"]) {
+      CHECK(run["y"].size() <= 2000);
+      CHECK(run["y"].size() >= 500);
+    }
+    const auto& stuck = data["cycles"][0]["stuck"];
+    CHECK(std::count(stuck.begin(), stuck.end(), 1) > 10);
+  }
+}
+
+TEST_CASE("a report without traces or curves has no figures but is a page") {
+  auto report = sample::hunting();
+  report.nyquist = {};
+  report.cycles[0].trace = {};
+  report.outcomes.clear();
+  CHECK(predict_figures(report, {}).empty());
+  const auto text = page(report, "");
+  CHECK_FALSE(holds(text, "<figure>"));
+  CHECK_FALSE(holds(text, "<details"));
+  CHECK(holds(text, "This loop hunts"));
+}

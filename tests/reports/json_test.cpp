@@ -1,0 +1,154 @@
+#include "limcycle/reports/json.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "limcycle/tests/reports/sample_report.hpp"
+
+using namespace limcycle;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+Provenance made() {
+  Provenance from;
+  from.version = "1.2.3";
+  from.commit = "abc";
+  from.seed = 18446744073709551615U;
+  from.title = "a title";
+  from.file = "case.toml";
+  from.sha256 = std::string(64, '0');
+  return from;
+}
+
+std::vector<std::string> keys(const Json& object) {
+  std::vector<std::string> out;
+  for (const auto& [key, value] : object.items()) out.push_back(key);
+  return out;
+}
+
+using Keys = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("every document says what it is and where it comes from") {
+  const auto document = Json::parse(predict_json(made(), {}));
+  CHECK(document["schema"] == "limcycle/1");
+  CHECK(document["command"] == "predict");
+  CHECK(document["case"] == Json({{"title", "a title"}, {"file", "case.toml"}, {"sha256", std::string(64, '0')}}));
+  CHECK(document["provenance"]["version"] == "1.2.3");
+  CHECK(document["provenance"]["seed"] == 18446744073709551615U);
+  for (const char* key : {"commit", "isa", "threads"}) CHECK(document["provenance"].contains(key));
+  CHECK(Json::parse(df_json(made(), {}, {}))["command"] == "df");
+  CHECK(Json::parse(simulate_json(made(), {}))["command"] == "simulate");
+}
+
+TEST_CASE("predict: keys and values") {
+  const auto document = Json::parse(predict_json(made(), sample::relay()));
+  CHECK(keys(document) == Keys{"schema", "command", "case", "provenance", "cycles", "predictions", "missed", "outcomes",
+                               "search", "notes", "status"});
+  const auto& cycle = document["cycles"][0];
+  CHECK(keys(cycle) == Keys{"amplitude", "first_harmonic", "period", "frequency", "offset", "stable", "multipliers",
+                            "sticking_fraction", "method", "error", "residual", "half_wave_symmetric"});
+  CHECK(cycle["amplitude"] == 0.65831343);
+  CHECK(cycle["frequency"].get<double>() == Approx(1.0).epsilon(1e-15));
+  CHECK(cycle["stable"] == true);
+  CHECK(cycle["multipliers"] == Json({{0.0095, -0.001}, {0.0, 0.0}}));
+  CHECK(cycle["method"] == "exact");
+  const auto& predictions = document["predictions"];
+  REQUIRE(predictions.size() == 2);
+  CHECK(keys(predictions[0]) ==
+        Keys{"method", "amplitude", "frequency", "stable", "verdict", "cycle", "input_amplitude", "residual", "why"});
+  CHECK(predictions[0]["verdict"] == "confirmed");
+  CHECK(predictions[0]["cycle"] == 0);
+  CHECK(predictions[1]["verdict"] == "false");
+  CHECK(predictions[1]["cycle"].is_null());
+  CHECK(predictions[1]["stable"].is_null());
+  CHECK(document["missed"] == Json::array());
+  CHECK(document["outcomes"][0] ==
+        Json({{"start", "y displaced by 1"}, {"outcome", "cycle"}, {"cycle", 0}, {"why", "it settles"}}));
+  CHECK(document["search"] == Json({{"amplitude", {1e-6, 1.0}}, {"frequency", {0.01, 1000.0}}}));
+  CHECK(document["notes"] == Json::array({"a note"}));
+  CHECK(Json::parse(predict_json(made(), sample::hunting()))["missed"] ==
+        Json::array({{{"method", "describing-function"}, {"cycle", 0}}}));
+}
+
+TEST_CASE("predict: a number that does not exist is null") {
+  auto report = sample::hunting();
+  report.cycles[0].offset = nan_value;
+  report.cycles[0].error = std::numeric_limits<double>::infinity();
+  report.cycles[0].multipliers = {{nan_value, 0.0}};
+  report.cycles[0].stable.reset();
+  const auto cycle = Json::parse(predict_json(made(), report))["cycles"][0];
+  CHECK(cycle["offset"].is_null());
+  CHECK(cycle["error"].is_null());
+  CHECK(cycle["stable"].is_null());
+  CHECK(cycle["multipliers"] == Json::array({Json::array({nullptr, 0.0})}));
+}
+
+TEST_CASE("df: keys and values, one line a point") {
+  DescribingFunction result;
+  result.gain = {1.5, 0.25};
+  result.mean = 0.125;
+  result.harmonics = {{3.0, 0.5}, {0.0, -1.0}};
+  result.dissipation = 3.14;
+  result.error = 1e-9;
+  result.method = "fft";
+  DescribingFunction unanswered;
+  unanswered.status = Status::not_finite;
+  unanswered.harmonics = {{0.0, 0.0}};
+  unanswered.method = "quadrature";
+  const auto text = df_json(made(), {{2.0, 3.0, 0.5}, {1.0, 2.0, 0.0}}, {result, unanswered});
+  const auto document = Json::parse(text);
+  const auto& point = document["points"][0];
+  CHECK(keys(point) == Keys{"amplitude", "frequency", "bias", "gain", "mean", "harmonics", "dissipation", "error",
+                            "method", "status"});
+  CHECK(point == Json({{"amplitude", 2.0},
+                       {"frequency", 3.0},
+                       {"bias", 0.5},
+                       {"gain", {1.5, 0.25}},
+                       {"mean", 0.125},
+                       {"harmonics", {{3.0, 0.5}, {0.0, -1.0}}},
+                       {"dissipation", 3.14},
+                       {"error", 1e-9},
+                       {"method", "fft"},
+                       {"status", "converged"}}));
+  CHECK(document["points"][1]["gain"] == Json::array({nullptr, nullptr}));
+  CHECK(document["points"][1]["error"].is_null());
+  CHECK(document["points"][1]["status"] == "not_finite");
+  CHECK(document["status"] == "converged");
+  CHECK(text.find("\n    {\"amplitude\"") != std::string::npos);
+}
+
+TEST_CASE("df: a table that was cut short says so") {
+  const std::vector<DfPoint> points(3);
+  CHECK(Json::parse(df_json(made(), points, {DescribingFunction{}}))["status"] == "interrupted");
+  CHECK_THROWS_AS(df_json(made(), {}, {DescribingFunction{}}), std::invalid_argument);
+}
+
+TEST_CASE("simulate: columns, rows, events") {
+  Simulation run;
+  run.columns = {"t", "y"};
+  run.rows = {{0.0, 1.0}, {0.1, nan_value}};
+  run.events = {{0.05, "loop.friction: stick"}};
+  run.stepper = "rodas5p";
+  run.steps = 12;
+  const auto document = Json::parse(simulate_json(made(), run));
+  CHECK(document["columns"] == Json({"t", "y"}));
+  CHECK(document["rows"] == Json::array({Json::array({0.0, 1.0}), Json::array({0.1, nullptr})}));
+  CHECK(document["events"] == Json::array({{{"t", 0.05}, {"what", "loop.friction: stick"}}}));
+  CHECK(document["stepper"] == "rodas5p");
+  CHECK(document["steps"] == 12);
+  CHECK(document["status"] == "converged");
+}
+
+TEST_CASE("text from a user cannot break a document") {
+  auto from = made();
+  from.title = "quote \" backslash \\ newline \n </script> \xFF\xFE";
+  const auto document = Json::parse(predict_json(from, {}));
+  CHECK(document["case"]["title"].get<std::string>() ==
+        "quote \" backslash \\ newline \n </script> \xEF\xBF\xBD\xEF\xBF\xBD");
+}

@@ -1,0 +1,134 @@
+#include "limcycle/reports/text.hpp"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "limcycle/reports/answer.hpp"
+#include "limcycle/tests/reports/sample_report.hpp"
+
+using namespace limcycle;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+std::size_t widest(const std::string& text) {
+  std::size_t width = 0;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) width = std::max(width, display_width(line));
+  return width;
+}
+
+PredictReport quiet(std::vector<Outcome> outcomes) {
+  auto report = sample::hunting();
+  report.cycles.clear();
+  report.missed.clear();
+  report.outcomes.clear();
+  for (const auto outcome : outcomes) report.outcomes.push_back({"a start", outcome, "", {}, {}});
+  return report;
+}
+
+}  // namespace
+
+TEST_CASE("predict: the answer stands first, in words") {
+  const auto text = predict_text("A servo", sample::hunting(), {});
+  CHECK_THAT(
+      text,
+      StartsWith("A servo\n\nThis loop hunts: it settles into a limit cycle of period 24.44 s and amplitude\n"
+                 "0.06390 m.\nThe describing function predicts no limit cycle in the search box and misses it.\n"));
+  CHECK_THAT(text, Contains("24.436786456  0.06390312346"));
+  CHECK_THAT(text, Contains("- a note") || Contains("-  a note"));
+  CHECK(widest(text) <= 80);
+}
+
+TEST_CASE("predict: predictions with their verdicts and deviations") {
+  const Answer words = answer(sample::relay(), {"", ""});
+  CHECK(words.what_happens ==
+        "This loop oscillates: it settles into a limit cycle of period 6.283 s and amplitude 0.6583.");
+  REQUIRE(words.worth.size() == 1);
+  CHECK(words.worth[0] == "The describing function predicts 2 limit cycles: 1 confirmed, 1 false.");
+  auto one = sample::relay();
+  one.predictions.resize(1);
+  CHECK(answer(one, {}).worth[0] ==
+        "The describing function predicts it: first harmonic 2.0 % too small, frequency 1.0 % too large.");
+  one.predictions[0].verdict = Verdict::biased;
+  CHECK_THAT(answer(one, {}).worth[0], StartsWith("The describing function predicts it with a bias: "));
+  one.predictions[0].verdict = Verdict::wrong;
+  CHECK(answer(one, {}).worth[0] ==
+        "The describing function predicts a limit cycle (amplitude 0.6370 m, frequency 1.010 rad/s) that does not "
+        "exist.");
+  one.missed = {{"describing-function", 0}};
+  CHECK_THAT(answer(one, {}).worth[0], Contains("does not exist, and misses the one that exists."));
+  const auto text = predict_text("Relay", sample::relay(), {"", ""});
+  CHECK_THAT(text, Contains("confirmed") && Contains("false") && Contains("it comes to rest"));
+  CHECK(widest(text) <= 80);
+}
+
+TEST_CASE("predict: what is said without a cycle") {
+  const auto first = [](const PredictReport& report) { return answer(report, {}).what_happens; };
+  CHECK(first(quiet({Outcome::rest, Outcome::rest})) == "This loop does not hunt: from all 2 starts it comes to rest.");
+  CHECK(first(quiet({Outcome::sliding})) == "This loop does not hunt: from its only start it ends in steady sliding.");
+  CHECK_THAT(first(quiet({Outcome::rest, Outcome::undecided})),
+             StartsWith("Whether this loop has a limit cycle was not decided"));
+  CHECK_THAT(first(quiet({Outcome::rest, Outcome::divergence})), Contains("from 1 of 2 starts it diverges"));
+  CHECK_THAT(first(quiet({})), Contains("not checked in the time domain"));
+  CHECK(answer(quiet({Outcome::rest}), {}).worth[0] == "The describing function predicts none either.");
+  CHECK(answer(quiet({Outcome::undecided}), {}).worth[0] ==
+        "The describing function predicts no limit cycle in the search box.");
+}
+
+TEST_CASE("predict: a method that was not applicable is not said to predict nothing") {
+  auto report = quiet({Outcome::rest});
+  report.nyquist = {};
+  CHECK(answer(report, {}).worth.empty());
+}
+
+TEST_CASE("predict: unstable cycles and interrupted work are named") {
+  auto report = sample::hunting();
+  report.cycles[0].stable = false;
+  report.outcomes = {{"a start", Outcome::rest, "", {}, {}}};
+  CHECK_THAT(answer(report, {}).what_happens, Contains("but it is unstable") && Contains("comes to rest"));
+  report.cycles[0].stable.reset();
+  CHECK_THAT(answer(report, {}).what_happens, Contains("stability was not decided"));
+  report.status = Status::interrupted;
+  CHECK_THAT(answer(report, {}).what_happens, StartsWith("Interrupted; as far as it went: "));
+  CHECK_THAT(predict_text("x", report, {}), Contains("Status: interrupted"));
+}
+
+TEST_CASE("df: a short table is printed, a long one summarised") {
+  DescribingFunction result;
+  result.gain = {7.219, 127.419};
+  result.dissipation = 0.04;
+  result.error = 3e-7;
+  result.method = "quadrature";
+  const std::vector<DfPoint> points(longest_table + 1, {1e-2, 1.0, 0.0});
+  const auto small = df_text("LuGre", {points[0]}, {result});
+  CHECK_THAT(small, Contains("7.21900  127.4190") && Contains("3.0e-07") && Contains("1 of 1 points"));
+  CHECK(small.find("bias") == std::string::npos);
+  CHECK(widest(small) <= 80);
+  const auto large = df_text("LuGre", points, std::vector(points.size(), result));
+  CHECK_THAT(large, Contains("--csv") && Contains("201 of 201 points") && Contains("201 by quadrature"));
+  CHECK(large.size() < 1000);
+}
+
+TEST_CASE("df: points without an answer show none") {
+  DescribingFunction none;
+  none.status = Status::not_finite;
+  const auto text = df_text("x", {{1.0, 1.0, 0.0}}, {none});
+  CHECK_THAT(text, Contains("1 point: not_finite."));
+  CHECK_THAT(text, Contains("-  ") || Contains("  -"));
+}
+
+TEST_CASE("simulate: how it went and where it has been") {
+  Simulation run;
+  run.columns = {"t", "y"};
+  run.rows = {{0.0, 1.0}, {0.5, -2.0}, {1.0, 0.5}};
+  run.events = {{0.2, "stick"}, {0.4, "stick"}};
+  run.stepper = "rodas5p";
+  run.steps = 7;
+  const auto text = simulate_text("x", run);
+  CHECK_THAT(text, Contains("3 samples, 7 steps of rodas5p.") && Contains("-2.00000") && Contains("2  stick"));
+  run.status = Status::stalled;
+  run.why = "the step became too small";
+  CHECK_THAT(simulate_text("x", run), Contains("ended early: stalled") && Contains("too small"));
+}
