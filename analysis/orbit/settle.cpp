@@ -119,13 +119,29 @@ class Settling {
   void look_at_swings() {
     const auto& points = turning_.points();
     if (points.size() < 5) return;
-    if (turning_.swing(0) < options_.amplitude_floor && turning_.swing(1) < options_.amplitude_floor &&
-        turning_.swing(2) < options_.amplitude_floor)
+    if (died_out()) {
       return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest,
                     "the swings decayed below the smallest amplitude of interest");
+    }
     if (points.size() < next_try_) return;
     for (std::size_t order : {2U, 4U, 6U})  // turning points per period
       if (points.size() > 2 * order && steady(order) && try_cycle(order)) return;
+  }
+
+  /// Stick-slip that decays for ever: the last swings are too small to matter, about the point of rest, and farther and
+  /// farther apart. (The tremble of a bristle when the body stops is small too, but its swings follow one another at
+  /// once, and long waits may come before the next slip.)
+  bool died_out() const {
+    const auto& points = turning_.points();
+    bool exact = false;
+    const double rest = loop_.C_y.dot(loop_.rest_point(exact).transpose());
+    const double floor = options_.amplitude_floor;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& point = points[points.size() - 1 - k];
+      const auto& before = points[points.size() - 2 - k];
+      if (turning_.swing(k) > floor || std::abs(point.y - rest) > floor || point.t < 1.3 * before.t) return false;
+    }
+    return exact;
   }
 
   /// Do the last swings repeat those one period (of `order` turning points) before, to within 5 %?

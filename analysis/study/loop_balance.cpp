@@ -102,7 +102,10 @@ std::optional<LoopBalance::Others> LoopBalance::others(double main_output, doubl
   const Eigen::MatrixXcd H = loop_->element_response(frequency);
   const auto m = static_cast<Index>(main_);
   const double wanted = std::abs(H(0, m)) * main_output;
-  const auto gain_at = [&](double a) { return df(loop_->elements[0], a, frequency, 0.0, accuracy).gain; };
+  const auto gain_at = [&](double a) {
+    const auto exact = exact_gain(loop_->elements[0], a, frequency, 0.0);
+    return exact ? *exact : df(loop_->elements[0], a, frequency, 0.0, accuracy).gain;
+  };
   const auto excess = [&](double a) { return a * std::abs(1.0 - H(0, 0) * gain_at(a)) - wanted; };
   Others result{0.0, 0.0};
   if (wanted == 0.0) return result;
@@ -121,18 +124,14 @@ std::optional<LoopBalance::Others> LoopBalance::others(double main_output, doubl
   return result;
 }
 
-Complex LoopBalance::response(double amplitude, double frequency, double accuracy) const {
-  const Eigen::MatrixXcd H = loop_->element_response(frequency);
-  const auto m = static_cast<Index>(main_);
-  if (main_ == 0) return -H(0, 0);
-  const double output = std::abs(gain(amplitude, frequency, accuracy)) * amplitude;
-  return -(H(m, m) + H(m, 0) * others(output, frequency, accuracy)->from_main);
-}
-
 Complex LoopBalance::operator()(double amplitude, double frequency, double accuracy) const {
   const Complex N = gain(amplitude, frequency, accuracy);
   if (!std::isfinite(N.real())) return undefined;
-  return 1.0 + N * response(amplitude, frequency, accuracy);
+  const Eigen::MatrixXcd H = loop_->element_response(frequency);
+  const auto m = static_cast<Index>(main_);
+  Complex response = H(m, m);
+  if (const auto other = others(std::abs(N) * amplitude, frequency, accuracy)) response += H(m, 0) * other->from_main;
+  return 1.0 - N * response;
 }
 
 /// Phasors (sine reference) of all element outputs on the predicted oscillation.

@@ -23,9 +23,6 @@ class LoopBalance {
   std::complex<double> operator()(double amplitude, double frequency, double accuracy) const;
   /// N(A,w) of the main element.
   std::complex<double> gain(double amplitude, double frequency, double accuracy) const;
-  /// G(jw) = -H(jw) of the rest of the loop, other elements at their small-signal or own describing function.
-  std::complex<double> response(double amplitude, double frequency, double accuracy) const;
-
   /// Amplitude of y's first harmonic when the main element's input has this amplitude.
   double output_amplitude(double amplitude, double frequency) const;
   /// Loeb's rule with the other closed-loop roots: `index` is the sign from the root search.

@@ -101,6 +101,7 @@ class Study {
   RootSearch search(const LoopBalance& balance, SearchBox box) {
     RootSearchOptions options;
     options.interrupted = options_.stop;
+    if (balance.main_element() > 0) options.max_evaluations = 20000;  // the other element's kink crosses the whole box
     for (const auto& pole : loop_.A.eigenvalues())
       if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)
         options.frequency_hints.push_back(std::abs(pole));
