@@ -43,7 +43,7 @@ CheckSummary summary_of(const Case& from) {
     summary.elements.push_back({from.element_path, std::string(kind_of(*from.element))});
     const int states = std::visit([](const auto& element) { return element.states(); }, *from.element);
     for (int i = 0; i < states; ++i)
-      summary.states.push_back(from.element_path + (states == 1 ? ".z" : fmt::format(".z{}", i + 1)));
+      summary.states.push_back(states == 1 ? std::string("z") : fmt::format("z{}", i + 1));
   }
   if (from.df)
     summary.sections.push_back(fmt::format("df: {} x {} x {} points", from.df->amplitude.size(),

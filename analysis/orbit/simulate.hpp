@@ -54,7 +54,8 @@ struct Simulation {
 /// Time-domain run with located events. Throws std::invalid_argument for an unknown state or stepper name.
 Simulation simulate(const Loop& loop, const SimulateOptions& options);
 
-/// Names of all states in the order of LoopState: linear states, then "<path>.z" of each element that has any.
+/// Names of all states in the order of LoopState: linear states, then "z" of the friction law (z1, z2, ... if it has
+/// several) and "z_element" of a forward element.
 std::vector<std::string> state_names(const Loop& loop);
 
 }  // namespace limcycle

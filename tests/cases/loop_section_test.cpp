@@ -158,7 +158,7 @@ TEST_CASE("improper and non-causal plants") {
         "a.toml:3: loop.plant.numerator[1] = \"two\": must be a number, found a string");
 }
 
-TEST_CASE("pairs and numbers make a list of poles; rows make a matrix") {
+TEST_CASE("pairs and numbers make a list of poles, rows make a matrix") {
   const Case zpk = read_case(
       "[loop.plant]\nkind = \"zpk\"\nzeros = []\npoles = [[-1, 2], [-1, -2.0], -3]\ngain = 4\n"
       "[loop.element]\nkind = \"relay\"\nlevel = 1\n",

@@ -6,7 +6,7 @@ using namespace limcycle;
 using limcycle::test::message;
 using limcycle::test::servo;
 
-TEST_CASE("--set replaces and creates, the last one wins") {
+TEST_CASE("override --set replaces and creates, the last one wins") {
   const Case from = read_case(servo, "a.toml",
                               {"loop.controller.kd=2", "loop.controller.kd = 7.5", "loop.friction.delta=1.5",
                                "predict.starts=9", "title=\"new\""});
@@ -18,7 +18,7 @@ TEST_CASE("--set replaces and creates, the last one wins") {
   CHECK(from.overrides[1] == "loop.controller.kd = 7.5");
 }
 
-TEST_CASE("--set replaces a whole table or a list") {
+TEST_CASE("override --set replaces a whole table or a list") {
   const Case from = read_case(servo, "a.toml", {"loop.friction={kind=\"coulomb\", Fc=2}", "search.amplitude=[1,2]"});
   CHECK(std::get<Coulomb<double>>(*from.loop->friction).Fc == 2.0);
   CHECK(from.predict.search->amplitude_max == 2.0);

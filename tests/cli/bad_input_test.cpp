@@ -184,7 +184,7 @@ TEST_CASE("text that is not TOML: line, column, one message") {
   }
 }
 
-TEST_CASE("--set is refused by its own name") {
+TEST_CASE("override --set is refused by its own name") {
   const std::string file = shipped("pid-lugre.toml");
   check_refused(
       run({"check", file, "--set", "loop.controller.kd=x y"}).code == 2 ? Ran{2, "", "limcycle: ok\n"} : Ran{}, "ok");

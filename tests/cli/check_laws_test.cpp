@@ -18,7 +18,7 @@ TEST_CASE("check tells what the default case holds") {
   CHECK(ran.out.find("title       PID position servo that hunts on LuGre friction\n") == 0);
   for (const auto* line :
        {"plant       mass\n", "controller  pid\n", "elements    loop.friction: lugre\n",
-        "states      y, v, I, loop.friction.z\n", "order       3 (linear part)\n", ": stable without the elements\n",
+        "states      y, v, I, z\n", "order       3 (linear part)\n", ": stable without the elements\n",
         "search box  amplitude 1e-06 .. 1, frequency 0.01 .. 1000 rad/s (from the case)\n", "The case is valid.\n"})
     CHECK(ran.out.find(line) != std::string::npos);
 }
@@ -42,7 +42,7 @@ TEST_CASE("check: the JSON document") {
     CHECK_FALSE(made.at(key).get<std::string>().empty());
   CHECK(document.at("plant") == "mass");
   CHECK(document.at("elements") == Json::parse(R"([{"path": "loop.friction", "kind": "lugre"}])"));
-  CHECK(document.at("states") == Json::array({"y", "v", "I", "loop.friction.z"}));
+  CHECK(document.at("states") == Json::array({"y", "v", "I", "z"}));
   CHECK(document.at("order") == 3);
   CHECK(document.at("stable") == true);
   CHECK(document.at("search").at("amplitude") == Json::array({1e-6, 1.0}));
@@ -83,7 +83,7 @@ TEST_CASE("check: a case of a lone law, and where the documents go") {
   const Json document = Json::parse(scratch.get("j"));
   CHECK(document.at("plant").is_null());
   CHECK(document.at("search").is_null());
-  CHECK(document.at("states") == Json::array({"loop.friction.z"}));
+  CHECK(document.at("states") == Json::array({"z"}));
   CHECK(scratch.get("c").starts_with("title,plant,controller,elements,states,order,"));
 }
 

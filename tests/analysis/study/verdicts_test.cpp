@@ -46,7 +46,7 @@ TEST_CASE("a prediction is about the nearest cycle, if that is not absurdly far"
   CHECK_FALSE(nearest(cycles, root(1.0, 4.0)));
 }
 
-TEST_CASE("the same cycle found twice is one cycle; a cycle no prediction is about is missed") {
+TEST_CASE("the same cycle found twice is one cycle, a cycle no prediction is about is missed") {
   std::vector<Cycle> cycles;
   CHECK(merge(cycles, known(1.0, 6.28)) == 0);
   CHECK(merge(cycles, known(1.0 + 1e-8, 6.28)) == 0);
