@@ -19,7 +19,7 @@ struct Value {
   using List = std::vector<Value>;
   using Table = std::vector<Entry>;
 
-  std::variant<bool, std::int64_t, double, std::string, Other, List, Table> data = Table{};
+  std::variant<Table, bool, std::int64_t, double, std::string, Other, List> data;
   int line = 0;       ///< in the file, from 1; 0: not written in the file
   int override = -1;  ///< index of the --set that brought it; -1: the file
 

@@ -77,12 +77,12 @@ RadauIIA make_table(int s) {
         }
         sum += weight * lagrange;
       }
-      table.a[static_cast<std::size_t>(i * s + j)] = static_cast<double>(c[static_cast<std::size_t>(i)] * sum);
+      table.a[table.position(i, j)] = static_cast<double>(c[static_cast<std::size_t>(i)] * sum);
     }
   }
   for (std::size_t j = 0; j < static_cast<std::size_t>(s); ++j) {
     table.c[j] = static_cast<double>(c[j]);
-    table.b[j] = table.a[static_cast<std::size_t>(s * (s - 1)) + j];
+    table.b[j] = table.a[table.position(s - 1, static_cast<int>(j))];
   }
   for (std::size_t j = 0; j <= static_cast<std::size_t>(s); ++j) {
     const Long own = j == 0 ? 0.0L : c[j - 1];

@@ -11,10 +11,14 @@ struct RadauIIA {
   static constexpr int most_stages = 12;
   int stages = 0;
   std::array<double, most_stages> c{}, b{};
-  std::array<double, most_stages * most_stages> a{};
+  std::array<double, static_cast<std::size_t>(most_stages) * most_stages> a{};
   std::array<double, most_stages + 1> barycentric{};  ///< weights of interpolation on the nodes 0, c_1 .. c_s
 
-  double coefficient(int i, int j) const { return a[static_cast<std::size_t>(i * stages + j)]; }
+  /// Where a_ij stands in `a`.
+  std::size_t position(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(stages) + static_cast<std::size_t>(j);
+  }
+  double coefficient(int i, int j) const { return a[position(i, j)]; }
 
   /// Weights with which the values at 0, c_1 .. c_s give the collocation polynomial at t.
   void interpolation(double t, std::array<double, most_stages + 1>& weights) const;

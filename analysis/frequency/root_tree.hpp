@@ -68,7 +68,7 @@ class RootTree {
     bool p, q;
   };
 
-  bool near_border(const FoundRoot& root, const LatticeCell& cell) const;
+  bool near_border(const FoundRoot& root, const LatticeCell& s) const;
   void process(Cell cell);
   void process_border(const Cell& cell, const CellSamples& values);
   void settle(const Cell& cell, const CellSamples& values, const CellAssessment& assessment);

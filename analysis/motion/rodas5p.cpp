@@ -20,6 +20,7 @@ using Sum = std::conditional_t<Lu::MatrixType::RowsAtCompileTime == Eigen::Dynam
 
 /// sum_{j < count} weight[j] k_j
 template <class Lu>
+// NOLINTNEXTLINE(readability-non-const-parameter): the map writes to the storage
 Sum<Lu> sum_stages(const rodas5p::Row& weight, std::size_t count, const double* k, Eigen::Index n, double* storage) {
   Sum<Lu> sum = ColumnMap<Lu>(storage, n);
   sum.setZero();

@@ -27,42 +27,55 @@ class RestWatch {
  public:
   RestWatch(const Loop& loop, double rtol) : sizes_(typical_sizes(loop)), slow_(slow_time(loop)), noise_(0.01 * rtol) {}
 
-  bool at_rest(double t, const State& dx) {
-    if (t < next_) return false;
+  enum class Verdict { moving, steady, at_rest };
+
+  /// Asked after every step. steady: the rates have become constant, though not zero.
+  Verdict look(double t, const State& dx) {
+    if (t < next_) return Verdict::moving;
     next_ = std::max(1.5 * t, t + slow_);
+    double change = 0.0;
+    for (std::size_t i = 0; i < before_.size(); ++i)
+      change = std::max(change, std::abs(dx[i] - before_[i]) * slow_ / sizes_[i]);
+    steady_ = before_.empty() || change > 1e-7 ? 0 : steady_ + 1;
+    before_ = dx;
     double rate = 0.0;
     for (std::size_t i = 0; i < dx.size(); ++i) rate = std::max(rate, std::abs(dx[i]) * slow_ / sizes_[i]);
     const double drift = rate * (t + slow_) / slow_;
     const bool fades = rate <= noise_ || (drift < 0.6 * last_ && drift < 1e-6);
     last_ = drift;
     calm_ = fades ? calm_ + 1 : 0;
-    return calm_ >= 3;
+    return calm_ >= 3 ? Verdict::at_rest : steady_ >= 4 ? Verdict::steady : Verdict::moving;
   }
 
  private:
   State sizes_;
   double slow_, noise_, next_ = 0.0, last_ = infinite;
-  int calm_ = 0;
+  State before_;
+  int calm_ = 0, steady_ = 0;
 };
+
+/// Speed above which a friction law counts as rubbing; infinite if nothing rubs.
+double rubbing_speed(const Loop& loop) {
+  if (loop.ports.back().path != "loop.friction") return infinite;
+  const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
+  return std::isfinite(scales.velocity) ? scales.velocity / 100.0 : 1e-12;
+}
 
 /// Does the body rub steadily when the loop stands still (a belt, a ramp)?
 bool slides_at_rest(const Loop& loop) {
   const Port& port = loop.ports.back();
-  if (port.path != "loop.friction") return false;
   bool exact = false;
   const Eigen::VectorXd rest = loop.rest_point(exact);
-  const double speed = (port.C_v * rest + port.c_v * loop.external).value();
-  const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
-  return std::abs(speed) > (std::isfinite(scales.velocity) ? scales.velocity / 100.0 : 1e-12);
+  return std::abs((port.C_v * rest + port.c_v * loop.external).value()) > rubbing_speed(loop);
 }
 
 /// One run: simulation, and shooting whenever the swings look steady.
 class Settling {
  public:
-  Settling(const Loop& loop, const LoopState& start, const SettleOptions& options)
+  Settling(const Loop& loop, LoopState start, const SettleOptions& options)
       : loop_(loop),
         options_(options),
-        start_(start),
+        start_(std::move(start)),
         field_(loop),
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
         rest_(loop, options.rtol) {}
@@ -99,21 +112,15 @@ class Settling {
       return decide(Outcome::undecided, "the simulation ended with status " + std::string(to_string(status)));
     note();
     const double y = result_.trace.y.back();
-    if (std::abs(y) > options_.amplitude_ceiling)
-      return steady_run_away() ? decide(Outcome::sliding, "the body slides away at constant speed")
-                               : decide(Outcome::divergence, "y grew beyond all bounds");
+    if (std::abs(y) > options_.amplitude_ceiling) return decide(Outcome::divergence, "y grew beyond all bounds");
     if (march_.t() >= 1e15) return decide(Outcome::undecided, "nothing was decided within 1e15 s");
     if (turning_.feed(march_.t(), y)) look_at_swings();
-    if (!decided_ && rest_.at_rest(march_.t(), dx_))
-      decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest, "all rates died out");
-  }
-
-  /// Far away, but at a speed that no longer changes.
-  bool steady_run_away() const {
-    const Trace& trace = result_.trace;
-    if (loop_.ports.back().path != "loop.friction" || trace.t.size() < 10) return false;
-    const std::size_t before = trace.t.size() - 5;
-    return std::abs(trace.velocity.back() - trace.velocity[before]) < 1e-3 * std::abs(trace.velocity.back());
+    if (decided_) return;
+    const auto verdict = rest_.look(march_.t(), dx_);
+    if (verdict == RestWatch::Verdict::at_rest)
+      return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest, "all rates died out");
+    if (verdict == RestWatch::Verdict::steady && std::abs(result_.trace.velocity.back()) > rubbing_speed(loop_))
+      decide(Outcome::sliding, "the body slides at constant speed");
   }
 
   void look_at_swings() {

@@ -72,26 +72,11 @@ class Shooter {
         if (const Status status = difference(false); status != Status::converged) return status;
         fresh = true;
       }
-      const VectorXd step = -(jacobian_ - MatrixXd::Identity(r.size(), r.size())).partialPivLu().solve(r);
-      ReturnMap::Result next;
-      LoopState trial = state_;
-      double damping = 1.0, trial_norm = infinite;
-      for (; damping > 0.02; damping *= 0.5) {
-        trial.x = chart_->lift(state_.x, damping * step);
-        next = map(trial);
-        if (next.status == Status::interrupted) return next.status;
-        if (next.status != Status::converged) continue;
-        trial_norm = residual_at(trial, next).norm();
-        if (trial_norm < (fresh ? 0.9 : 0.3) * r.norm()) break;
-        if (!fresh) break;
-      }
-      if (trial_norm < (fresh ? 0.9 : 0.3) * r.norm()) {
-        state_ = trial;
-        image = next;
-        r = residual(image);
+      if (newton(image, r, fresh)) {
         fresh = false;
         continue;
       }
+      if (image.status == Status::interrupted) return image.status;
       if (r.norm() < 100.0 * options_.tolerance) break;  // the floor of the integration itself
       if (!fresh) {
         jacobian_.resize(0, 0);  // the kept Jacobian is too old
@@ -109,6 +94,30 @@ class Shooter {
     time_ = image.time;
     largest_ = image.largest;
     return Status::converged;
+  }
+
+  /// One damped Newton step from state_ with residual r; moves there and returns true if the residual falls enough: to
+  /// a third with an old Jacobian, at all with a fresh one (which is worth shorter steps).
+  bool newton(ReturnMap::Result& image, VectorXd& r, bool fresh) {
+    const VectorXd step = -(jacobian_ - MatrixXd::Identity(r.size(), r.size())).partialPivLu().solve(r);
+    LoopState trial = state_;
+    double damping = 1.0;
+    for (int halvings = 0; halvings < (fresh ? 6 : 1); ++halvings, damping *= 0.5) {
+      trial.x = chart_->lift(state_.x, damping * step);
+      const auto next = map(trial);
+      if (next.status == Status::interrupted) {
+        image.status = next.status;
+        return false;
+      }
+      if (next.status != Status::converged) continue;
+      const VectorXd there = chart_->coordinates(next.state.x, trial.x);
+      if (there.norm() >= (fresh ? 0.9 : 0.3) * r.norm()) continue;
+      state_ = trial;
+      image = next;
+      r = there;
+      return true;
+    }
+    return false;
   }
 
   /// Jacobian of the map in chart coordinates, by one-sided or central differences.
@@ -151,9 +160,6 @@ class Shooter {
     return map_(from);
   }
   VectorXd residual(const ReturnMap::Result& image) const { return chart_->coordinates(image.state.x, state_.x); }
-  VectorXd residual_at(const LoopState& at, const ReturnMap::Result& image) const {
-    return chart_->coordinates(image.state.x, at.x);
-  }
 
   ReturnMap map_;
   const ShootingOptions& options_;

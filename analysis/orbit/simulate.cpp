@@ -117,12 +117,12 @@ Simulation simulate(const Loop& loop, const SimulateOptions& options) {
     const auto next = std::ranges::find_if(times, [t](const auto& stop) { return !stop.second && stop.first > t; });
     return next == times.end() ? infinite : next->first;
   };
-  double next_break = break_after(0.0);  // NOLINT(clang-analyzer-deadcode.DeadStores): read through the reference
+  double next_break = break_after(0.0);
   field.set_external(external(loop, options, next_break));
   State x = initial_state(loop, options.initial);
   const State given = x;
   field.start(x, 0.0);
-  for (std::size_t i = static_cast<std::size_t>(loop.states()); i < x.size(); ++i)
+  for (auto i = static_cast<std::size_t>(loop.states()); i < x.size(); ++i)
     if (given[i] != 0.0) x[i] = given[i];  // an element's own state that the case names
   March march(field, stepper_kind(options.stepper), loop_weights(loop, options.rtol));
   run.stepper = to_string(march.kind());
@@ -143,7 +143,7 @@ Simulation simulate(const Loop& loop, const SimulateOptions& options) {
     if (is_sample) {
       add_row(run, field, march.x(), march.t());
     } else {
-      next_break = break_after(until);
+      next_break = break_after(until);  // NOLINT(clang-analyzer-deadcode.DeadStores): read through the reference
       march.begin(march.x(), march.t());
     }
     if (options.progress) options.progress(march.t() / options.duration);

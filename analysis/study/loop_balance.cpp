@@ -149,7 +149,9 @@ double LoopBalance::output_amplitude(double amplitude, double frequency) const {
 
 std::optional<bool> LoopBalance::stable(double amplitude, double frequency, int index) const {
   if (index == 0) return std::nullopt;
-  if (index < 0 || loop_->delay > 0.0 || main_ != 0) return index > 0;
+  if (index < 0) return false;
+  if (loop_->delay > 0.0) return std::nullopt;  // the other roots of a loop with delay are infinitely many
+  if (main_ != 0) return true;
   // The quasi-linear loop, N acting as Re N + (Im N / w) d/dt: all its other roots must lie in the left half plane.
   const Port& port = loop_->ports[main_];
   const Complex N = gain(amplitude, frequency, 1e-9);

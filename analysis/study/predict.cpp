@@ -105,6 +105,9 @@ class Study {
     for (const auto& pole : loop_.A.eigenvalues())
       if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)
         options.frequency_hints.push_back(std::abs(pole));
+    // The phase of a delay must not turn by more than about 0.7 between two samples.
+    const double turns = box.frequency_max * loop_.delay * std::log(box.frequency_max / box.frequency_min);
+    options.initial_cells_frequency = std::clamp(static_cast<int>(turns / 1.4), options.initial_cells_frequency, 800);
     const double speed = std::abs(balance.mean_velocity());
     if (speed > 0.0) {
       box.amplitude_min *= box.frequency_min;

@@ -17,8 +17,9 @@ SearchBox default_search_box(const Loop& loop) {
       fast = std::max(fast, pole);
     }
   if (!std::isfinite(slow)) slow = fast = 1.0;
-  if (loop.delay > 0.0) fast = std::max(fast, 1.0 / loop.delay);
   SearchBox box{0.0, 0.0, 0.01 * slow, 100.0 * fast};
+  // A delay makes roots without end, at every turn of its phase: the first few turns are what can matter.
+  if (loop.delay > 0.0) box.frequency_max = std::min(box.frequency_max, std::max(10.0 * fast, 30.0 / loop.delay));
   const auto main = std::ssize(loop.elements) - 1;
   const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
   double largest = 0.0;

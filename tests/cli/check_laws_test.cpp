@@ -17,8 +17,8 @@ TEST_CASE("check tells what the default case holds") {
   CHECK(ran.err.empty());
   CHECK(ran.out.find("title       PID position servo that hunts on LuGre friction\n") == 0);
   for (const auto* line :
-       {"plant       mass\n", "controller  pid\n", "elements    loop.friction: lugre\n",
-        "states      y, v, I, z\n", "order       3 (linear part)\n", ": stable without the elements\n",
+       {"plant       mass\n", "controller  pid\n", "elements    loop.friction: lugre\n", "states      y, v, I, z\n",
+        "order       3 (linear part)\n", ": stable without the elements\n",
         "search box  amplitude 1e-06 .. 1, frequency 0.01 .. 1000 rad/s (from the case)\n", "The case is valid.\n"})
     CHECK(ran.out.find(line) != std::string::npos);
 }

@@ -84,3 +84,25 @@ TEST_CASE("turning points: confirmed by a return of 3 % of the last swing, small
   CHECK(late == 10);
   CHECK(turning.swing(0) == Approx(2.0).epsilon(2e-3));
 }
+
+TEST_CASE("a body pushed harder than friction can hold slides away, it does not diverge or stay undecided") {
+  LoopParts parts;
+  parts.plant = Mass{1.0, 0.0, 0.0};
+  parts.friction = coulomb(1.0, 1.0, 1.0);
+  parts.load = 2.0;
+  CHECK(run(build_loop(parts), 0.0).outcome == Outcome::sliding);
+  parts.load = 0.5;
+  CHECK(run(build_loop(parts), 0.0).outcome == Outcome::rest);
+}
+
+TEST_CASE(
+    "the tremble of a stiff bristle at the first stop is not rest: hunting at sigma0 = 1e7 is seen from any start") {
+  auto law = lugre();
+  law.sigma0 = 1e7;
+  law.sigma1 = std::sqrt(1e7);
+  for (const double start : {1.0, 0.1, 1e-3}) {
+    const auto settled = run(servo(law), start, 1e-6);
+    REQUIRE(settled.outcome == Outcome::cycle);
+    CHECK(settled.shot->cycle.period == Approx(23.748197).epsilon(3e-8));  // measured by another program
+  }
+}
