@@ -13,11 +13,11 @@ namespace limcycle {
 /// A signal of time from outside: value(t) = offset + ... by kind.
 struct Signal {
   enum class Kind { constant, step, ramp, sine, zigzag, table } kind = Kind::constant;
-  double value = 0.0;                 ///< constant: value; step: height; sine, zigzag: amplitude
-  double start = 0.0;                 ///< s; zero before (step, ramp, sine, zigzag)
-  double rate = 0.0;                  ///< ramp: slope, 1/s; zigzag: slope of its flanks
-  double frequency = 0.0;             ///< sine: rad/s
-  std::vector<double> times, values;  ///< table: piecewise linear, constant beyond its ends
+  double value = 0.0;                     ///< constant: value; step: height; sine, zigzag: amplitude
+  double start = 0.0;                     ///< s; zero before (step, ramp, sine, zigzag)
+  double rate = 0.0;                      ///< ramp: slope, 1/s; zigzag: slope of its flanks
+  double frequency = 0.0;                 ///< sine: rad/s
+  std::vector<double> times{}, values{};  ///< table: piecewise linear, constant beyond its ends
 
   double at(double t) const;
   double slope(double t) const;                    ///< right-hand derivative; 0 at the jump of a step
