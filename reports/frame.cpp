@@ -11,22 +11,23 @@ std::string replaced(const Json& value) { return value.dump(-1, ' ', false, Json
 
 }  // namespace
 
-std::string json_document(const std::string& command, const Provenance& from, const std::string& body) {
+std::string json_document(const std::string& command, const Provenance& provenance, const std::string& body) {
   const auto text_or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
-  Json top{
-      {"schema", "limcycle/1"},
-      {"command", command},
-      {"case",
-       {{"title", text_or_null(from.title)}, {"file", text_or_null(from.file)}, {"sha256", text_or_null(from.sha256)}}},
-      {"provenance",
-       {{"version", from.version},
-        {"commit", from.commit},
-        {"compiler", from.compiler},
-        {"build_type", from.build_type},
-        {"seed", from.seed},
-        {"isa", from.isa},
-        {"threads", from.threads},
-        {"overrides", from.overrides}}}};
+  Json top{{"schema", "limcycle/1"},
+           {"command", command},
+           {"case",
+            {{"title", text_or_null(provenance.title)},
+             {"file", text_or_null(provenance.file)},
+             {"sha256", text_or_null(provenance.sha256)}}},
+           {"provenance",
+            {{"version", provenance.version},
+             {"commit", provenance.commit},
+             {"compiler", provenance.compiler},
+             {"build_type", provenance.build_type},
+             {"seed", provenance.seed},
+             {"isa", provenance.isa},
+             {"threads", provenance.threads},
+             {"overrides", provenance.overrides}}}};
   const Json members = Json::parse(body);
   for (const auto& [key, value] : members.items()) top[key] = value;
   std::string text = "{";

@@ -156,7 +156,7 @@ std::string predict_page(const PredictReport& report, const Provenance& provenan
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
       "style-src 'unsafe-inline'; img-src data: blob:\">\n<link rel=\"icon\" href=\"data:,\">\n";
-  out += "<meta name=\"generator\" content=\"limcycle " + html_escaped(provenance.version) + "\">\n";
+  out += R"(<meta name="generator" content="limcycle )" + html_escaped(provenance.version) + "\">\n";
   out += tag("title", provenance.title + " - limcycle");
   out += "<style>" + std::string(page_style()) + "</style>\n</head>\n<body>\n<header>\n";
   out += tag("h1", provenance.title);

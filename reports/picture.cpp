@@ -90,6 +90,7 @@ std::string panels(const Cycle& cycle, const Units& units) {
   const auto index = thin(cycle.trace, 500, stuck).index;
   const Trace once = picked(cycle.trace, index);
   std::vector<bool> marks;
+  marks.reserve(index.size());
   for (const std::size_t i : index) marks.push_back(i < stuck.size() && stuck[i]);
   Trace two = once;
   for (std::size_t i = 0; i < once.t.size(); ++i) {
