@@ -22,7 +22,7 @@ int run(const CommonFlags& flags) {
   std::vector<DescribingFunction> results;
   {
     Progress progress(flags.quiet);
-    const double total = static_cast<double>(points.size());
+    const auto total = static_cast<double>(points.size());
     catch_interrupts();
     results = describing_function_table(df_element(from), points, section.options, interrupted, [&](std::size_t done) {
       progress.show(static_cast<double>(done) / total, "describing functions");
