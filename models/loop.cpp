@@ -268,7 +268,7 @@ Eigen::RowVectorXcd Loop::output_response(double w) const {
 Eigen::VectorXd Loop::rest_point(bool& exact) const {
   const Eigen::VectorXd pull = E * external;
   const Eigen::MatrixXd still = A + A_delayed;
-  const Eigen::VectorXd X = still.completeOrthogonalDecomposition().solve(-pull);
+  Eigen::VectorXd X = still.completeOrthogonalDecomposition().solve(-pull);
   exact = (still * X + pull).norm() <= 1e-12 * (1.0 + pull.norm());
   return X;
 }
