@@ -1,8 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
@@ -34,13 +32,6 @@ Units units_of(const LoopParts& loop) {
   const auto plant = kind_of(loop.plant);
   const bool mechanical = loop.friction || plant == "mass" || plant == "belt" || plant == "two-mass";
   return mechanical ? Units{} : Units{"", ""};
-}
-
-/// The case file once more, for the page; empty if it has changed since it was read.
-std::string text_of(const Case& from) {
-  std::ifstream stream(from.file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  return sha256(text) == from.sha256 ? text : std::string();
 }
 
 int exit_code(const PredictReport& report, bool require_agreement) {
@@ -78,7 +69,7 @@ int run(PredictFlags flags) {
   const auto made = provenance(flags, &from);
   std::string text = predict_text(from.title, report, units);
   if (!flags.html.empty()) {
-    output.file(flags.html, predict_page(report, made, text_of(from), units));
+    output.file(flags.html, predict_page(report, made, from.text, units));
     text += "\nreport: " + flags.html + "\n";
   }
   if (!flags.pictures.empty()) output.file(flags.pictures, predict_picture(report, units));
