@@ -90,7 +90,8 @@ const SimulateOptions& need_simulate(const Case& from) {
 
 const Element<double>& df_element(const Case& from) {
   if (!from.loop) return *from.element;
-  return from.loop->friction ? *from.loop->friction : *from.loop->element;
+  const LoopParts& parts = *from.loop;
+  return parts.friction ? *parts.friction : parts.element ? *parts.element : *parts.error;
 }
 
 }  // namespace limcycle

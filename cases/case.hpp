@@ -32,12 +32,11 @@ struct Case {
 
   std::optional<LoopParts> loop;           ///< empty: a case for describing functions of a lone element
   std::optional<Element<double>> element;  ///< the lone element; empty if there is a loop
-  std::string element_path;                ///< "loop.friction" or "loop.element", of the element that `df` asks about
+  std::string element_path;                ///< "loop.friction", "loop.element" or "loop.error", which `df` asks about
 
   std::optional<DfSection> df;
   std::optional<SimulateOptions> simulate;  ///< duration, initial, force, reference, stepper, rtol, sample are set
   PredictOptions predict;                   ///< search (from [search]), starts and accuracy are set
-  std::vector<std::string> methods;         ///< [predict] methods; empty: all there are
 };
 
 /// Bytes that a case file may have.
@@ -56,7 +55,8 @@ const LoopParts& need_loop(const Case& from);
 const DfSection& need_df(const Case& from);
 const SimulateOptions& need_simulate(const Case& from);
 
-/// The element whose describing function `df` computes: the lone element, else the friction, else the forward element.
+/// The element whose describing function `df` computes: the lone element, else the friction, else the forward element,
+/// else the one on the error.
 const Element<double>& df_element(const Case& from);
 
 /// Kind of a law, element, plant or controller as a case file spells it.

@@ -14,6 +14,8 @@ const std::vector<std::string> later_plants = {"froude-pendulum"};
 using AnyElement = Element<double>;
 using FrictionLaw = FrictionLaws::On<double>;
 using ForwardElement = ForwardElements::On<double>;
+using SeriesElement = SeriesElements::On<double>;
+using ErrorElement = ErrorElements::On<double>;
 
 AnyElement read_friction(const Section& section) {
   return read_any<FrictionLaw, AnyElement>(section,
@@ -25,8 +27,21 @@ AnyElement read_friction(const Section& section) {
 }
 
 AnyElement read_element(const Section& section) {
-  return read_any<AnyElement>(
-      section, {.what = "element", .later = later_laws, .elsewhere = {}, .elsewhere_hint = {}, .later_keys = {}});
+  return read_any<SeriesElement, AnyElement>(section,
+                                             {.what = "element",
+                                              .later = later_laws,
+                                              .elsewhere = kinds_of<ErrorElement>(),
+                                              .elsewhere_hint = "acts on the error: it belongs in [loop.error]",
+                                              .later_keys = {}});
+}
+
+AnyElement read_error(const Section& section) {
+  return read_any<ErrorElement, AnyElement>(
+      section, {.what = "element on the error",
+                .later = later_laws,
+                .elsewhere = kinds_of<SeriesElement>(),
+                .elsewhere_hint = "does not act on the error (" + joined(kinds_of<ErrorElement>()) + " may)",
+                .later_keys = {}});
 }
 
 Plant read_plant(const Section& section) {
@@ -36,11 +51,8 @@ Plant read_plant(const Section& section) {
 
 Controller read_controller(const std::optional<Section>& section) {
   if (!section) return NoController{};
-  return read_any<Controller>(*section, {.what = "controller",
-                                         .later = {},
-                                         .elsewhere = {},
-                                         .elsewhere_hint = {},
-                                         .later_keys = {"friction_compensation"}});
+  return read_any<Controller>(
+      *section, {.what = "controller", .later = {}, .elsewhere = {}, .elsewhere_hint = {}, .later_keys = {}});
 }
 
 void read_reference(const Place& place, LoopParts& parts) {
@@ -95,14 +107,15 @@ InputError unknown_kind(const Place& kind, const std::vector<std::string>& avail
 }
 
 void read_loop(const Section& section, Case& into) {
-  section.allow({"plant", "controller", "friction", "element", "reference", "load"}, {"error"});
+  section.allow({"plant", "controller", "friction", "element", "error", "reference", "load"});
   const auto plant = section.section("plant"), controller = section.section("controller");
   const auto friction = section.section("friction"), element = section.section("element");
-  const bool lone = !plant && !controller && !section.find("reference") && !section.find("load") &&
+  const auto error = section.section("error");
+  const bool lone = !plant && !controller && !error && !section.find("reference") && !section.find("load") &&
                     friction.has_value() != element.has_value();
   if (!plant && !lone) throw section.error("plant", "is required: a loop needs [loop.plant]");
 
-  into.element_path = friction ? "loop.friction" : "loop.element";
+  into.element_path = friction ? "loop.friction" : element ? "loop.element" : "loop.error";
   if (lone) {
     into.element = friction ? read_friction(*friction) : read_element(*element);
     return;
@@ -112,6 +125,7 @@ void read_loop(const Section& section, Case& into) {
   parts.controller = read_controller(controller);
   if (element) parts.element = read_element(*element);
   if (friction) parts.friction = read_friction(*friction);
+  if (error) parts.error = read_error(*error);
   if (const auto reference = section.find("reference")) read_reference(*reference, parts);
   if (const auto load = section.find("load")) parts.load = read_number(*load);
   check_together(section, parts);

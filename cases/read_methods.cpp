@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "limcycle/cases/sections.hpp"
@@ -101,12 +102,11 @@ void read_predict(const Section& section, Case& into) {
   if (list == nullptr) throw methods->wrong_type("a list of names");
   if (list->empty()) throw methods->error("must not be empty");
   constexpr std::string_view known[] = {"describing-function", "composite-describing-function", "harmonic-balance"};
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    if (read_choice(methods->item(i), known) != 0)
-      throw methods->item(i).error("known to the case format, not available in this version",
-                                   "available: describing-function");
-    into.methods.push_back(read_string(methods->item(i)));
-  }
+  Methods& chosen = into.predict.methods;
+  chosen = {false, false, false};
+  const std::array<bool*, 3> switches{&chosen.describing_function, &chosen.composite, &chosen.harmonic_balance};
+  for (std::size_t i = 0; i < list->size(); ++i)
+    *switches[static_cast<std::size_t>(read_choice(methods->item(i), known))] = true;
 }
 
 SimulateOptions read_simulate(const Section& section, const std::vector<std::string>& states) {
@@ -120,7 +120,7 @@ SimulateOptions read_simulate(const Section& section, const std::vector<std::str
   }
   if (const auto force = section.find("force")) options.force = read_signal(*force);
   if (const auto reference = section.find("reference")) options.reference = read_signal(*reference);
-  constexpr std::string_view steppers[] = {"auto", "rodas5p", "dopri5", "fehlberg78", "cash-karp54"};
+  constexpr std::string_view steppers[] = {"auto", "exact", "rodas5p", "dopri5", "fehlberg78", "cash-karp54"};
   if (const auto stepper = section.find("stepper")) options.stepper = steppers[read_choice(*stepper, steppers)];
   if (const auto rtol = section.find("rtol")) options.rtol = read_number(*rtol, {.low = 1e-13, .high = 1e-1});
   if (const auto sample = section.find("sample")) {

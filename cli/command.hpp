@@ -50,8 +50,10 @@ Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 
 // Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.
 void add_check(CLI::App& program, Action& action);
+void add_continue(CLI::App& program, Action& action);
 void add_df(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
+void add_margin(CLI::App& program, Action& action);
 void add_predict(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);
 

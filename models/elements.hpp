@@ -2,8 +2,12 @@
 #include <variant>
 
 #include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/compensation.hpp"
 #include "limcycle/models/element/cubic.hpp"
 #include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/delayed_relay.hpp"
+#include "limcycle/models/element/output_rate.hpp"
+#include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/element/relay.hpp"
 #include "limcycle/models/element/saturation.hpp"
 #include "limcycle/models/friction/coulomb.hpp"
@@ -23,10 +27,26 @@ struct KindList {
   static void for_each(auto&& visit) { (visit.template operator()<Kinds>(), ...); }
 };
 
+/// Several lists in one.
+template <class First, class... Rest>
+struct JoinedKinds {
+  using List = First;
+};
+template <template <class> class... A, template <class> class... B, class... Rest>
+struct JoinedKinds<KindList<A...>, KindList<B...>, Rest...> : JoinedKinds<KindList<A..., B...>, Rest...> {};
+
 /// The list of friction laws, and of the other elements. A new law is one file and one word here.
 using FrictionLaws = KindList<Coulomb, Stribeck, Dahl, LuGre>;
 using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic>;
-using Elements = KindList<Coulomb, Stribeck, Dahl, LuGre, Relay, Saturation, DeadZone, Backlash, Cubic>;
+
+/// What may stand in series after the controller, and what may act on the error before it.
+using SeriesElements = JoinedKinds<FrictionLaws, ForwardElements>::List;
+using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
+
+/// What no case names as a kind: a loop makes them of its other parts.
+using MadeElements = KindList<Compensation, OutputRate, DelayedRelay>;
+
+using Elements = JoinedKinds<SeriesElements, KindList<Quantizer>, MadeElements>::List;
 
 /// Any friction law or element.
 template <class S>

@@ -16,6 +16,7 @@ struct LoopParts {
   Controller controller;
   std::optional<Element<double>> element;   ///< in series after the controller
   std::optional<Element<double>> friction;  ///< opposes the rubbing velocity of the plant
+  std::optional<Element<double>> error;     ///< acts on e = r - y before the controller
   double reference = 0.0;                   ///< set-point r at t = 0
   double reference_rate = 0.0;              ///< dr/dt of a ramp
   double load = 0.0;                        ///< constant force added to the plant's input
@@ -27,11 +28,16 @@ enum ExternalIndex : Eigen::Index { constant_one = 0, reference_value = 1, refer
 
 /// Where element i is connected: input x = C X + D w + c ext, rate v = C_v X + D_v w + c_v ext, with X the linear
 /// state, w the outputs of all elements. D is strictly lower triangular over the elements: they are evaluated in order.
+/// What the rate owes to X(t - delay) is left out of C_v: no frequency-domain method asks, and in_time_domain() has it.
 struct Port {
   Eigen::RowVectorXd C, D, C_v, D_v;
   Eigen::RowVector4d c, c_v;
   Eigen::RowVectorXd C_delayed;  ///< part of the input row that reads X(t - delay)
-  std::string path;              ///< "loop.friction", "loop.element", "loop.controller.saturation"
+  /// The set-valued friction law whose choice of sign at v = 0 this element shares (friction compensation).
+  std::optional<std::size_t> selection_of;
+  bool rubs = false;  ///< x and v are rubbing displacement and velocity: what matters is v, x may move along
+  std::string path;   ///< "loop.error", "loop.error.rate", "loop.controller.friction_compensation",
+                      ///< "loop.controller.saturation", "loop.element", "loop.friction": in this order, if there
 };
 
 /// Lur'e form: linear part  dX/dt = A X + A_delayed X(t - delay) + B w + E ext,  y = C_y X,  with nonlinear elements

@@ -90,6 +90,7 @@ std::vector<CatalogueEntry> catalogue() {
   std::vector<CatalogueEntry> all;
   append(all, "friction", std::type_identity<FrictionLaws::On<double>>{});
   append(all, "element", std::type_identity<ForwardElements::On<double>>{});
+  append(all, "error element", std::type_identity<KindList<Quantizer>::On<double>>{});
   append(all, "plant", std::type_identity<Plant>{});
   append(all, "controller", std::type_identity<Controller>{});
   return all;

@@ -21,7 +21,7 @@ struct ParameterEntry {
 
 /// One law, element, plant or controller.
 struct CatalogueEntry {
-  std::string group;  ///< "friction", "element", "plant" or "controller"
+  std::string group;  ///< "friction", "element", "error element", "plant" or "controller"
   std::string kind, equation, source;
   std::optional<int> states, most_states;  ///< continuous states, least and most; empty: as many as the parameters say
   std::vector<ParameterEntry> parameters;

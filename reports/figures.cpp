@@ -118,6 +118,37 @@ Json curve(const Trace& trace, std::size_t most, double sticking, bool& whole) {
   return out;
 }
 
+/// The error discs of all predictions, and what is said of them.
+Json error_discs(const PredictReport& report, std::string& words) {
+  Json discs = Json::array();
+  std::string proved, guessed;
+  for (const auto& one : report.predictions) {
+    if (!one.trust || one.trust->band.discs.empty()) continue;
+    const Band& band = one.trust->band;
+    for (const auto& disc : band.discs)
+      discs.push_back({{"kind", to_string(band.kind)},
+                       {"re", rounded(disc.centre.real())},
+                       {"im", rounded(disc.centre.imag())},
+                       {"r", rounded(disc.radius)},
+                       {"w", rounded(disc.frequency)}});
+    if (band.kind == BandKind::rigorous)
+      proved += fmt::format("{} {} to {} rad/s", proved.empty() ? "" : " and", with_digits(band.frequency.low, 4),
+                            with_digits(band.frequency.high, 4));
+    else
+      guessed += fmt::format("{} {} rad/s", guessed.empty() ? "" : " and", with_digits(one.frequency, 3));
+  }
+  if (!proved.empty())
+    words += fmt::format(
+        " Rigorous error discs (Mees-Bergen, solid circles) are drawn over the band{} in which a cycle "
+        "is proved.",
+        proved);
+  if (!guessed.empty())
+    words += fmt::format(" The error {} (dashed) at{} {} heuristic.",
+                         guessed.find(" and") == std::string::npos ? "disc" : "discs", guessed,
+                         guessed.find(" and") == std::string::npos ? "is" : "are");
+  return discs;
+}
+
 Figure nyquist_figure(const PredictReport& report) {
   const auto& picture = report.nyquist;
   Json G = {{"re", Json::array()}, {"im", Json::array()}, {"w", Json::array()}};
@@ -158,6 +189,8 @@ Figure nyquist_figure(const PredictReport& report) {
         fmt::format("{} amplitude {} and {} rad/s ({})", crossings.empty() ? "" : ";",
                     with_digits(one.input_amplitude, 3), with_digits(one.frequency, 3), to_string(one.verdict));
   }
+  std::string about_discs;
+  const Json discs = error_discs(report, about_discs);
   const auto box = nyquist_window(picture, places);
   const Json window = {{"re", {box.re_from, box.re_to}}, {"im", {box.im_from, box.im_to}}};
   return {"nyquist", "Nyquist plot and describing function",
@@ -165,8 +198,8 @@ Figure nyquist_figure(const PredictReport& report) {
                            "point in common "
                            "at equal frequency: the describing function predicts no limit cycle."
                          : "The Nyquist curve G(jω) of the linear part meets the curves −1/N(A,ω) of the element at" +
-                               crossings + ".",
-          text_of({{"G", G}, {"family", family}, {"roots", roots}, {"window", window}})};
+                               crossings + "." + about_discs,
+          text_of({{"G", G}, {"family", family}, {"roots", roots}, {"discs", discs}, {"window", window}})};
 }
 
 Figure time_figure(const Shown& what, const Units& units) {

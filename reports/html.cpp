@@ -62,6 +62,20 @@ std::string html_table(const Table& table, const std::string& caption) {
   return out + "</tbody></table></div>\n";
 }
 
+std::string trust_html(const PredictReport& report, const Units& units) {
+  std::string out;
+  if (const Table table = trust_table(report, units); !table.rows.empty())
+    out += "<h2>Trust in the predictions</h2>\n" +
+           html_table(table,
+                      "Size of the harmonics that come back, share of the sinusoid that sticks, and where the "
+                      "true cycles may lie");
+  for (std::size_t i = 0; i < report.predictions.size(); ++i)
+    if (const auto& trust = report.predictions[i].trust)
+      out += tag("p", fmt::format("Prediction {}: {}. Its band: {}.", i, trust->sentence, trust->band.why));
+  if (report.absence) out += "<h2>Absence of oscillations</h2>\n" + tag("p", absence_in_words(report));
+  return out;
+}
+
 std::string tables(const PredictReport& report, const Units& units) {
   std::string out = "<h2>Limit cycles</h2>\n";
   out += report.cycles.empty() ? tag("p", "None was found.")
@@ -74,6 +88,7 @@ std::string tables(const PredictReport& report, const Units& units) {
                                     : html_table(predictions, "What each method predicts, with its verdict");
   for (const auto& missed : report.missed)
     out += tag("p", fmt::format("Limit cycle {} is missed by {}.", missed.cycle, method_in_words(missed.method)));
+  out += trust_html(report, units);
   if (report.outcomes.empty()) return out;
   Table outcomes{{{"start", "", Align::left}, {"reaches", "", Align::left}, {"cycle", ""}, {"why", "", Align::left}},
                  {}};

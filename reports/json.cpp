@@ -41,6 +41,36 @@ Json cycle_json(const Cycle& cycle) {
           {"half_wave_symmetric", cycle.half_wave_symmetric}};
 }
 
+Json ends(const Interval& interval) { return pair({interval.low, interval.high}); }
+
+Json trust_json(const std::optional<Trust>& trust) {
+  if (!trust) return nullptr;
+  const Band& band = trust->band;
+  return {{"filter_ratio", number(trust->filter_ratio)},
+          {"worst_harmonic", trust->worst_harmonic},
+          {"harmonic_residual", number(trust->harmonic_residual)},
+          {"sticking_fraction", number(trust->sticking_fraction)},
+          {"band",
+           {{"kind", to_string(band.kind)},
+            {"verdict", to_string(band.verdict)},
+            {"frequency", ends(band.frequency)},
+            {"amplitude", ends(band.amplitude)},
+            {"input_amplitude", ends(band.input_amplitude)},
+            {"why", band.why}}},
+          {"sentence", trust->sentence}};
+}
+
+Json absence_json(const std::optional<Absence>& absence) {
+  if (!absence) return nullptr;
+  Json undecided = Json::array();
+  for (const auto& interval : absence->undecided) undecided.push_back(ends(interval));
+  return {{"verdict", to_string(absence->verdict)},
+          {"frequency", pair({absence->box.frequency_min, absence->box.frequency_max})},
+          {"input_amplitude", pair({absence->box.amplitude_min, absence->box.amplitude_max})},
+          {"undecided", undecided},
+          {"why", absence->why}};
+}
+
 Json prediction_json(const Prediction& prediction) {
   return {{"method", prediction.method},
           {"amplitude", number(prediction.amplitude)},
@@ -50,7 +80,8 @@ Json prediction_json(const Prediction& prediction) {
           {"cycle", or_null(prediction.cycle)},
           {"input_amplitude", number(prediction.input_amplitude)},
           {"residual", number(prediction.residual)},
-          {"why", prediction.why}};
+          {"why", prediction.why},
+          {"trust", trust_json(prediction.trust)}};
 }
 
 Json point_json(const DfPoint& point, const DescribingFunction& result) {
@@ -99,6 +130,7 @@ std::string predict_json(const Provenance& provenance, const PredictReport& repo
   top["search"] = {
       {"amplitude", Json::array({number(report.search.amplitude_min), number(report.search.amplitude_max)})},
       {"frequency", Json::array({number(report.search.frequency_min), number(report.search.frequency_max)})}};
+  top["absence"] = absence_json(report.absence);
   top["notes"] = report.notes;
   top["status"] = to_string(report.status);
   return text_of("predict", provenance, top);

@@ -24,6 +24,7 @@ std::string states_text(const CatalogueEntry& entry) {
 std::string heading(const std::string& group) {
   if (group == "friction") return "Friction laws ([loop.friction], or [loop.element])";
   if (group == "element") return "Elements ([loop.element])";
+  if (group == "error element") return "Elements on the error ([loop.error]; also dead-zone and saturation)";
   return group == "plant" ? "Plants ([loop.plant])" : "Controllers ([loop.controller])";
 }
 

@@ -34,6 +34,19 @@ std::string outcomes(const PredictReport& report) {
   return out;
 }
 
+/// "1.69974 to 1.75964", or "unknown" for a band without ends.
+std::string ends(const Interval& interval) {
+  if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "unknown";
+  return with_digits(interval.low, 4) + " to " + with_digits(interval.high, 4);
+}
+
+std::string sentences(const PredictReport& report) {
+  std::string out;
+  for (std::size_t i = 0; i < report.predictions.size(); ++i)
+    if (const auto& trust = report.predictions[i].trust) out += item(fmt::format("{}:", i), 2, trust->sentence);
+  return out;
+}
+
 std::string reasons(const PredictReport& report) {
   std::string out;
   for (std::size_t i = 0; i < report.predictions.size(); ++i)
@@ -84,6 +97,34 @@ Table prediction_table(const PredictReport& report, const Units& units) {
   return table;
 }
 
+Table trust_table(const PredictReport& report, const Units& units) {
+  Table table{{{"#", "", Align::left},
+               {"filter", ""},
+               {"residual", ""},
+               {"stuck", ""},
+               {"frequency", "rad/s"},
+               {"1st harm.", units.y},
+               {"band", "", Align::left}},
+              {}};
+  for (std::size_t i = 0; i < report.predictions.size(); ++i) {
+    const auto& trust = report.predictions[i].trust;
+    if (!trust) continue;
+    const Band& band = trust->band;
+    table.rows.push_back(
+        {std::to_string(i), with_digits(trust->filter_ratio, 2), with_digits(trust->harmonic_residual, 2),
+         as_percent(trust->sticking_fraction), ends(band.frequency), ends(band.amplitude),
+         std::string(band.kind == BandKind::rigorous ? to_string(band.verdict) : to_string(band.kind))});
+  }
+  return table;
+}
+
+std::string absence_in_words(const PredictReport& report) {
+  if (!report.absence) return "";
+  const bool proved = report.absence->verdict == BandVerdict::proved;
+  return std::string(proved ? "Proved (Mees and Bergen 1975): " : "Not proved (Mees and Bergen 1975): ") +
+         report.absence->why + ".";
+}
+
 std::string predict_text(const std::string& title, const PredictReport& report, const Units& units) {
   const Answer words = answer(report, units);
   std::string out = wrapped(title) + "\n" + wrapped(words.what_happens);
@@ -91,6 +132,9 @@ std::string predict_text(const std::string& title, const PredictReport& report, 
   if (!report.cycles.empty()) out += section("Limit cycles", cycle_table(report, units).text());
   if (!report.predictions.empty())
     out += section("Predictions", prediction_table(report, units).text() + reasons(report));
+  if (const Table trust = trust_table(report, units); !trust.rows.empty())
+    out += section("Trust in the predictions, and where the true cycles may lie", trust.text() + sentences(report));
+  if (report.absence) out += section("Absence of oscillations", wrapped(absence_in_words(report)));
   if (!report.outcomes.empty()) out += section("Reached in simulation", outcomes(report));
   const auto& box = report.search;
   out += section("Search box",

@@ -26,5 +26,11 @@ std::string simulate_text(const std::string& title, const Simulation& run);
 /// The tables of predict_text, for other formats.
 Table cycle_table(const PredictReport& report, const Units& units);
 Table prediction_table(const PredictReport& report, const Units& units);
+/// Trust indicators of the predictions that have them, and the bands in which the true cycles are proved (or guessed)
+/// to lie.
+Table trust_table(const PredictReport& report, const Units& units);
+
+/// Whether the absence of oscillations is proved, in a sentence; empty where that was not asked.
+std::string absence_in_words(const PredictReport& report);
 
 }  // namespace limcycle

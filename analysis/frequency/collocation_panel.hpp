@@ -22,10 +22,10 @@ struct ElementState {
 /// Radau IIA collocation of one element on one panel of prescribed motion, in one mode: Newton with the exact Jacobian
 /// (one iteration if the law is linear in its state) and, from the same elimination, the derivative of the final state
 /// by the state in which the way began. Cost of a panel: (s n)^3/3 multiplications and about 3 s evaluations per state.
-template <template <class> class Kind>
+template <template <class> class Kind, Motion M = PrescribedMotion>
 class CollocationPanel {
  public:
-  CollocationPanel(const Kind<double>& element, const PrescribedMotion& motion, int stages)
+  CollocationPanel(const Kind<double>& element, const M& motion, int stages)
       : element_(element),
         dual_(recast<Kind, Dual<1>>(element)),
         motion_(motion),
@@ -195,7 +195,7 @@ class CollocationPanel {
 
   const Kind<double>& element_;
   Kind<Dual<1>> dual_;
-  const PrescribedMotion& motion_;
+  const M& motion_;
   const RadauIIA& table_;
   std::size_t s_, n_;
   double direction_ = 1.0;

@@ -20,11 +20,12 @@ struct NoVisitor {
 /// its level) ends in implicit Euler by bisection.
 ///
 /// A visitor may ask for nodes, `node(MotionNode, weight, output)` with weights of phase, or for samples:
-/// `sample(output)` at the end of panels marked so, and `jump(position, height)` for each jump of the output.
-template <template <class> class Kind>
+/// `sample(output)` at the end of panels marked so, and `jump(position, height)` for each jump of the output. One that
+/// declares `wants_panels` is shown every panel as it was solved and every switch, see RecordedSums.
+template <template <class> class Kind, Motion M = PrescribedMotion>
 class ElementMarch {
  public:
-  ElementMarch(const Kind<double>& element, const PrescribedMotion& motion, int stages)
+  ElementMarch(const Kind<double>& element, const M& motion, int stages)
       : element_(element),
         dual_(recast<Kind, Dual<1>>(element)),
         motion_(motion),
@@ -73,6 +74,10 @@ class ElementMarch {
   static constexpr std::size_t most_halvings = 24;
   static constexpr int most_events = 200;
   static constexpr long most_failures = 100'000;
+  template <class Visitor>
+  static constexpr bool wants_panels = requires {
+    requires Visitor::wants_panels;
+  };
   struct Event {
     int guard = 0;
     double t = 0.0;  ///< part of the panel, in [0, 1]
@@ -80,6 +85,12 @@ class ElementMarch {
   struct Pending {
     double position, before;
   };
+
+  /// Slope of the rate by the phase.
+  double acceleration(int anchor, double at) const {
+    const double small = 1e-6;
+    return (motion_.at(anchor, at + small).in.v - motion_.at(anchor, at - small).in.v) / (2.0 * small);
+  }
 
   /// Output at the end of the last panel, before a jump that happens there.
   double left_output(const ElementState& state) const {
@@ -123,7 +134,14 @@ class ElementMarch {
           from = at;
           if (!arrived) continue;
         }
-        change_mode(panel.anchor, from, event->guard, state);
+        if constexpr (wants_panels<Visitor>) {
+          const ElementState before = state;
+          change_mode(panel.anchor, from, event->guard, state);
+          visitor.switched(panel_.node_at(panel.anchor, from), acceleration(panel.anchor, from), event->guard, before,
+                           state);
+        } else {
+          change_mode(panel.anchor, from, event->guard, state);
+        }
       }
     }
     return Status::converged;
@@ -160,6 +178,7 @@ class ElementMarch {
                      element_.output(panel_.node(i).in, state.mode, panel_.state(i)));
       evaluations_ += static_cast<long>(panel_.stages());
     }
+    if constexpr (wants_panels<Visitor>) visitor.panel(panel_, to - from, state.mode);
     if (n_ == 0) return;
     panel_.end(state);
     for (std::size_t p = 0; p < n_; ++p) peak_[p] = std::max(peak_[p], std::abs(state.z[p]));
@@ -279,8 +298,8 @@ class ElementMarch {
 
   const Kind<double>& element_;
   Kind<Dual<1>> dual_;
-  const PrescribedMotion& motion_;
-  CollocationPanel<Kind> panel_;
+  const M& motion_;
+  CollocationPanel<Kind, M> panel_;
   std::size_t n_;
   long evaluations_ = 0, failures_ = 0;
   std::optional<Pending> pending_;

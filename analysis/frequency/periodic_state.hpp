@@ -11,7 +11,7 @@ namespace limcycle {
 /// returns.
 struct PeriodicState {
   Status status = Status::converged;
-  ElementState state;              ///< at PrescribedMotion::origin()
+  ElementState state;              ///< at the origin of the motion's period
   bool symmetric = false;          ///< half-wave symmetric: what was visited is half a period, the rest mirrors it
   double defect = 0.0;             ///< bound of how far the state may be from the fixed point, in units of `scale`
   std::vector<double> scale = {};  ///< size of each state in this motion
@@ -24,11 +24,11 @@ struct PeriodicState {
 /// half-wave symmetric state where many are periodic (elastic ranges). If that map has none (a relay that never
 /// switches) or the motion is biased, the full map is used, from the virgin state; where it is indifferent (derivative
 /// 1) the state reached is kept.
-template <template <class> class Kind>
+template <template <class> class Kind, Motion M = PrescribedMotion>
 class PeriodicStateSearch {
  public:
   /// `tolerance`: how close to the fixed point, in units of state_scale, is close enough.
-  PeriodicStateSearch(ElementMarch<Kind>& march, const PeriodMesh& mesh, bool try_symmetric, double tolerance)
+  PeriodicStateSearch(ElementMarch<Kind, M>& march, const PeriodMesh& mesh, bool try_symmetric, double tolerance)
       : march_(march),
         mesh_(mesh),
         n_(march.states()),
@@ -147,7 +147,7 @@ class PeriodicStateSearch {
     return result;
   }
 
-  ElementMarch<Kind>& march_;
+  ElementMarch<Kind, M>& march_;
   const PeriodMesh& mesh_;
   std::size_t n_;
   bool try_symmetric_;

@@ -25,16 +25,6 @@ std::vector<double> graded_ends(double length, double cap, double growth, double
   return ends;
 }
 
-/// Panels from anchor `left` to anchor `right`, graded towards both where the layer there is thinner than the stretch.
-void append_graded(std::vector<Panel>& panels, int left, int right, double length, double cap_left, double cap_right,
-                   const MeshSettings& settings) {
-  const double widest = settings.growth * std::min(1.0, 3.0 / settings.harmonics);
-  const auto rising = graded_ends(0.5 * length, cap_left, settings.growth, widest);
-  const auto falling = graded_ends(0.5 * length, cap_right, settings.growth, widest);
-  for (std::size_t i = 1; i < rising.size(); ++i) panels.push_back({left, rising[i - 1], rising[i]});
-  for (std::size_t i = falling.size() - 1; i >= 1; --i) panels.push_back({right, -falling[i], -falling[i - 1]});
-}
-
 /// Uniform panels over one stretch that begins at `begin` (from the origin of the period).
 void append_uniform(std::vector<Panel>& panels, int left, int right, double begin, double length, int samples) {
   const double step = 2.0 * pi / samples, tiny = 1e-9 * step;
@@ -102,6 +92,15 @@ double PrescribedMotion::layer(int anchor, const Scales& scales) const {
                            std::cbrt(6.0 * scales.displacement / amplitude_)});
   if (a.rate != 0.0) width = std::min(width, scales.displacement * frequency_ / std::abs(a.rate));
   return std::max(width, 1e-14);
+}
+
+void append_graded(std::vector<Panel>& panels, int left, int right, double length, double cap_left, double cap_right,
+                   const MeshSettings& settings) {
+  const double widest = settings.growth * std::min(1.0, 3.0 / settings.harmonics);
+  const auto rising = graded_ends(0.5 * length, cap_left, settings.growth, widest);
+  const auto falling = graded_ends(0.5 * length, cap_right, settings.growth, widest);
+  for (std::size_t i = 1; i < rising.size(); ++i) panels.push_back({left, rising[i - 1], rising[i]});
+  for (std::size_t i = falling.size() - 1; i >= 1; --i) panels.push_back({right, -falling[i], -falling[i - 1]});
 }
 
 PeriodMesh graded_mesh(const PrescribedMotion& motion, const Scales& scales, const MeshSettings& settings) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <concepts>
 #include <vector>
 
 #include "limcycle/models/element/element.hpp"
@@ -17,6 +18,16 @@ struct Panel {
 struct MotionNode {
   Input<double> in;
   double sine = 0.0, cosine = 0.0;
+};
+
+/// A periodic motion as the march through it needs it: what moves at a phase given by its distance from an anchor
+/// (anchor 0 is phase 0, where history begins), the frequency (rad/s), and how far a phase is from the beginning of the
+/// period.
+template <class M>
+concept Motion = requires(const M motion, int anchor, double local) {
+  { motion.at(anchor, local) } -> std::same_as<MotionNode>;
+  { motion.frequency() } -> std::convertible_to<double>;
+  { motion.position(anchor, local) } -> std::convertible_to<double>;
 };
 
 /// The motion x = bias t + A sin wt (friction law) or x = bias + A sin wt (other element), as a function of the phase
@@ -66,6 +77,11 @@ struct MeshSettings {
   double cap = 0.02;    ///< first panel at a reversal, in units of PrescribedMotion::layer
   int harmonics = 1;    ///< highest order whose oscillation must be resolved
 };
+
+/// Appends panels over the stretch of `length` from anchor `left` to anchor `right`, graded towards both where the
+/// layer there is thinner than the stretch: the first panel at an end is at most its cap (rad) wide.
+void append_graded(std::vector<Panel>& panels, int left, int right, double length, double cap_left, double cap_right,
+                   const MeshSettings& settings);
 
 /// Panels that shrink geometrically towards both ends of each stretch between reversals, down to the cap. The count
 /// grows with the logarithm of the layer only.

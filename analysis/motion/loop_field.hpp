@@ -18,7 +18,9 @@ using ExternalSignals = std::function<void(double t, External& value, External& 
 /// State: linear states, then the states of the elements in order. One object serves one thread.
 ///
 /// An element that holds a signal (a stuck friction law, a sliding relay) puts out the drive: the outputs of all
-/// holding elements are solved for together, so that the held signals have zero rate.
+/// holding elements are solved for together, so that the held signals have zero rate. A friction compensation that
+/// shares the selection of a stuck law (Port::selection_of) puts out its level times the same element of Sgn(0), so it
+/// takes part in that solution.
 class LoopField {
  public:
   explicit LoopField(const Loop& loop);
@@ -28,6 +30,7 @@ class LoopField {
   std::vector<Mode>& modes() { return modes_; }
   const std::vector<Mode>& modes() const { return modes_; }
   void set_external(ExternalSignals signals) { signals_ = std::move(signals); }
+  bool driven() const { return static_cast<bool>(signals_); }
 
   /// dx/dt. Cost O(n^2).
   void rate(const State& x, State& dx, double t);
@@ -39,6 +42,12 @@ class LoopField {
   void guards(const State& x, double t, std::vector<double>& g);
   /// Performs the switch of the guard that fired: new mode, reset states, a held signal put to exactly zero.
   void fire(State& x, double t, std::size_t guard);
+  /// The same, and the saltation matrix S = dh + (f+ - dh f-) n/(n f-) that carries a small deviation of the state over
+  /// the switch: n the gradient of the guard, f- and f+ the rates before and after, dh the derivative of the reset (di
+  /// Bernardo, Budd, Champneys and Kowalczyk, Piecewise-smooth Dynamical Systems, 2008, section 2.5). On entering stick
+  /// n S = 0: the rank drops by one. Autonomous loops only. Returns false (S undefined) where the switch is not crossed
+  /// transversally.
+  bool fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation);
   /// The element whose guard this is.
   std::size_t owner(std::size_t guard) const;
   /// Modes of elements without history at this state, whose own states are set too.
@@ -56,21 +65,34 @@ class LoopField {
   using DualS = Dual<4>;
 
   void evaluate(const State& x, double t);
-  void evaluate_element(std::size_t i, const State& x);
+  void sweep(const State& x);
+  void solve_held(const State& x);
+  Eigen::VectorXd hold_residual() const;
+  Eigen::VectorXd outputs_by_superposition(const State& x);
+  double follow(std::size_t i) const;
+  double follow_slope(std::size_t i) const;
+  bool follows_held(std::size_t i) const;
   void look_outside(double t);
-  void solve_held();
   void find_inputs(const State& x);
   double hold_row(std::size_t i, Eigen::RowVectorXd& row) const;
   double drive_of(std::size_t i) const;
+  double drive_with_follower(std::size_t i, const State& x);
   Held held(std::size_t i) const;
+  bool has_own_guards(std::size_t i) const { return !loop_->ports[i].selection_of; }
+  void input_gradients(std::size_t i);
   void element_gradient(std::size_t i, const State& x);
-  void held_gradient();
+  void held_gradient(const State& x);
+  void output_gradients(const State& x);
+  Eigen::RowVectorXd guard_gradient(const State& x, std::size_t i, std::size_t guard);
+  Eigen::MatrixXd reset_gradient(const State& x, std::size_t i, std::size_t guard);
+  std::size_t first_guard_of(std::size_t i, std::size_t guard) const;
 
   const Loop* loop_;
   std::size_t size_ = 0;
   std::size_t n_ = 0, ne_ = 0;
   std::vector<std::size_t> first_state_;
   std::vector<Element<DualS>> dual_elements_;
+  std::vector<bool> has_follower_;
   std::vector<Mode> modes_;
   ExternalSignals signals_;
 
@@ -93,13 +115,18 @@ class LoopField {
   std::vector<Sparse> A_, E_;
   std::vector<SparsePort> ports_;
   External ext_, ext_rate_;
-  std::vector<double> base_, w_, dX_, E_ext_;
+  std::vector<double> w_, dX_, E_ext_;
   std::vector<std::size_t> holding_;
-  std::vector<DualS> dual_z_, dual_dz_;
+  bool followed_ = false;  ///< one of the holding elements has a follower
+  std::vector<DualS> dual_z_, dual_dz_, dual_g_;
   Eigen::RowVectorXd input_gradient_, rate_gradient_;
   std::vector<Input<double>> inputs_;
+  Eigen::MatrixXd reach_;  ///< rates of the held signals per unit of the holding outputs
   /// Gradients over the state, and over time in the last column: of the outputs, and of the element states' rates.
   Eigen::MatrixXd w_gradient_, z_gradient_;
 };
+
+/// The loop at these linear states, its elements without history.
+LoopState without_history(const Loop& loop, const Eigen::VectorXd& X);
 
 }  // namespace limcycle

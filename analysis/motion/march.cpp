@@ -8,23 +8,38 @@
 #include <stdexcept>
 #include <variant>
 
+#include "limcycle/analysis/motion/affine_flow.hpp"
 #include "limcycle/analysis/motion/controlled_rodas5p.hpp"
 #include "limcycle/analysis/motion/explicit_steppers.hpp"
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/transition.hpp"
 
 namespace limcycle {
 namespace {
 
 constexpr std::size_t section_guard = std::numeric_limits<std::size_t>::max();
-constexpr std::array<std::pair<StepperKind, std::string_view>, 5> names{{{StepperKind::automatic, "auto"},
+constexpr std::array<std::pair<StepperKind, std::string_view>, 6> names{{{StepperKind::automatic, "auto"},
+                                                                         {StepperKind::exact, "exact"},
                                                                          {StepperKind::rodas5p, "rodas5p"},
                                                                          {StepperKind::dopri5, "dopri5"},
                                                                          {StepperKind::fehlberg78, "fehlberg78"},
                                                                          {StepperKind::cash_karp54, "cash-karp54"}}};
 
-using AnyStepper = std::variant<ControlledRodas5p, ControlledDopri5, ControlledFehlberg78, ControlledCashKarp54>;
+/// Matrix exponentials instead of a stepper.
+struct ExactStepper {
+  AffineFlow flow;
+  State tolerance;         ///< up to which the cubic through the ends of a step must be right
+  Eigen::MatrixXd last{};  ///< exponential of the last step, tried or repeated
+  State rate_at_end, middle;
+};
 
-AnyStepper make(StepperKind kind, const ErrorWeights& w) {
+using AnyStepper =
+    std::variant<ControlledRodas5p, ControlledDopri5, ControlledFehlberg78, ControlledCashKarp54, ExactStepper>;
+
+AnyStepper make(StepperKind kind, const ErrorWeights& w, LoopField& field) {
   switch (kind) {
+    case StepperKind::exact:
+      return ExactStepper{AffineFlow(field), typical_sizes(field.loop()), {}, {}, {}};
     case StepperKind::dopri5:
       return make_dopri5(w);
     case StepperKind::fehlberg78:
@@ -55,12 +70,13 @@ bool finite(const State& x) {
 StepperKind stepper_kind(const std::string& name) {
   for (const auto& [kind, text] : names)
     if (text == name) return kind;
-  throw std::invalid_argument("stepper must be auto, rodas5p, dopri5, fehlberg78 or cash-karp54, got " + name);
+  throw std::invalid_argument("stepper must be auto, exact, rodas5p, dopri5, fehlberg78 or cash-karp54, got " + name);
 }
 
 std::string_view to_string(StepperKind kind) { return names[static_cast<std::size_t>(kind)].second; }
 
-StepperKind choose_stepper(const Loop& loop, double rtol) {
+StepperKind choose_stepper(const Loop& loop, double rtol, bool driven) {
+  if (!driven && AffineFlow::applies(loop)) return StepperKind::exact;
   const bool bristle = std::ranges::any_of(loop.elements, [](const auto& element) {
     return std::visit([](const auto& e) { return e.states() > 0 && std::isfinite(e.scales().displacement); }, element);
   });
@@ -91,9 +107,12 @@ March::March(March&&) noexcept = default;
 
 March::March(LoopField& field, StepperKind kind, ErrorWeights weights)
     : field_(field),
-      kind_(kind == StepperKind::automatic ? choose_stepper(field.loop(), weights.rtol) : kind),
-      stepper_(std::make_unique<Stepper>(Stepper{make(kind_, weights)})),
-      weights_(std::move(weights)) {}
+      kind_(kind == StepperKind::automatic ? choose_stepper(field.loop(), weights.rtol, field.driven()) : kind),
+      stepper_(std::make_unique<Stepper>(Stepper{make(kind_, weights, field)})),
+      weights_(std::move(weights)) {
+  if (kind_ == StepperKind::exact && (field.driven() || !AffineFlow::applies(field.loop())))
+    throw std::invalid_argument("simulate.stepper exact is for loops of piecewise affine elements without signals");
+}
 
 void March::begin(State x, double t, std::optional<Section> section) {
   x_ = std::move(x);
@@ -116,13 +135,46 @@ double March::first_dt() {
   return std::clamp(h, 1e-12 * (1.0 + std::abs(t_)), 1.0);
 }
 
+/// An exact step; fails if the cubic through its ends is too far from the motion in the middle. Unless it must end at a
+/// given time its length is a power of two, whose exponential is kept.
+bool March::try_exact(double& dt) {
+  auto& exact = std::get<ExactStepper>(stepper_->any);
+  const int k = static_cast<int>(std::floor(std::log2(dt)));
+  const double h = truncated_ ? dt : std::ldexp(1.0, k);
+  exact.last = truncated_ ? exact.flow.over(h) : exact.flow.over_power(k);
+  AffineFlow::apply(exact.last, x_, step_.x1);
+  AffineFlow::apply(truncated_ ? exact.flow.over(0.5 * h) : exact.flow.over_power(k - 1), x_, exact.middle);
+  field_.rate(step_.x1, exact.rate_at_end, t_ + h);
+  double error = 0.0;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double cubic = 0.5 * (x_[i] + step_.x1[i]) + 0.125 * h * (step_.dx0[i] - exact.rate_at_end[i]);
+    const double size = std::max(std::abs(x_[i]), 1e-3 * exact.tolerance[i]);
+    error = std::max(error, std::abs(cubic - exact.middle[i]) / (1e-6 * size));
+  }
+  const double factor = std::clamp(0.9 * std::pow(std::max(error, 1e-12), -0.25), 0.125, 4.0);
+  if (!(error <= 1.0) && h > 1e-14 * std::max(1.0, std::abs(t_))) {
+    dt = std::min(0.5, factor) * h;
+    truncated_ = false;
+    return false;
+  }
+  dt = factor * h;
+  step_.t1 = t_ + h;
+  return true;
+}
+
 bool March::try_step(double& dt) {
   step_.x1 = x_;
   step_.t1 = t_;
+  if (kind_ == StepperKind::exact) {
+    if (try_exact(dt)) return finite(step_.x1);
+    return false;
+  }
   const double tried = dt;
   const auto result = std::visit(
       [&]<class S>(S& stepper) {
-        if constexpr (std::is_same_v<S, ControlledRodas5p>)
+        if constexpr (std::is_same_v<S, ExactStepper>)
+          return boost::numeric::odeint::fail;
+        else if constexpr (std::is_same_v<S, ControlledRodas5p>)
           return stepper.try_step(implicit_system(field_), step_.x1, step_.t1, dt);
         else
           return stepper.try_step(right_side(field_), step_.x1, step_.t1, dt);
@@ -138,7 +190,10 @@ bool March::try_step(double& dt) {
 void March::repeat(double h, State& out) {
   std::visit(
       [&]<class S>(S& stepper) {
-        if constexpr (std::is_same_v<S, ControlledRodas5p>) {
+        if constexpr (std::is_same_v<S, ExactStepper>) {
+          stepper.last = stepper.flow.over(h);
+          AffineFlow::apply(stepper.last, step_.x0, out);
+        } else if constexpr (std::is_same_v<S, ControlledRodas5p>) {
           stepper.stepper().repeat_step(implicit_system(field_), out, h, unused_);
         } else {
           typename S::stepper_type fresh;  // Odeint's own keeps the rate of another point
@@ -146,6 +201,14 @@ void March::repeat(double h, State& out) {
         }
       },
       stepper_->any);
+}
+
+/// Derivative of the end of the present step over its start, before any switch.
+Eigen::MatrixXd March::smooth_transition() {
+  const auto n = static_cast<Eigen::Index>(x_.size());
+  if (step_.t1 == step_.t0) return Eigen::MatrixXd::Identity(n, n);
+  if (kind_ == StepperKind::exact) return std::get<ExactStepper>(stepper_->any).last.topLeftCorner(n, n);
+  return transition(field_, step_);
 }
 
 Status March::step(double t_end) {
@@ -168,6 +231,7 @@ Status March::step(double t_end) {
   }
   double dt = std::min({dt_, dt_max_, t_end - t_});
   const bool shortened = dt < dt_;
+  truncated_ = dt == t_end - t_;
   while (!try_step(dt)) {
     if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12))) return finite(step_.x1) ? Status::stalled : Status::not_finite;
   }
@@ -178,22 +242,23 @@ Status March::step(double t_end) {
   double from = 0.0, to = 1.0;
   std::size_t guard = 0;
   if (negative_within(guards_start_, from, to, guard)) return land(guard, locate(guard, from, to));
+  if (tracks_) step_.transition = smooth_transition();
   x_ = step_.x1;
   t_ = step_.t1;
-  if (section_ && section_->value(x_) < 0.0) armed_ = true;
+  if (section_ && section_->before(x_)) armed_ = true;
   return Status::converged;
 }
 
-double March::event_value(std::size_t guard, const State& x) {
+double March::event_value(std::size_t guard, const State& x, double t) {
   if (guard == section_guard) return -section_->value(x);
-  field_.guards(x, step_.t0, guards_mid_);
+  field_.guards(x, t, guards_mid_);
   return guards_mid_[guard];
 }
 
 /// Looks at quarters of the step for the first guard that has turned negative, and brackets it by fractions of the
 /// step.
 bool March::negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard) {
-  const bool watch_section = section_ && (armed_ || section_->value(step_.x0) < 0.0);
+  const bool watch_section = section_ && (armed_ || section_->before(step_.x0));
   if (at_start.empty() && !(watch_section && section_->value(step_.x1) >= 0.0)) return false;
   for (int quarter = 1; quarter <= 4; ++quarter) {
     to = 0.25 * quarter;
@@ -232,13 +297,13 @@ double March::locate(std::size_t guard, double from, double to) {
   for (int i = 0; i < 30; ++i) {
     const double mid = 0.5 * (a + b);
     step_.interpolate(mid, work_);
-    (event_value(guard, work_) >= 0.0 ? a : b) = mid;
+    (event_value(guard, work_, step_.t0 + mid * h) >= 0.0 ? a : b) = mid;
   }
   double low = from * h, high = to * h, at = 0.5 * (a + b) * h;
   double previous = 0.0, previous_value = 0.0, best = at, best_value = infinite;
   for (int i = 0; i < 60; ++i) {
     repeat(at, work_);
-    const double value = event_value(guard, work_);
+    const double value = event_value(guard, work_, step_.t0 + at);
     if (std::abs(value) < best_value) {
       best = at;
       best_value = std::abs(value);
@@ -264,6 +329,7 @@ Status March::land(std::size_t guard, double h) {
   step_.t1 = step_.t0 + h;
   field_.rate(step_.x1, step_.dx1, step_.t1);
   if (!finite(step_.x1) || !finite(step_.dx1)) return Status::not_finite;
+  if (tracks_) step_.transition = smooth_transition();
   x_ = step_.x1;
   t_ = step_.t1;
   fresh_ = true;
@@ -273,7 +339,15 @@ Status March::land(std::size_t guard, double h) {
     return Status::converged;
   }
   step_.switched = field_.owner(guard);
-  field_.fire(x_, t_, guard);
+  if (tracks_) {
+    Eigen::MatrixXd saltation;
+    if (field_.fire(x_, t_, guard, saltation))
+      step_.transition = saltation * step_.transition;
+    else
+      step_.transition.resize(0, 0);
+  } else {
+    field_.fire(x_, t_, guard);
+  }
   ++events_;
   event_times_.push_back(t_);
   if (event_times_.size() > 50) event_times_.pop_front();

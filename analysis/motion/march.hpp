@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -11,15 +12,16 @@
 
 namespace limcycle {
 
-enum class StepperKind { automatic, rodas5p, dopri5, fehlberg78, cash_karp54 };
+enum class StepperKind { automatic, exact, rodas5p, dopri5, fehlberg78, cash_karp54 };
 
 /// Name as in a case file; throws std::invalid_argument for an unknown one.
 StepperKind stepper_kind(const std::string& name);
 std::string_view to_string(StepperKind kind);
 
-/// The stiff stepper for loops with bristle laws or a stiff linear part, else an explicit one of Odeint: of order 8 for
-/// tight tolerances, of order 5 for loose ones.
-StepperKind choose_stepper(const Loop& loop, double rtol);
+/// Matrix exponentials for loops of piecewise affine elements, the stiff stepper for loops with bristle laws or a stiff
+/// linear part, else an explicit one of Odeint: of order 8 for tight tolerances, of order 5 for loose ones.
+/// `driven`: signals of time act from outside, so that matrix exponentials do not apply.
+StepperKind choose_stepper(const Loop& loop, double rtol, bool driven = false);
 
 /// A surface C X = level in the space of the linear states, crossed in one direction (+1 upwards, -1 downwards).
 struct Section {
@@ -29,6 +31,12 @@ struct Section {
   double value(const State& x) const {
     return direction * ((C * Eigen::Map<const Eigen::VectorXd>(x.data(), C.size())).value() - level);
   }
+  /// Clearly on the side that the crossing comes from, beyond the rounding of a point that was landed on the surface.
+  bool before(const State& x) const {
+    const double size =
+        std::abs(level) + C.cwiseAbs() * Eigen::Map<const Eigen::VectorXd>(x.data(), C.size()).cwiseAbs();
+    return value(x) < -1e-12 * size;
+  }
 };
 
 /// One accepted step, in which the field is smooth.
@@ -37,12 +45,17 @@ struct Step {
   State x0, x1, dx0, dx1;
   std::optional<std::size_t> switched;  ///< the element that switched at t1
   bool on_section = false;              ///< t1 is a crossing of the section
+  /// d(state after the step, and after the switch at its end)/dx0, if the march tracks it; empty where a switch was not
+  /// crossed transversally.
+  Eigen::MatrixXd transition;
 
   /// State at t0 + theta (t1 - t0), 0 <= theta <= 1: cubic through values and rates, error O(h^4).
   void interpolate(double theta, State& x) const;
 };
 
 /// Marches a loop step by step through located events: no step spans a switch, no event is stepped over.
+/// With StepperKind::exact a step has no error; its length is such that the cubic through its ends is right to 1e-6 of
+/// the sizes, so that no event between them is overlooked.
 /// An event is located by repeating the step with other lengths until the guard is zero to rounding, so its time is as
 /// accurate as the stepper itself. Events that accumulate end the march with Status::chattering.
 class March {
@@ -65,16 +78,19 @@ class March {
   long events() const { return events_; }
   StepperKind kind() const { return kind_; }
   void limit_step(double dt_max) { dt_max_ = dt_max; }
+  /// Compute Step::transition from now on (autonomous loops only).
+  void track() { tracks_ = true; }
 
  private:
-  struct Stepper;  ///< one of Odeint's controlled steppers or our own
+  struct Stepper;  ///< one of Odeint's controlled steppers, our own, or the exact flow
 
   bool try_step(double& dt);
+  bool try_exact(double& dt);
+  Eigen::MatrixXd smooth_transition();
   void repeat(double h, State& out);
   double first_dt();
-  void find_event();
   bool negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard);
-  double event_value(std::size_t guard, const State& x);
+  double event_value(std::size_t guard, const State& x, double t);
   double locate(std::size_t guard, double from, double to);
   Status land(std::size_t guard, double h);
 
@@ -86,7 +102,7 @@ class March {
   bool armed_ = false;
   State x_, work_, unused_;
   double t_ = 0.0, dt_ = 0.0, dt_max_ = infinite;
-  bool fresh_ = true;
+  bool fresh_ = true, tracks_ = false, truncated_ = false;
   long steps_ = 0, events_ = 0;
   Step step_;
   std::deque<double> event_times_;

@@ -66,7 +66,7 @@ ErrorWeights loop_weights(const Loop& loop, double rtol) {
         if (const double part = std::abs(row(static_cast<Index>(i))); part > 0.0)
           weights.atol[i] = std::min(weights.atol[i], scale / part);
     };
-    if (loop.ports[k].path != "loop.friction") continue;
+    if (!loop.ports[k].rubs) continue;
     limit(loop.ports[k].C, scales.displacement);
     limit(loop.ports[k].C_v, scales.velocity);
   }

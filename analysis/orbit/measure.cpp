@@ -33,7 +33,7 @@ std::size_t element_of_interest(const Loop& loop) { return loop.elements.size() 
 
 /// |v| below which a body counts as sticking: vs/100, or rest to rounding for laws without a Stribeck velocity.
 double sticking_speed(const Loop& loop, const Trace& trace) {
-  if (loop.ports[element_of_interest(loop)].path != "loop.friction") return -1.0;  // nothing rubs
+  if (!loop.ports[element_of_interest(loop)].rubs) return -1.0;
   const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements[element_of_interest(loop)]);
   if (std::isfinite(scales.velocity)) return scales.velocity / 100.0;
   double fastest = 0.0;
@@ -56,7 +56,40 @@ double sticking_time(const Trace& trace, double limit) {
   return stuck;
 }
 
+/// Harmonics 0..H of a periodic signal given with its rate, as in input_harmonics().
+Eigen::VectorXcd harmonics(const std::vector<double>& t, const std::vector<double>& y, const std::vector<double>& rate,
+                           double period, int H) {
+  const double w = 2.0 * std::numbers::pi / period;
+  // Gauss-Legendre, 4 points a step: exact for the cubic, and the steps are short against the period.
+  constexpr std::array<double, 4> node{0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
+                                       0.93056815579702629};
+  constexpr std::array<double, 4> weight{0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
+                                         0.17392742256872693};
+  Eigen::VectorXcd sum = Eigen::VectorXcd::Zero(H + 1);
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    const Cubic01 cubic = piece(t, y, rate, i);
+    const double h = t[i + 1] - t[i];
+    for (std::size_t k = 0; k < node.size(); ++k) {
+      const double part = cubic.at(node[k]) * h * weight[k], angle = w * (t[i] + node[k] * h);
+      for (int n = 0; n <= H; ++n) sum(n) += part * std::complex<double>(std::sin(n * angle), std::cos(n * angle));
+    }
+  }
+  sum *= 2.0 / period;
+  sum(0) *= 0.5;
+  return sum;
+}
+
 }  // namespace
+
+Eigen::VectorXcd input_harmonics(const Cycle& cycle, int H) {
+  const Trace& trace = cycle.trace;
+  // The rate of the input: a rubbing velocity may differ from it by a constant, and the input is periodic.
+  const double drift =
+      harmonics(trace.t, trace.velocity, std::vector<double>(trace.t.size(), 0.0), cycle.period, 0)(0).imag();
+  std::vector<double> rate = trace.velocity;
+  for (double& v : rate) v -= drift;
+  return harmonics(trace.t, trace.input, rate, cycle.period, H);
+}
 
 void append(Trace& trace, LoopField& field, const State& x, const State& dx, double t) {
   const std::size_t i = element_of_interest(field.loop());
@@ -112,25 +145,9 @@ void measure(const Loop& loop, Cycle& cycle) {
   const Trace& trace = cycle.trace;
   const auto [low, high] = extremes(trace);
   cycle.amplitude = 0.5 * (high - low);
-  const double w = 2.0 * std::numbers::pi / cycle.period;
-  // Gauss-Legendre, 4 points a step: exact for the cubic, and the steps are short against the period.
-  constexpr std::array<double, 4> node{0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
-                                       0.93056815579702629};
-  constexpr std::array<double, 4> weight{0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
-                                         0.17392742256872693};
-  double mean = 0.0, cosine = 0.0, sine = 0.0;
-  for (std::size_t i = 0; i + 1 < trace.t.size(); ++i) {
-    const Cubic01 cubic = piece(trace.t, trace.y, trace.rate, i);
-    const double h = trace.t[i + 1] - trace.t[i];
-    for (std::size_t k = 0; k < node.size(); ++k) {
-      const double y = cubic.at(node[k]) * h * weight[k], angle = w * (trace.t[i] + node[k] * h);
-      mean += y;
-      cosine += y * std::cos(angle);
-      sine += y * std::sin(angle);
-    }
-  }
-  cycle.offset = mean / cycle.period;
-  cycle.first_harmonic = 2.0 * std::hypot(cosine, sine) / cycle.period;
+  const Eigen::VectorXcd y = harmonics(trace.t, trace.y, trace.rate, cycle.period, 1);
+  cycle.offset = y(0).imag();
+  cycle.first_harmonic = std::abs(y(1));
   cycle.sticking_fraction = std::clamp(sticking_time(trace, sticking_speed(loop, trace)) / cycle.period, 0.0, 1.0);
 }
 

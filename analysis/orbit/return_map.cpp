@@ -9,13 +9,26 @@ namespace limcycle {
 
 LoopState Reflection::of(const Loop& loop, const LoopState& state) const {
   LoopState mirrored = state;
+  const Eigen::VectorXd sign = signs(loop);
   for (std::size_t i = 0; i < mirrored.x.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    mirrored.x[i] = (k < centre.size() ? 2.0 * centre(k) : 0.0) - state.x[i];
+    mirrored.x[i] = (k < centre.size() ? 2.0 * centre(k) : 0.0) + sign(k) * state.x[i];
   }
   for (std::size_t i = 0; i < mirrored.modes.size(); ++i)
     mirrored.modes[i] = std::visit([&](const auto& e) { return e.mirror(state.modes[i]); }, loop.elements[i]);
   return mirrored;
+}
+
+Eigen::VectorXd Reflection::signs(const Loop& loop) {
+  std::vector<double> sign(static_cast<std::size_t>(loop.states()), -1.0);
+  for (const auto& element : loop.elements)
+    std::visit(
+        [&]<class E>(const E& e) {
+          constexpr bool even = requires { requires E::even_states; };
+          sign.insert(sign.end(), static_cast<std::size_t>(e.states()), even ? 1.0 : -1.0);
+        },
+        element);
+  return Eigen::Map<const Eigen::VectorXd>(sign.data(), std::ssize(sign));
 }
 
 std::optional<Reflection> symmetry(const Loop& loop) {
@@ -27,8 +40,7 @@ std::optional<Reflection> symmetry(const Loop& loop) {
   for (const Port& port : loop.ports) {
     const double input = (port.C * rest + port.c * loop.external).value();
     const double rate = (port.C_v * rest + port.c_v * loop.external).value();
-    const bool rubs = port.path == "loop.friction";  // a friction law minds where it is only by its own state
-    if (std::abs(rate) > 1e-12 || (!rubs && std::abs(input) > 1e-12)) return std::nullopt;
+    if (std::abs(rate) > 1e-12 || (!port.rubs && std::abs(input) > 1e-12)) return std::nullopt;
   }
   return Reflection{rest};
 }
@@ -39,13 +51,18 @@ ReturnMap::ReturnMap(const Loop& loop, Section section, std::optional<Reflection
 ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
   Result result;
   field_.modes() = from.modes;
-  March march(field_, StepperKind::automatic, loop_weights(*loop_, options_.rtol));
+  // The variational equations follow the interpolated step: that of a method of low order, whose steps are short.
+  const bool exact = choose_stepper(*loop_, options_.rtol) == StepperKind::exact;
+  const auto kind = options_.derivative && !exact ? StepperKind::rodas5p : StepperKind::automatic;
+  March march(field_, kind, loop_weights(*loop_, options_.rtol));
+  if (options_.derivative) march.track();
   march.begin(from.x, 0.0, target);
   result.largest.assign(from.x.size(), 0.0);
   do {
     if (options_.stop && options_.stop()) result.status = Status::interrupted;
     if (march.steps() > options_.max_steps) result.status = Status::max_iterations;
     if (result.status == Status::converged) result.status = march.step(infinite);
+    if (options_.derivative && result.status == Status::converged) result.factors.push_back(march.last().transition);
     for (std::size_t i = 0; i < result.largest.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const double centre = half_ && k < half_->centre.size() ? half_->centre(k) : 0.0;
@@ -55,7 +72,31 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
   steps_ += march.steps();
   result.state = {march.x(), field_.modes()};
   result.time = march.t();
+  if (options_.derivative && result.status == Status::converged) close_derivative(result, from, target);
   return result;
+}
+
+/// Projects along the flow onto the section, multiplies the factors, and checks that the flow is carried to itself.
+void ReturnMap::close_derivative(Result& result, const LoopState& from, const Section& target) {
+  for (const auto& factor : result.factors)
+    if (factor.size() == 0) return result.factors.clear();
+  const auto n = static_cast<Eigen::Index>(from.x.size());
+  State rate_start, rate_end;
+  field_.rate(result.state.x, rate_end, 0.0);
+  field_.modes() = from.modes;
+  field_.rate(from.x, rate_start, 0.0);
+  const Eigen::Map<const Eigen::VectorXd> f0(rate_start.data(), n), f1(rate_end.data(), n);
+  Eigen::RowVectorXd normal = Eigen::RowVectorXd::Zero(n);
+  normal.head(target.C.size()) = target.C;
+  const double crossing = normal * f1;
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Identity(n, n);
+  for (const auto& factor : result.factors) whole = (factor * whole).eval();
+  const State typical = typical_sizes(*loop_);
+  const Eigen::VectorXd size = Eigen::Map<const Eigen::VectorXd>(result.largest.data(), n)
+                                   .cwiseMax(1e-6 * Eigen::Map<const Eigen::VectorXd>(typical.data(), n));
+  result.flow_defect = (whole * f0 - f1).cwiseQuotient(size).norm() / f1.cwiseQuotient(size).norm();
+  result.time_gradient = -normal * whole / crossing;
+  result.derivative = whole + f1 * result.time_gradient;
 }
 
 ReturnMap::Result ReturnMap::approach(const LoopState& from) { return run(from, section_); }
@@ -65,6 +106,11 @@ ReturnMap::Result ReturnMap::operator()(const LoopState& from) {
   const double middle = (section_.C * half_->centre).value();
   Result result = run(from, Section{section_.C, 2.0 * middle - section_.level, -section_.direction});
   result.state = half_->of(*loop_, result.state);
+  if (result.derivative.size() > 0) {
+    const Eigen::VectorXd sign = Reflection::signs(*loop_);
+    result.derivative = sign.asDiagonal() * result.derivative;
+    result.factors.back() = sign.asDiagonal() * result.factors.back();
+  }
   return result;
 }
 

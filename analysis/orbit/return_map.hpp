@@ -14,25 +14,37 @@ struct Reflection {
   Eigen::VectorXd centre;  ///< linear states; element states are reflected at 0
 
   LoopState of(const Loop& loop, const LoopState& state) const;
+  /// Its derivative, a diagonal of -1 (+1 for states that a mirrored element shares, such as timers).
+  static Eigen::VectorXd signs(const Loop& loop);
 };
 
 /// The reflection, if every element is odd and none is biased at the rest point of the linear part.
 std::optional<Reflection> symmetry(const Loop& loop);
 
 /// First return to a section, or with a reflection half of it: the flow to the mirrored section, reflected back.
-/// One object serves one thread; a map costs the integration of one (half) period.
+/// With `derivative` it also carries small deviations along: variational equations in between, saltation at every
+/// switch (see LoopField::fire), projection along the flow at the end. One object serves one thread; a map costs the
+/// integration of one (half) period, about twice that with the derivative.
 class ReturnMap {
  public:
   struct Options {
     double rtol = 1e-11;
     long max_steps = 200000;
     std::function<bool()> stop;
+    bool derivative = false;
   };
   struct Result {
     Status status = Status::converged;
     LoopState state;    ///< on the section
     double time = 0.0;  ///< of the (half) period
     State largest;  ///< largest |state| met, per component (linear states from the centre of the reflection, if any)
+
+    // Only with `derivative`, and only if every switch was crossed transversally (else empty):
+    Eigen::MatrixXd derivative;            ///< d(state)/d(from), over all states; its image is tangent to the section
+    Eigen::RowVectorXd time_gradient;      ///< d(time)/d(from)
+    std::vector<Eigen::MatrixXd> factors;  ///< step by step, the first acts first, before the projection
+    double flow_defect = 0.0;  ///< how well the unprojected derivative carries the rate at the start to that at the
+                               ///< end, relative: the error of the trivial multiplier 1
   };
 
   ReturnMap(const Loop& loop, Section section, std::optional<Reflection> half, Options options);
@@ -48,9 +60,11 @@ class ReturnMap {
   const Options& options() const { return options_; }
   long steps() const { return steps_; }
   void set_rtol(double rtol) { options_.rtol = rtol; }
+  void set_derivative(bool derivative) { options_.derivative = derivative; }
 
  private:
   Result run(const LoopState& from, const Section& target);
+  void close_derivative(Result& result, const LoopState& from, const Section& target);
 
   const Loop* loop_;
   LoopField field_;

@@ -56,7 +56,7 @@ class RestWatch {
 
 /// Speed above which a friction law counts as rubbing; infinite if nothing rubs.
 double rubbing_speed(const Loop& loop) {
-  if (loop.ports.back().path != "loop.friction") return infinite;
+  if (!loop.ports.back().rubs) return infinite;
   const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
   return std::isfinite(scales.velocity) ? scales.velocity / 100.0 : 1e-12;
 }
@@ -265,7 +265,6 @@ Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& op
 }
 
 LoopState displaced(const Loop& loop, double displacement) {
-  LoopField field(loop);
   bool exact = false;
   const Eigen::VectorXd rest = loop.rest_point(exact);
   const State sizes = typical_sizes(loop);
@@ -274,12 +273,7 @@ LoopState displaced(const Loop& loop, double displacement) {
   for (Eigen::Index i = 0; i < direction.size(); ++i)
     direction(i) *= sizes[static_cast<std::size_t>(i)] * sizes[static_cast<std::size_t>(i)];
   direction /= (loop.C_y * direction).value();
-  LoopState state{State(field.size(), 0.0), std::vector<Mode>(loop.elements.size())};
-  Eigen::Map<Eigen::VectorXd>(state.x.data(), rest.size()) = rest + displacement * direction;
-  field.modes() = state.modes;
-  field.start(state.x, 0.0);
-  state.modes = field.modes();
-  return state;
+  return without_history(loop, rest + displacement * direction);
 }
 
 }  // namespace limcycle

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/floquet.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
 
 namespace limcycle {
@@ -38,6 +39,11 @@ struct Chart {
   VectorXd coordinates(const State& x, const State& origin) const {
     return basis.transpose() * (as_vector(x) - as_vector(origin)).cwiseQuotient(scale);
   }
+  MatrixXd into(const MatrixXd& factor) const {
+    return scale.cwiseInverse().asDiagonal() * factor * scale.asDiagonal();
+  }
+  /// Derivative of a map of the section to itself.
+  MatrixXd of(const MatrixXd& derivative) const { return basis.transpose() * into(derivative) * basis; }
 };
 
 /// Newton on the return map.
@@ -60,16 +66,17 @@ class Shooter {
   }
 
   /// Brings the residual below the tolerance; on return state_ is the best point and residual_ its residual.
-  Status solve() {
+  Status solve(double rtol, double tolerance) {
+    map_.set_rtol(rtol);
     chart_.emplace(map_.section(), largest_, typical_);
     auto image = map(state_);
     if (image.status != Status::converged) return image.status;
     VectorXd r = residual(image);
     bool fresh = false;
-    while (r.norm() > options_.tolerance) {
+    while (r.norm() > tolerance) {
       if (maps_ > options_.max_maps) return Status::max_iterations;
       if (jacobian_.size() == 0) {
-        if (const Status status = difference(false); status != Status::converged) return status;
+        if (const Status status = linearise(std::max(rtol, 1e-8)); status != Status::converged) return status;
         fresh = true;
       }
       if (newton(image, r, fresh)) {
@@ -77,7 +84,7 @@ class Shooter {
         continue;
       }
       if (image.status == Status::interrupted) return image.status;
-      if (r.norm() < 100.0 * options_.tolerance) break;  // the floor of the integration itself
+      if (r.norm() < 100.0 * tolerance) break;  // the floor of the integration itself
       if (!fresh) {
         jacobian_.resize(0, 0);  // the kept Jacobian is too old
         continue;
@@ -96,10 +103,46 @@ class Shooter {
     return Status::converged;
   }
 
+  /// Derivative of the map at state_, integrated at its own tolerance. Status stalled: a switch is grazed there.
+  Status linearise(double rtol) {
+    const double kept = map_.options().rtol;
+    map_.set_rtol(rtol);
+    map_.set_derivative(true);
+    linear_ = map(state_);
+    map_.set_rtol(kept);
+    map_.set_derivative(false);
+    if (linear_.status != Status::converged) return linear_.status;
+    if (linear_.derivative.size() == 0) return Status::stalled;
+    jacobian_ = chart_->of(linear_.derivative);
+    return Status::converged;
+  }
+
+  /// Multipliers of the (half) map, from the factors of its derivative; the trivial one, taken out, tells their error.
+  std::vector<std::complex<double>> multipliers(double& trivial_error) const {
+    auto factors = linear_.factors;
+    for (auto& factor : factors) factor = chart_->into(factor);
+    auto values = product_eigenvalues(factors);
+    const auto trivial =
+        std::ranges::min_element(values, {}, [](const std::complex<double>& value) { return std::abs(value - 1.0); });
+    trivial_error = std::max(linear_.flow_defect, std::abs(*trivial - 1.0));
+    values.erase(trivial);
+    return values;
+  }
+
+  const LoopState& state() const { return state_; }
+  double period() const { return map_.half() ? 2.0 * time_ : time_; }
+  double residual_size() const { return residual_; }
+  bool half() const { return map_.half(); }
+  int maps() const { return maps_; }
+
+ private:
   /// One damped Newton step from state_ with residual r; moves there and returns true if the residual falls enough: to
   /// a third with an old Jacobian, at all with a fresh one (which is worth shorter steps).
   bool newton(ReturnMap::Result& image, VectorXd& r, bool fresh) {
-    const VectorXd step = -(jacobian_ - MatrixXd::Identity(r.size(), r.size())).partialPivLu().solve(r);
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> system;
+    system.setThreshold(1e-7);
+    system.compute(jacobian_ - MatrixXd::Identity(r.size(), r.size()));
+    const VectorXd step = -system.solve(r);
     LoopState trial = state_;
     double damping = 1.0;
     for (int halvings = 0; halvings < (fresh ? 6 : 1); ++halvings, damping *= 0.5) {
@@ -120,41 +163,6 @@ class Shooter {
     return false;
   }
 
-  /// Jacobian of the map in chart coordinates, by one-sided or central differences.
-  Status difference(bool central) {
-    const Index m = chart_->basis.cols();
-    jacobian_.resize(m, m);
-    ReturnMap::Result base;
-    if (!central) {
-      base = map(state_);
-      if (base.status != Status::converged) return base.status;
-    }
-    for (Index k = 0; k < m; ++k) {
-      const VectorXd unit = VectorXd::Unit(m, k);
-      LoopState moved = state_;
-      moved.x = chart_->lift(state_.x, delta_ * unit);
-      const auto plus = map(moved);
-      if (plus.status != Status::converged) return plus.status;
-      if (central) {
-        moved.x = chart_->lift(state_.x, -delta_ * unit);
-        base = map(moved);
-        if (base.status != Status::converged) return base.status;
-      }
-      jacobian_.col(k) = chart_->coordinates(plus.state.x, base.state.x) / (central ? 2.0 * delta_ : delta_);
-    }
-    return Status::converged;
-  }
-
-  void set_rtol(double rtol) { map_.set_rtol(rtol); }
-  void set_delta(double delta) { delta_ = delta; }
-  const LoopState& state() const { return state_; }
-  double period() const { return map_.half() ? 2.0 * time_ : time_; }
-  double residual_size() const { return residual_; }
-  const MatrixXd& jacobian() const { return jacobian_; }
-  bool half() const { return map_.half(); }
-  int maps() const { return maps_; }
-
- private:
   ReturnMap::Result map(const LoopState& from) {
     ++maps_;
     return map_(from);
@@ -166,23 +174,11 @@ class Shooter {
   State typical_, largest_;
   std::optional<Chart> chart_;
   LoopState state_;
+  ReturnMap::Result linear_;
   MatrixXd jacobian_;
-  double residual_ = infinite, time_ = 0.0, delta_ = 1e-6;
+  double residual_ = infinite, time_ = 0.0;
   int maps_ = 0, stuck_ = 0;
 };
-
-/// Multipliers of the full period, largest first.
-std::vector<std::complex<double>> multipliers(const MatrixXd& jacobian, bool half) {
-  if (jacobian.size() == 0) return {};
-  const Eigen::VectorXcd values = jacobian.eigenvalues();
-  std::vector<std::complex<double>> result(values.begin(), values.end());
-  for (auto& value : result)
-    if (half) value *= value;
-  std::ranges::sort(result, [](auto a, auto b) {
-    return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
-  });
-  return result;
-}
 
 ShootingResult failed(Status status, const Shooter& shooter, std::string why) {
   ShootingResult result;
@@ -204,6 +200,27 @@ bool describe(const Loop& loop, const Shooter& shooter, double rtol, Cycle& cycl
   return true;
 }
 
+/// Multipliers at two tolerances, whose disagreement is their error, and the verdict they allow.
+void judge(Shooter& shooter, ShootingResult& result, bool exact) {
+  Cycle& cycle = result.cycle;
+  std::vector<std::complex<double>> rough;
+  double trivial = 0.0;
+  if (!exact) {
+    if (shooter.linearise(1e-9) != Status::converged) return;
+    rough = shooter.multipliers(trivial);
+  }
+  if (shooter.linearise(1e-10) != Status::converged) return;
+  cycle.multipliers = shooter.multipliers(result.trivial_error);
+  result.multiplier_error = 1e-12 + result.trivial_error;
+  for (std::size_t i = 0; i < rough.size(); ++i)
+    result.multiplier_error = std::max(result.multiplier_error, std::abs(rough[i] - cycle.multipliers[i]));
+  if (shooter.half())
+    for (auto& value : cycle.multipliers) value *= value;
+  const double largest = cycle.multipliers.empty() ? 0.0 : std::abs(cycle.multipliers.front());
+  if (result.trivial_error < 0.02 && std::abs(largest - 1.0) > 4.0 * result.multiplier_error)
+    cycle.stable = largest < 1.0;
+}
+
 }  // namespace
 
 Section choose_section(const Loop& loop, const Trace& trace) {
@@ -221,41 +238,32 @@ Section choose_section(const Loop& loop, const Trace& trace) {
 
 ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& section, bool half,
                      const ShootingOptions& options) {
-  const double loose = 30.0 * options.rtol;
+  const double coarse = std::max(1e-7, options.rtol), loose = 30.0 * options.rtol;
+  const bool exact = choose_stepper(loop, options.rtol) == StepperKind::exact;
   std::optional<Reflection> reflection;
   if (half) reflection = symmetry(loop);
-  Shooter shooter(loop, {loop, section, reflection, {loose, options.max_steps_per_map, options.stop}}, options);
+  Shooter shooter(loop, {loop, section, reflection, {coarse, options.max_steps_per_map, options.stop}}, options);
   Status status = shooter.warm_up(guess);
   if (status != Status::converged) return failed(status, shooter, "the motion did not return to the section");
-  status = shooter.solve();
+  if (!exact) status = shooter.solve(coarse, 30.0 * coarse);
+  const double tolerance = exact ? 1e-13 : options.tolerance;
+  if (status == Status::converged) status = shooter.solve(loose, tolerance);
   if (status != Status::converged) return failed(status, shooter, "no fixed point of the return map was reached");
   Cycle rough;
   if (!describe(loop, shooter, loose, rough))
     return failed(Status::stalled, shooter, "the cycle could not be followed");
 
-  shooter.set_rtol(options.rtol);
-  status = shooter.solve();
+  status = shooter.solve(options.rtol, tolerance);
   if (status != Status::converged) return failed(status, shooter, "the fixed point was lost at the tight tolerance");
   ShootingResult result;
-  if (!describe(loop, shooter, options.rtol, result.cycle))
-    return failed(Status::stalled, shooter, "the cycle could not be followed");
-
-  // Two difference steps: what they disagree by is the error of the multipliers.
-  shooter.set_delta(1e-5);
-  status = shooter.difference(true);
-  const MatrixXd coarse = shooter.jacobian();
-  shooter.set_delta(1e-6);
-  if (status == Status::converged) status = shooter.difference(true);
   Cycle& cycle = result.cycle;
-  cycle.method = "shooting";
+  if (!describe(loop, shooter, options.rtol, cycle))
+    return failed(Status::stalled, shooter, "the cycle could not be followed");
+  cycle.method = exact ? "exact" : "shooting";
+  const double floor = exact ? 1e-13 : 10.0 * options.rtol;
   cycle.error = std::max({std::abs(cycle.period / rough.period - 1.0),
-                          std::abs(cycle.amplitude / rough.amplitude - 1.0), cycle.residual, 10.0 * options.rtol});
-  if (status == Status::converged) {
-    cycle.multipliers = multipliers(shooter.jacobian(), shooter.half());
-    result.multiplier_error = (coarse - shooter.jacobian()).norm() + 1e-9;
-    const double largest = cycle.multipliers.empty() ? 0.0 : std::abs(cycle.multipliers.front());
-    if (std::abs(largest - 1.0) > 2.0 * result.multiplier_error) cycle.stable = largest < 1.0;
-  }
+                          std::abs(cycle.amplitude / rough.amplitude - 1.0), cycle.residual, floor});
+  judge(shooter, result, exact);
   result.status = Status::converged;
   result.maps = shooter.maps();
   return result;

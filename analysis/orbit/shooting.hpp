@@ -22,6 +22,7 @@ struct ShootingResult {
   std::string why;                ///< one sentence
   int maps = 0;                   ///< return maps computed
   double multiplier_error = 0.0;  ///< estimated absolute error of the Floquet multipliers of the map
+  double trivial_error = 0.0;     ///< by how much the trivial multiplier is off 1
 };
 
 /// Section through a trace on which the loop returns transversally: y at 27 % of its swing above the middle (off the
@@ -30,9 +31,15 @@ Section choose_section(const Loop& loop, const Trace& trace);
 
 /// Solves x = P(x) for the return map on `section`, from a guess near the cycle; of the half map if the loop has an odd
 /// symmetry and the guess shows it (`half`). A few plain maps first (cold Newton breaks down on stick-slip), then
-/// Newton with the Jacobian by differences, kept as long as it contracts, with plain maps as the fallback. The answer
-/// is solved for at two integration tolerances, whose disagreement is the error estimate; the Jacobian at the answer
-/// gives the multipliers. Finds unstable cycles as well (with warm_maps = 0).
+/// damped Newton with the exact derivative of the map (variational equations and saltation), kept as long as it
+/// contracts, with plain maps as the fallback. Where the derivative of P - x is singular (a family of cycles, a neutral
+/// direction) the step of least norm is taken, which is the bordered solution. Coarse integration first; the answer is
+/// solved for at two tight tolerances, whose disagreement is the error estimate. Finds unstable cycles as well (with
+/// warm_maps = 0).
+///
+/// Multipliers: eigenvalues of the product of the step derivatives (product_eigenvalues), so that those which contract
+/// strongly are right too. No verdict on stability if the largest is within its error of 1, or if the trivial
+/// multiplier is off 1 by more than 1e-3.
 ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& section, bool half,
                      const ShootingOptions& options = {});
 

@@ -33,26 +33,53 @@ std::optional<Complex> exact_gain(const Element<double>& element, double A, doub
       element);
 }
 
-bool is_friction(const Loop& loop, std::size_t i) { return loop.ports[i].path == "loop.friction"; }
+bool is_friction(const Loop& loop, std::size_t i) { return loop.ports[i].rubs; }
 
 }  // namespace
 
+/// Sorts all elements but the last into those beside it and the rest.
+LoopBalance::Sorted LoopBalance::sort(const Loop& loop) {
+  Sorted sorted;
+  const Port& main = loop.ports.back();
+  for (std::size_t i = 0; i + 1 < loop.elements.size(); ++i) {
+    const Port& port = loop.ports[i];
+    const double size = main.C.squaredNorm();
+    const double factor = size > 0.0 ? main.C.dot(port.C) / size : 0.0;
+    const bool same = factor != 0.0 && loop.delay == 0.0 && port.D.isZero() && main.D.isZero() &&
+                      (port.C - factor * main.C).norm() <= 1e-12 * port.C.norm();
+    if (same)
+      sorted.beside.push_back({i, factor});
+    else
+      sorted.others.push_back(i);
+  }
+  return sorted;
+}
+
 std::optional<std::string> LoopBalance::not_applicable(const Loop& loop) {
   const std::size_t n = loop.elements.size();
-  if (n > 2)
-    return "the plain describing function is for one nonlinear element with at most one saturated command beside it";
-  if (n == 2 && loop.ports[0].path == "loop.element")
-    return "the plain describing function is for one nonlinear element; this loop has both friction and a forward "
-           "element";
-  if (is_friction(loop, n - 1) || symmetry(loop)) return std::nullopt;
+  const Sorted sorted = sort(loop);
+  if (sorted.others.size() > 1)
+    return "the plain describing function is for one nonlinear element with at most one saturated command or error "
+           "element beside it";
+  const std::string other = sorted.others.empty() ? "" : loop.ports[sorted.others.front()].path;
+  if (other == "loop.element" || other == "loop.error.rate")
+    return "the plain describing function is for one nonlinear element; this loop has others with inputs of their own";
+  if (symmetry(loop)) return std::nullopt;
+  for (const auto& [index, factor] : sorted.beside)
+    if (loop.ports[index].path != "loop.controller.friction_compensation")
+      return "the loop is biased (load, reference, belt) and has an element on the error";
+  if (is_friction(loop, n - 1)) return std::nullopt;
   if (loop.A.fullPivLu().rank() < loop.A.rows())
     return "the loop is biased (load or reference) and integrates: the mean is not determined by a static balance";
-  if (n == 2) return "the loop is biased (load or reference) and its command is saturated";
+  if (n > 1) return "the loop is biased (load or reference) and has more than one element";
   return std::nullopt;
 }
 
 LoopBalance::LoopBalance(const Loop& loop)
     : loop_(&loop), main_(loop.elements.size() - 1), symmetric_(symmetry(loop).has_value()) {
+  const Sorted sorted = sort(loop);
+  beside_ = sorted.beside;
+  if (!sorted.others.empty()) other_ = sorted.others.front();
   if (!is_friction(loop, main_) || symmetric_) return;
   bool exact = false;
   const Port& port = loop.ports[main_];
@@ -96,19 +123,22 @@ Complex LoopBalance::gain(double amplitude, double frequency, double accuracy) c
   return result.gain;
 }
 
-/// The smallest amplitude a with a |1 - H_ss N_s(a)| = |H_sm W_m|, by a scan upwards and bisection.
-std::optional<LoopBalance::Others> LoopBalance::others(double main_output, double frequency, double accuracy) const {
-  if (main_ == 0) return std::nullopt;
-  const Eigen::MatrixXcd H = loop_->element_response(frequency);
-  const auto m = static_cast<Index>(main_);
-  const double wanted = std::abs(H(0, m)) * main_output;
-  const auto gain_at = [&](double a) {
-    const auto exact = exact_gain(loop_->elements[0], a, frequency, 0.0);
-    return exact ? *exact : df(loop_->elements[0], a, frequency, 0.0, accuracy).gain;
+Complex LoopBalance::other_gain(double input_amplitude, double frequency, double accuracy) const {
+  const auto exact = exact_gain(loop_->elements[*other_], input_amplitude, frequency, 0.0);
+  return exact ? *exact : df(loop_->elements[*other_], input_amplitude, frequency, 0.0, accuracy).gain;
+}
+
+/// Output of the other element when the rest put out W: its input amplitude is the smallest a with
+/// a |1 - H_oo N_o(a)| = |sum H_oj W_j|, by a scan upwards and bisection.
+Complex LoopBalance::other_output(const Eigen::MatrixXcd& H, const Eigen::VectorXcd& W, double frequency,
+                                  double accuracy) const {
+  const auto o = static_cast<Index>(*other_);
+  const Complex reached = H.row(o) * W;
+  const double wanted = std::abs(reached);
+  if (wanted == 0.0) return 0.0;
+  const auto excess = [&](double a) {
+    return a * std::abs(1.0 - H(o, o) * other_gain(a, frequency, accuracy)) - wanted;
   };
-  const auto excess = [&](double a) { return a * std::abs(1.0 - H(0, 0) * gain_at(a)) - wanted; };
-  Others result{0.0, 0.0};
-  if (wanted == 0.0) return result;
   double low = 0.0, high = 1e-3 * wanted;
   for (int i = 0; i < 400 && excess(high) < 0.0; ++i) {
     low = high;
@@ -118,40 +148,57 @@ std::optional<LoopBalance::Others> LoopBalance::others(double main_output, doubl
     const double mid = 0.5 * (low + high);
     (excess(mid) < 0.0 ? low : high) = mid;
   }
-  result.input_amplitude = 0.5 * (low + high);
-  const Complex N = gain_at(result.input_amplitude);
-  result.from_main = N * H(0, m) / (1.0 - H(0, 0) * N);
-  return result;
+  const Complex N = other_gain(0.5 * (low + high), frequency, accuracy);
+  return N * reached / (1.0 - H(o, o) * N);
 }
 
 Complex LoopBalance::operator()(double amplitude, double frequency, double accuracy) const {
-  const Complex N = gain(amplitude, frequency, accuracy);
-  if (!std::isfinite(N.real())) return undefined;
-  const Eigen::MatrixXcd H = loop_->element_response(frequency);
+  if (loop_->elements.size() == 1) {
+    const Complex N = gain(amplitude, frequency, accuracy);
+    return std::isfinite(N.real()) ? 1.0 - N * loop_->element_response(frequency)(0, 0) : undefined;
+  }
+  const Eigen::VectorXcd W = outputs(amplitude, frequency, accuracy);
+  if (!W.allFinite()) return undefined;
+  return 1.0 - (loop_->element_response(frequency).row(static_cast<Index>(main_)) * W).value() / amplitude;
+}
+
+Complex LoopBalance::response(double amplitude, double frequency, int order) const {
+  const Eigen::MatrixXcd H = loop_->element_response(order * frequency);
   const auto m = static_cast<Index>(main_);
-  Complex response = H(m, m);
-  if (const auto other = others(std::abs(N) * amplitude, frequency, accuracy)) response += H(m, 0) * other->from_main;
-  return 1.0 - N * response;
+  if (loop_->elements.size() == 1) return H(m, m);
+  Eigen::VectorXcd W = outputs(amplitude, frequency, 1e-9);
+  if (!other_) return (H.row(m) * W).value() / W(m);
+  const auto o = static_cast<Index>(*other_);
+  const Complex input = loop_->element_response(frequency).row(o) * W;
+  const Complex N = input == 0.0 ? 0.0 : W(o) / input;
+  W(o) = 0.0;
+  const Complex others = H.row(o) * W;
+  return ((H.row(m) * W).value() + H(m, o) * N * others / (1.0 - H(o, o) * N)) / W(m);
 }
 
 /// Phasors (sine reference) of all element outputs on the predicted oscillation.
-Eigen::VectorXcd LoopBalance::outputs(double amplitude, double frequency) const {
+Eigen::VectorXcd LoopBalance::outputs(double amplitude, double frequency, double accuracy) const {
   Eigen::VectorXcd W = Eigen::VectorXcd::Zero(std::ssize(loop_->elements));
-  const auto m = static_cast<Index>(main_);
-  W(m) = gain(amplitude, frequency, 1e-9) * amplitude;
-  if (const auto other = others(std::abs(W(m)), frequency, 1e-9)) W(0) = other->from_main * W(m);
+  W(static_cast<Index>(main_)) = gain(amplitude, frequency, accuracy) * amplitude;
+  for (const auto& [index, factor] : beside_) {
+    const double A = std::abs(factor) * amplitude;
+    const auto exact = exact_gain(loop_->elements[index], A, frequency, mean_velocity_);
+    const Complex N = exact ? *exact : df(loop_->elements[index], A, frequency, mean_velocity_, accuracy).gain;
+    W(static_cast<Index>(index)) = N * factor * amplitude;
+  }
+  if (other_) W(static_cast<Index>(*other_)) = other_output(loop_->element_response(frequency), W, frequency, accuracy);
   return W;
 }
 
 double LoopBalance::output_amplitude(double amplitude, double frequency) const {
-  return std::abs((loop_->output_response(frequency) * outputs(amplitude, frequency)).value());
+  return std::abs((loop_->output_response(frequency) * outputs(amplitude, frequency, 1e-9)).value());
 }
 
 std::optional<bool> LoopBalance::stable(double amplitude, double frequency, int index) const {
   if (index == 0) return std::nullopt;
   if (index < 0) return false;
   if (loop_->delay > 0.0) return std::nullopt;  // the other roots of a loop with delay are infinitely many
-  if (main_ != 0) return true;
+  if (loop_->elements.size() > 1) return true;
   // The quasi-linear loop, N acting as Re N + (Im N / w) d/dt: all its other roots must lie in the left half plane.
   const Port& port = loop_->ports[main_];
   const Complex N = gain(amplitude, frequency, 1e-9);
@@ -166,22 +213,21 @@ std::optional<bool> LoopBalance::stable(double amplitude, double frequency, int 
   return true;
 }
 
-LoopState LoopBalance::state(double amplitude, double frequency, double scale) const {
-  LoopField field(*loop_);
+Eigen::VectorXd LoopBalance::linear_state(double amplitude, double frequency, double phase, double scale) const {
   const Index n = loop_->states();
-  const Eigen::VectorXcd W = outputs(amplitude, frequency);
+  const Eigen::VectorXcd W = outputs(amplitude, frequency, 1e-9);
   Eigen::MatrixXcd M = Complex(0.0, frequency) * Eigen::MatrixXcd::Identity(n, n) - loop_->A.cast<Complex>();
-  const Eigen::VectorXcd X = M.partialPivLu().solve(loop_->B.cast<Complex>() * W);
+  if (loop_->delay > 0.0) M -= std::exp(Complex(0.0, -frequency * loop_->delay)) * loop_->A_delayed.cast<Complex>();
+  const Eigen::VectorXcd X = M.partialPivLu().solve(loop_->B.cast<Complex>() * W) * std::polar(1.0, phase);
   const double b = bias(amplitude, frequency, 1e-9);
   const double mean = df(loop_->elements[main_], amplitude, frequency, b, 1e-9).mean;
   const Eigen::VectorXd pull = loop_->E * loop_->external + loop_->B.col(static_cast<Index>(main_)) * mean;
-  LoopState state{State(field.size(), 0.0), std::vector<Mode>(loop_->elements.size())};
-  Eigen::Map<Eigen::VectorXd>(state.x.data(), n) =
-      scale * X.imag() + loop_->A.completeOrthogonalDecomposition().solve(-pull);
-  field.modes() = state.modes;
-  field.start(state.x, 0.0);
-  state.modes = field.modes();
-  return state;
+  const Eigen::MatrixXd still = loop_->A + loop_->A_delayed;
+  return scale * X.imag() + still.completeOrthogonalDecomposition().solve(-pull);
+}
+
+LoopState LoopBalance::state(double amplitude, double frequency, double scale) const {
+  return without_history(*loop_, linear_state(amplitude, frequency, 0.0, scale));
 }
 
 }  // namespace limcycle

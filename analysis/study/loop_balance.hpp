@@ -10,8 +10,9 @@
 namespace limcycle {
 
 /// First-harmonic balance of a loop: the describing function of its main element (the friction if there is one, else
-/// the forward element) against everything else. One more memoryless element (a saturated command) is eliminated by its
-/// own describing function at the amplitude that the main one causes.
+/// the forward element) against everything else. Elements that see the same input but for a factor (a friction
+/// compensation; a dead zone on the error of a rigid servo) act beside it. One more memoryless element (a saturated
+/// command, an element on the error) is eliminated by its own describing function at the amplitude that they cause.
 class LoopBalance {
  public:
   /// Why the plain describing function does not apply to this loop, or nothing.
@@ -29,23 +30,39 @@ class LoopBalance {
   std::optional<bool> stable(double amplitude, double frequency, int index) const;
   /// State of the loop on the predicted oscillation, the oscillating part times `scale`, elements without history.
   LoopState state(double amplitude, double frequency, double scale = 1.0) const;
+  /// Linear states of the loop on the predicted oscillation at a phase of the main element's input (0: rising zero).
+  Eigen::VectorXd linear_state(double amplitude, double frequency, double phase, double scale = 1.0) const;
 
   std::size_t main_element() const { return main_; }
   bool depends_on_frequency() const;
+  /// Response from the main element's output to its own input at `order` times the frequency of the oscillation, the
+  /// other element acting as its describing function at that oscillation; order 1 solves 1 - N response = 0.
+  std::complex<double> response(double amplitude, double frequency, int order) const;
+  /// Mean of the main element's input (friction: mean rubbing velocity) during the oscillation.
+  double bias(double amplitude, double frequency, double accuracy) const;
   /// Mean rubbing velocity (belt, ramp); 0 if the main element is not a friction law.
   double mean_velocity() const;
 
  private:
-  struct Others {
-    std::complex<double> from_main;  ///< phasor of the other element's output per unit output of the main one
-    double input_amplitude = 0.0;
+  /// An element whose input is `factor` times the main element's.
+  struct Beside {
+    std::size_t index;
+    double factor;
   };
-  std::optional<Others> others(double main_output, double frequency, double accuracy) const;
-  double bias(double amplitude, double frequency, double accuracy) const;
-  Eigen::VectorXcd outputs(double amplitude, double frequency) const;
+  struct Sorted {
+    std::vector<Beside> beside;
+    std::vector<std::size_t> others;
+  };
+  static Sorted sort(const Loop& loop);
+  std::complex<double> other_gain(double input_amplitude, double frequency, double accuracy) const;
+  std::complex<double> other_output(const Eigen::MatrixXcd& H, const Eigen::VectorXcd& W, double frequency,
+                                    double accuracy) const;
+  Eigen::VectorXcd outputs(double amplitude, double frequency, double accuracy) const;
 
   const Loop* loop_;
   std::size_t main_ = 0;
+  std::vector<Beside> beside_;        ///< not the main element itself
+  std::optional<std::size_t> other_;  ///< the one that is eliminated
   bool symmetric_ = false;
   double mean_velocity_ = 0.0;
 };

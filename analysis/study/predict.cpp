@@ -3,50 +3,64 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <future>
+#include <map>
+#include <numbers>
 
-#include "limcycle/analysis/orbit/edge.hpp"
+#include "limcycle/analysis/frequency/harmonic_balance.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
-#include "limcycle/analysis/study/loop_balance.hpp"
+#include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/composite_balance.hpp"
+#include "limcycle/analysis/study/cycle_hunt.hpp"
+#include "limcycle/analysis/study/df_roots.hpp"
+#include "limcycle/analysis/study/orbit_guess.hpp"
 #include "limcycle/analysis/study/verdicts.hpp"
+#include "limcycle/models/delay.hpp"
 
 namespace limcycle {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+constexpr std::string_view df_name = "describing-function", composite_name = "composite-describing-function",
+                           balance_name = "harmonic-balance";
+
+/// The loop as the time domain can treat it, and a note of what was done to a delay. The Pade approximation is right to
+/// 1e-9 up to 20 rad of phase or the end of the box.
+TimeDomainLoop treat_in_time(const Loop& loop, const SearchBox& box, std::vector<std::string>& notes) {
+  if (loop.delay == 0.0) return {loop, 0, 0};
+  const double highest = std::min(box.frequency_max, 20.0 / loop.delay);
+  int order = lowest_pade_order;
+  while (order < highest_pade_order && pade_error(highest, loop.delay, order) > 1e-9) ++order;
+  auto treated = in_time_domain(loop, order);
+  notes.push_back(
+      treated.pade_order == 0
+          ? "the delay is exact in the frequency domain and, acting on a relay's switches, in the time domain too"
+          : "the delay is exact in the frequency domain; in the time domain it is a Pade approximation of order " +
+                std::to_string(order) + "/" + std::to_string(order) + ", off by at most " +
+                short_number(pade_error(highest, loop.delay, order)) + " of the delayed signal up to " +
+                short_number(highest) + " rad/s");
+  return treated;
 }
 
 /// The work of one prediction, step by step, so that what is finished stays when the user interrupts.
 class Study {
  public:
-  Study(const Loop& loop, const PredictOptions& options) : loop_(loop), options_(options) {
-    report_.search = options.search.value_or(default_search_box(loop));
-    settle_.amplitude_floor = report_.search.amplitude_min;
-    settle_.amplitude_ceiling = 1e4 * report_.search.amplitude_max;
-    settle_.shooting.rtol = std::clamp(3e-4 * options.accuracy, 1e-13, 1e-9);
-    settle_.shooting.tolerance = 30.0 * settle_.shooting.rtol;
-    settle_.stop = settle_.shooting.stop = options.stop;
+  Study(const Loop& loop, const PredictOptions& options)
+      : loop_(loop),
+        options_(options),
+        box_(options.search.value_or(default_search_box(loop))),
+        time_(treat_in_time(loop, box_, report_.notes).loop),
+        hunt_(time_, options, box_) {
+    report_.search = box_;
   }
 
   PredictReport run() {
-    find_roots_of_balance();
-    if (loop_.delay > 0.0) {
-      report_.notes.emplace_back(
-          "delay: the frequency domain is exact, but the time domain does not treat a delay yet, so nothing was "
-          "checked");
-      for (auto& p : report_.predictions) p.why = "not checked: the time domain does not treat a delay yet";
-      report_.status = Status::incomplete;
-      return std::move(report_);
-    }
+    if (options_.methods.composite) begin_composite();
+    if (options_.methods.describing_function) find_df();
     run_starts();
+    end_composite();
     for (std::size_t i = 0; i < report_.predictions.size() && !stopped(); ++i) check(report_.predictions[i], i);
-    if (!LoopBalance::not_applicable(loop_))
-      report_.missed = missed_by("describing-function", report_.cycles, report_.predictions);
-    if (stopped()) report_.status = Status::interrupted;
-    tell(1.0, "done");
+    if (options_.methods.harmonic_balance && !stopped()) balance_harmonics();
+    finish();
     return std::move(report_);
   }
 
@@ -56,125 +70,101 @@ class Study {
     if (options_.progress) options_.progress(fraction, what);
   }
 
-  void find_roots_of_balance() {
+  void find_df() {
     tell(0.0, "roots of 1 + N G");
     if (const auto why = LoopBalance::not_applicable(loop_)) {
       report_.notes.push_back(*why);
       return;
     }
-    const LoopBalance balance(loop_);
-    for (const double pole : undamped_poles())
-      report_.notes.push_back("the rest of the loop has an undamped resonance at " + number(pole) +
-                              " rad/s: roots within 0.1 % of it are not looked for");
-    for (const SearchBox& box : between_undamped_poles()) {
-      const auto found = search(balance, box);
-      for (const Root& root : found.roots) add(balance, root);
+    balance_.emplace(loop_);
+    auto found = find_df_roots(loop_, *balance_, box_, options_.stop);
+    report_.notes.insert(report_.notes.end(), found.notes.begin(), found.notes.end());
+    if (found.status != Status::converged) report_.status = found.status;
+    for (const Root& root : found.roots) {
+      Prediction p;
+      p.method = df_name;
+      p.input_amplitude = root.amplitude;
+      p.amplitude = balance_->output_amplitude(root.amplitude, root.frequency);
+      p.frequency = root.frequency;
+      p.residual = std::abs((*balance_)(root.amplitude, root.frequency, 1e-12));
+      p.stable = balance_->stable(root.amplitude, root.frequency, root.index);
+      p.trust = trust(loop_, *balance_, root.amplitude, root.frequency);
+      report_.predictions.push_back(std::move(p));
     }
-    report_.nyquist = nyquist_picture(loop_, report_.search);
+    if (report_.predictions.empty()) report_.absence = absence(loop_, box_);
+    report_.nyquist = nyquist_picture(loop_, box_);
+    used_.emplace_back(df_name);
   }
 
-  std::vector<double> undamped_poles() const {
-    std::vector<double> found;
-    for (const auto& pole : loop_.A.eigenvalues())
-      if (pole.imag() > 0.0 && std::abs(pole.real()) < 1e-9 * pole.imag()) found.push_back(pole.imag());
-    std::ranges::sort(found);
-    return found;
+  /// The search with mass and friction as one element runs beside the simulations: neither needs the other.
+  void begin_composite() {
+    if (loop_.delay > 0.0 || CompositeBalance::not_applicable(loop_) || stopped()) return;
+    composite_.emplace(loop_);
+    CompositeSearchOptions options;
+    options.frequency_min = box_.frequency_min;
+    options.frequency_max = box_.frequency_max;
+    options.stop = options_.stop;
+    composite_search_ = std::async(std::launch::async, [this, options] { return composite_->find(options); });
   }
 
-  /// G is infinite at an undamped pole of the rest of the loop: the box is cut there, a part in 1e3 of the frequency.
-  std::vector<SearchBox> between_undamped_poles() const {
-    const auto cuts = undamped_poles();
-    std::vector<SearchBox> boxes{report_.search};
-    for (const double cut : cuts) {
-      SearchBox& last = boxes.back();
-      if (cut <= last.frequency_min * 1.001 || cut >= last.frequency_max * 0.999) continue;
-      SearchBox next = last;
-      last.frequency_max = cut * (1.0 - 1e-3);
-      next.frequency_min = cut * (1.0 + 1e-3);
-      boxes.push_back(next);
+  void end_composite() {
+    if (!composite_search_.valid()) return;
+    tell(0.6, "mass and friction as one element");
+    auto found = composite_search_.get();
+    report_.notes.insert(report_.notes.end(), found.notes.begin(), found.notes.end());
+    for (const CompositeRoot& root : found.roots) {
+      Prediction p;
+      p.method = composite_name;
+      p.input_amplitude = root.input_amplitude;
+      p.amplitude = root.amplitude;
+      p.frequency = root.frequency;
+      p.residual = root.residual;
+      p.stable = root.stable;
+      composite_roots_[report_.predictions.size()] = root;
+      report_.predictions.push_back(std::move(p));
     }
-    return boxes;
-  }
-
-  /// On a belt N has a kink where the velocity amplitude A w is the mean velocity: there the search runs over (A w, w),
-  /// in which that line is straight.
-  RootSearch search(const LoopBalance& balance, SearchBox box) {
-    RootSearchOptions options;
-    options.interrupted = options_.stop;
-    if (balance.main_element() > 0) options.max_evaluations = 20000;  // the other element's kink crosses the whole box
-    for (const auto& pole : loop_.A.eigenvalues())
-      if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)
-        options.frequency_hints.push_back(std::abs(pole));
-    // The phase of a delay must not turn by more than about 0.7 between two samples.
-    const double turns = box.frequency_max * loop_.delay * std::log(box.frequency_max / box.frequency_min);
-    options.initial_cells_frequency = std::clamp(static_cast<int>(turns / 1.4), options.initial_cells_frequency, 800);
-    const double speed = std::abs(balance.mean_velocity());
-    if (speed > 0.0) {
-      box.amplitude_min *= box.frequency_min;
-      box.amplitude_max *= box.frequency_max;
-      if (speed > box.amplitude_min && speed < box.amplitude_max) options.amplitude_hints = {speed};
-    }
-    auto found =
-        find_roots([&](double A, double w, double accuracy) { return balance(speed > 0.0 ? A / w : A, w, accuracy); },
-                   box, options);
-    if (speed > 0.0) {
-      for (Root& root : found.roots) root.amplitude /= root.frequency;
-      std::erase_if(found.roots, [&](const Root& root) {
-        return root.amplitude < report_.search.amplitude_min || root.amplitude > report_.search.amplitude_max;
-      });
-    }
-    if (found.status != Status::converged && found.status != Status::no_cycle) {
-      report_.notes.push_back("the root search between " + number(box.frequency_min) + " and " +
-                              number(box.frequency_max) + " rad/s ended with status " +
-                              std::string(to_string(found.status)) + ": roots may be missing");
-      report_.status = found.status == Status::not_finite ? Status::not_finite : Status::incomplete;
-    }
-    return found;
-  }
-
-  void add(const LoopBalance& balance, const Root& root) {
-    Prediction p;
-    p.input_amplitude = root.amplitude;
-    p.amplitude = balance.output_amplitude(root.amplitude, root.frequency);
-    p.frequency = root.frequency;
-    p.residual = std::abs(balance(root.amplitude, root.frequency, 1e-12));
-    p.stable = balance.stable(root.amplitude, root.frequency, root.index);
-    report_.predictions.push_back(p);
+    used_.emplace_back(composite_name);
   }
 
   /// Initial displacements of y: the largest amplitude of interest and smaller ones, two and then one decade apart.
   void run_starts() {
-    double displacement = report_.search.amplitude_max;
+    double displacement = box_.amplitude_max;
     for (int i = 0; i < options_.starts && !stopped(); ++i, displacement *= i == 1 ? 0.1 : 0.01) {
-      tell(0.2 + 0.5 * i / std::max(1, options_.starts), "simulation");
-      if (displacement < report_.search.amplitude_min) break;
-      settle_from(displaced(loop_, displacement), "y displaced by " + number(displacement));
+      tell(0.2 + 0.4 * i / std::max(1, options_.starts), "simulation");
+      if (displacement < box_.amplitude_min) break;
+      hunt_.settle_from(displaced(time_, displacement), "y displaced by " + short_number(displacement));
     }
   }
 
-  const OutcomeOfStart& settle_from(const LoopState& start, std::string name) {
-    settle_.known = report_.cycles;
-    Settled settled = settle(loop_, start, settle_);
-    OutcomeOfStart outcome{std::move(name), settled.outcome, std::move(settled.why), {}, std::move(settled.trace)};
-    outcome.cycle = settled.known;
-    if (settled.shot) outcome.cycle = merge(report_.cycles, settled.shot->cycle);
-    report_.outcomes.push_back(std::move(outcome));
-    return report_.outcomes.back();
+  /// Linear states on an oscillation of the plain balance, of the loop that is treated in time.
+  Eigen::VectorXd linear_state(const Prediction& p, double phase, double scale) const {
+    return LoopBalance(time_).linear_state(p.input_amplitude, p.frequency, phase, scale);
+  }
+
+  LoopState start_of(const Prediction& p, std::size_t index) {
+    const auto root = composite_roots_.find(index);
+    if (root != composite_roots_.end()) return composite_->state(root->second);
+    return without_history(time_, linear_state(p, 0.0, 1.0));
   }
 
   /// What a prediction is worth: go to the predicted oscillation and see what the loop does there.
   void check(Prediction& p, std::size_t index) {
-    tell(0.7 + 0.3 * static_cast<double>(index) / static_cast<double>(report_.predictions.size()),
+    tell(0.7 + 0.2 * static_cast<double>(index) / static_cast<double>(report_.predictions.size()),
          "checking predictions");
-    const LoopState start = LoopBalance(loop_).state(p.input_amplitude, p.frequency);
-    if (p.stable != true && unstable_cycle_near(p)) return;
-    const auto& outcome = settle_from(start, "the oscillation predicted by root " + std::to_string(index));
-    if (outcome.cycle && p.stable == true) {
-      // What a stable prediction leads to is what it is about, unless it is absurdly far from it.
-      if (nearest({report_.cycles[*outcome.cycle]}, p)) return compare(p, report_.cycles, *outcome.cycle);
-    }
-    if (const auto cycle = nearest(report_.cycles, p); cycle && report_.cycles[*cycle].stable == p.stable)
-      return compare(p, report_.cycles, *cycle);
+    const bool plain = p.method == df_name;
+    if (plain && p.stable != true && unstable_cycle_near(p)) return;
+    const auto& outcome =
+        hunt_.settle_from(start_of(p, index), "the oscillation predicted by root " + std::to_string(index));
+    // What a stable prediction leads to is what it is about, unless it is absurdly far from it.
+    if (outcome.cycle && p.stable != false && nearest({hunt_.cycles()[*outcome.cycle]}, p))
+      return compare(p, hunt_.cycles(), *outcome.cycle);
+    if (const auto cycle = nearest(hunt_.cycles(), p);
+        cycle && (!p.stable || hunt_.cycles()[*cycle].stable == p.stable))
+      return compare(p, hunt_.cycles(), *cycle);
+    conclude_without_cycle(p, outcome);
+  }
+
+  static void conclude_without_cycle(Prediction& p, const OutcomeOfStart& outcome) {
     const bool decided = outcome.outcome != Outcome::undecided;
     if (p.stable == true && decided) {
       p.verdict = Verdict::wrong;
@@ -185,34 +175,114 @@ class Study {
     }
   }
 
-  /// Newton on the return map from the predicted oscillation itself, without letting the motion run away first; if that
+  /// Newton for the cycle from the predicted oscillation itself, without letting the motion run away first; if that
   /// ends elsewhere, the border between what larger and smaller oscillations lead to.
   bool unstable_cycle_near(Prediction& p) {
-    const LoopBalance balance(loop_);
-    const bool odd = symmetry(loop_).has_value();
-    ShootingOptions options = settle_.shooting;
-    options.warm_maps = 0;
-    options.max_maps = 60;
-    const auto accept = [&](const ShootingResult& shot) {
-      if (shot.status != Status::converged || shot.cycle.stable != false || !nearest({shot.cycle}, p)) return false;
-      compare(p, report_.cycles, merge(report_.cycles, shot.cycle));
+    const bool odd = symmetry(time_).has_value();
+    const auto accept = [&](std::optional<std::size_t> cycle) {
+      if (!cycle || hunt_.cycles()[*cycle].stable != false || !nearest({hunt_.cycles()[*cycle]}, p)) return false;
+      compare(p, hunt_.cycles(), *cycle);
       return true;
     };
-    const double period = 6.283185307179586 / p.frequency;
-    const auto ray = [&](double scale) { return balance.state(p.input_amplitude, p.frequency, scale); };
     for (const double scale : {1.0, 0.9, 1.1}) {
-      Trace trace;
-      if (stopped() || record(loop_, ray(scale), period, 1e-8, 200, trace) != Status::converged) continue;
-      if (accept(shoot(loop_, ray(scale), choose_section(loop_, trace), odd, options))) return true;
+      if (stopped()) return false;
+      const auto states = [&](double phase) { return linear_state(p, phase, scale); };
+      if (accept(hunt_.shoot_from(guess_orbit(time_, states, p.frequency, odd)))) return true;
     }
-    settle_.known = report_.cycles;
-    return !stopped() && accept(edge_cycle(loop_, ray, period, settle_));
+    const auto ray = [&](double scale) { return without_history(time_, linear_state(p, 0.0, scale)); };
+    return !stopped() && accept(hunt_.edge_along(ray, 2.0 * std::numbers::pi / p.frequency));
+  }
+
+  /// Harmonic balance from every root of the plain describing function, and from every cycle it missed.
+  void balance_harmonics() {
+    tell(0.9, "harmonic balance");
+    HarmonicBalanceOptions options;
+    options.half_wave_symmetric = symmetry(loop_).has_value();
+    options.max_evaluations = 200'000;
+    options.stop = options_.stop;
+    const auto ne = std::ssize(loop_.elements);
+    std::vector<HarmonicGuess> guesses;
+    for (const Prediction& p : report_.predictions) {
+      if (p.method != df_name) continue;
+      HarmonicGuess guess{p.frequency, Eigen::VectorXcd::Zero(ne), {}, {}};
+      guess.first(ne - 1) = p.input_amplitude;
+      guesses.push_back(std::move(guess));
+    }
+    for (std::size_t i = 0; i < hunt_.cycles().size(); ++i) {
+      const Cycle& cycle = hunt_.cycles()[i];
+      if (ne != 1 || !missed_by_df(i)) continue;
+      if (cycle.sticking_fraction < 0.02)
+        guesses.push_back(guess_from(cycle));
+      else
+        report_.notes.push_back("harmonic balance was not tried on cycle " + std::to_string(i) +
+                                ", which sticks: harmonics ripple more than pre-sliding is wide");
+    }
+    for (const HarmonicGuess& guess : guesses) {
+      if (stopped()) return;
+      add_balance(harmonic_balance(loop_, guess, options));
+    }
+    used_.emplace_back(balance_name);
+  }
+
+  bool missed_by_df(std::size_t cycle) const {
+    return std::ranges::none_of(report_.predictions,
+                                [&](const Prediction& p) { return p.method == df_name && p.cycle == cycle; });
+  }
+
+  /// The harmonics of a cycle that is known, to see whether the balance has a solution there.
+  static HarmonicGuess guess_from(const Cycle& cycle) {
+    HarmonicGuess guess{cycle.frequency(), {}, {}, {}};
+    guess.inputs.push_back(input_harmonics(cycle, 9));
+    return guess;
+  }
+
+  void add_balance(const HarmonicBalance& found) {
+    if (found.harmonics == 0 || !(found.residual < 1e-6) || !(found.first_harmonic > 0.0)) {
+      report_.notes.push_back("harmonic balance found no solution from one of its starts: " + found.why);
+      return;
+    }
+    Prediction p;
+    p.method = balance_name;
+    p.amplitude = found.first_harmonic;
+    p.frequency = found.frequency;
+    p.input_amplitude = std::abs(found.inputs.back()(1));
+    p.residual = found.residual;
+    p.harmonics = found.harmonics;
+    const auto same = [&](const Prediction& q) {
+      return q.method == balance_name && std::abs(q.frequency / p.frequency - 1.0) < 1e-6 &&
+             std::abs(q.amplitude / p.amplitude - 1.0) < 1e-6;
+    };
+    if (std::ranges::any_of(report_.predictions, same)) return;
+    if (const auto cycle = nearest(hunt_.cycles(), p))
+      compare(p, hunt_.cycles(), *cycle);
+    else
+      p.why = "no cycle was found near it";
+    if (!found.why.empty()) p.why += "; " + found.why;
+    report_.predictions.push_back(std::move(p));
+  }
+
+  void finish() {
+    report_.cycles = hunt_.cycles();
+    report_.outcomes = hunt_.outcomes();
+    for (const auto& method : used_) {
+      const auto missed = missed_by(method, report_.cycles, report_.predictions);
+      report_.missed.insert(report_.missed.end(), missed.begin(), missed.end());
+    }
+    if (stopped()) report_.status = Status::interrupted;
+    tell(1.0, "done");
   }
 
   const Loop& loop_;
   const PredictOptions& options_;
-  SettleOptions settle_;
   PredictReport report_;
+  SearchBox box_;
+  Loop time_;  ///< the same loop as the time domain can treat it
+  CycleHunt hunt_;
+  std::optional<LoopBalance> balance_;
+  std::optional<CompositeBalance> composite_;
+  std::future<CompositeSearch> composite_search_;
+  std::map<std::size_t, CompositeRoot> composite_roots_;  ///< by index of the prediction
+  std::vector<std::string> used_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "limcycle/analysis/frequency/root_search.hpp"
 #include "limcycle/analysis/orbit/settle.hpp"
 #include "limcycle/analysis/status.hpp"
+#include "limcycle/analysis/study/trust.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {
@@ -15,28 +16,38 @@ namespace limcycle {
 /// Box chosen from the loop's own scales: the response to the element's output level over the band of the loop's poles.
 SearchBox default_search_box(const Loop& loop);
 
+/// Methods that predict; all of them are checked against the cycles that are really there.
+struct Methods {
+  bool describing_function = true;
+  bool composite = true;         ///< mass + friction as one element
+  bool harmonic_balance = true;  ///< from each root of the others, and from cycles that they missed
+};
+
 struct PredictOptions {
-  std::optional<SearchBox> search;                         ///< default: default_search_box
-  int starts = 4;                                          ///< simulations from different initial states
-  double accuracy = 1e-8;                                  ///< wanted relative error of period and amplitude of a cycle
-  std::function<bool()> stop;                              ///< asked often; true ends the work and keeps what is there
+  Methods methods;
+  std::optional<SearchBox> search;  ///< default: default_search_box
+  int starts = 4;                   ///< simulations from different initial states
+  double accuracy = 1e-8;           ///< wanted relative error of period and amplitude of a cycle
+  std::function<bool()> stop;       ///< asked often, by two threads; true ends the work and keeps what is there
   std::function<void(double, std::string_view)> progress;  ///< fraction done (0..1), what is being done
 };
 
 /// What a prediction turned out to be worth.
 enum class Verdict { confirmed, biased, wrong, undecided };  // "wrong" is printed "false"
 
-/// One root of 1 + N(A,w) G(jw) = 0.
+/// A cycle that a method predicts.
 struct Prediction {
   std::string method = "describing-function";
   double amplitude = 0.0;        ///< of y's first harmonic
   double frequency = 0.0;        ///< rad/s
   double input_amplitude = 0.0;  ///< of the element's input
-  double residual = 0.0;         ///< |1 + N G| at the root
-  std::optional<bool> stable;    ///< Loeb's rule; empty if it does not decide
+  double residual = 0.0;         ///< of the method's own equation at the root
+  std::optional<bool> stable;    ///< Loeb's rule; empty if it does not decide, or for harmonic balance
   Verdict verdict = Verdict::undecided;
   std::optional<std::size_t> cycle;  ///< index of the matching cycle
   std::string why;                   ///< one sentence
+  int harmonics = 1;                 ///< that the method balances
+  std::optional<Trust> trust{};      ///< what the assumptions of the method are worth here, before any check in time
 };
 
 /// What a simulation from one start reached.
@@ -72,12 +83,13 @@ struct PredictReport {
   std::vector<Missed> missed;
   std::vector<OutcomeOfStart> outcomes;
   NyquistPicture nyquist;
-  std::vector<std::string> notes;  ///< what a user must know: methods that do not apply, searches that are incomplete
+  std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: is that proved?
+  std::vector<std::string> notes;    ///< what a user must know: methods that do not apply, searches that are incomplete
   Status status = Status::converged;
 };
 
-/// Every limit cycle that the describing function predicts in the search box, what really happens from several starts,
-/// and a verdict for each prediction.
+/// Every limit cycle that the methods predict in the search box, what really happens from several starts and near every
+/// prediction, and a verdict for each.
 PredictReport predict(const Loop& loop, const PredictOptions& options = {});
 
 std::string_view to_string(Verdict verdict);

@@ -10,6 +10,7 @@ struct Backlash {
   S slope{1.0}, half_gap{};
 
   static constexpr std::string_view kind = "backlash";
+  static constexpr bool piecewise_affine = true;
   static constexpr bool uses_rate = true;
   static constexpr std::string_view equation =
       "y = slope (x - half_gap) while driven up, slope (x + half_gap) while driven down, standing in between";
@@ -35,9 +36,9 @@ struct Backlash {
       g[0] = mode.value == 1 ? in.v : -in.v;
     }
   }
-  Mode next(const Input<double>& in, Mode mode, std::span<double> z, int fired) const {
+  Mode next(const Input<S>& in, Mode mode, std::span<S> z, int fired) const {
     if (mode.value == 0) return {fired == 0 ? 1 : -1};
-    z[0] = value_of(slope) * (in.x - static_cast<double>(mode.value) * value_of(half_gap));
+    z[0] = slope * (in.x - S(static_cast<double>(mode.value)) * half_gap);
     return {0};
   }
   Mode start(const Input<double>& in, std::span<double> z) const {

@@ -26,6 +26,7 @@ struct DeadZone : TwoBreaks<S> {
   }
   Mode start(const Input<double>& in, std::span<double>) const { return this->start_at(value_of(half_width), in); }
   bool odd() const { return true; }
+  std::pair<double, double> slope_bounds() const { return {0.0, value_of(slope)}; }
   Scales scales() const { return {.output = value_of(slope * half_width)}; }
 
   /// N = slope (1 - f(half_width/A)), 0 for A <= half_width (claim A6b).

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "limcycle/models/parameter.hpp"
 #include "limcycle/models/scalar.hpp"
@@ -62,23 +63,45 @@ concept ElementOn = requires(const E e, const Input<S> in, Mode mode, std::span<
 /// state; `start` gives the mode of an element without history at that input.
 template <class E, class S>
 concept HasModes = requires(const E e, const Input<S> in, Mode mode, std::span<const S> z, std::span<S> g, int k,
-                            std::span<double> z_out, const Input<double> at) {
+                            std::span<S> z_next, std::span<double> z_out, const Input<double> at) {
   { e.guards(mode) } -> std::same_as<int>;
   e.guard(in, mode, z, g);
-  { e.next(at, mode, z_out, k) } -> std::same_as<Mode>;
+  { e.next(in, mode, z_next, k) } -> std::same_as<Mode>;
   { e.start(at, z_out) } -> std::same_as<Mode>;
 };
 
-/// Optional: an element that can hold a signal at zero (set-valued laws stick, an ideal relay slides).
+/// Optional: an element that can hold a signal, `holds`, at zero (set-valued laws stick, an ideal relay slides).
 template <class E>
 concept CanHold = requires(const E e, Mode mode) {
+  { E::holds } -> std::convertible_to<Held>;
   { e.held(mode) } -> std::same_as<Held>;
+};
+
+/// Optional: a law set-valued at rest that tells which element of Sgn(v) in [-1, 1] its output stands for.
+template <class E, class S>
+concept HasSelection = requires(const E e, Mode mode, const S output) {
+  { e.selection(mode, output) } -> std::same_as<S>;
 };
 
 /// Optional: an output that depends on the input rate (so the rate must be known before the output).
 template <class E>
 concept NeedsRate = requires {
   requires E::output_needs_rate;
+};
+
+/// Optional: in each mode the output and the guards are affine in (x, v, drive, z) and the rate of the state is
+/// constant, so that a loop of such elements only is integrated exactly, by matrix exponentials.
+template <class E>
+concept PiecewiseAffine = requires {
+  requires E::piecewise_affine;
+};
+
+/// Optional: a memoryless, single-valued, odd element whose output rises between two inputs x1 < x2 by at least
+/// alpha (x2 - x1) and at most beta (x2 - x1): the pair (alpha, beta), both finite. Rigorous error bounds of the
+/// describing function need it.
+template <class E>
+concept SlopeBounded = requires(const E e) {
+  { e.slope_bounds() } -> std::same_as<std::pair<double, double>>;
 };
 
 /// Optional: closed-form describing function N(A, w) for the input bias + A sin wt (friction: bias t + A sin wt);

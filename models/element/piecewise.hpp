@@ -9,8 +9,9 @@ namespace limcycle {
 /// What the memoryless elements with breaks at |x| = b share. Modes: 0 inside, +1 above, -1 below.
 template <class S>
 struct TwoBreaks : Memoryless<S> {
+  static constexpr bool piecewise_affine = true;
   int guards(Mode mode) const { return mode.value == 0 ? 2 : 1; }
-  Mode next(const Input<double>&, Mode mode, std::span<double>, int fired) const {
+  Mode next(const Input<S>&, Mode mode, std::span<S>, int fired) const {
     return {mode.value != 0 ? 0 : fired == 0 ? 1 : -1};
   }
   static void guard_at(const S& b, const Input<S>& in, Mode mode, std::span<S> g) {

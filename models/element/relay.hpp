@@ -15,6 +15,8 @@ struct Relay : Memoryless<S> {
   S level{}, hysteresis{0.0}, dead_zone{0.0};
 
   static constexpr std::string_view kind = "relay";
+  static constexpr bool piecewise_affine = true;
+  static constexpr Held holds = Held::input;
   static constexpr std::string_view equation =
       "y = level sgn(x) switching on at |x| = dead_zone + hysteresis, off at |x| = dead_zone - hysteresis";
   static constexpr std::string_view source = "Gelb and Vander Velde (1968)";
@@ -51,7 +53,7 @@ struct Relay : Memoryless<S> {
         g[1] = in.drive - lower(mode);
     }
   }
-  Mode next(const Input<double>& in, Mode mode, std::span<double>, int fired) const {
+  Mode next(const Input<S>& in, Mode mode, std::span<S>, int fired) const {
     if (std::abs(mode.value) == 2) {  // the drive left the jump at its upper or lower end
       if (dead_zone > 0.0) return mode.value == 2 ? Mode{fired == 0 ? 1 : 0} : Mode{fired == 0 ? 0 : -1};
       return {fired == 0 ? 1 : -1};

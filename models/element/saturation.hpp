@@ -26,6 +26,7 @@ struct Saturation : TwoBreaks<S> {
   }
   Mode start(const Input<double>& in, std::span<double>) const { return this->start_at(value_of(limit / slope), in); }
   bool odd() const { return true; }
+  std::pair<double, double> slope_bounds() const { return {0.0, value_of(slope)}; }
   Scales scales() const { return {.output = value_of(limit)}; }
 
   /// N = slope f(b/A), b = limit/slope (claim A6).

@@ -12,6 +12,7 @@ struct Coulomb : StickSlip<S, Levels<S>> {
   S sigma2{0.0};
 
   static constexpr std::string_view kind = "coulomb";
+  static constexpr bool piecewise_affine = true;
   static constexpr std::string_view equation =
       "F = Fc sgn(v) + sigma2 v, v != 0;  |F| <= Fs, balancing the drive, v = 0";
   static constexpr std::string_view source = "Coulomb (1785); stiction as in the source thesis eq. 2.3-2.4";

@@ -14,13 +14,16 @@ struct ControllerModel {
   std::vector<std::string> state_names;
 };
 
-/// What may stand between any controller and the plant; 0 or infinity: absent.
+/// What may stand between any controller and the plant, in this order; 0 or infinity: absent.
 struct Actuator {
-  double saturation{infinite};  ///< the command is limited to +-saturation
-  double lag{0.0};              ///< time constant of a first-order actuator, s
+  double friction_compensation{0.0};  ///< its size times sgn(v) is added to the command, N
+  double saturation{infinite};        ///< the command is limited to +-saturation
+  double lag{0.0};                    ///< time constant of a first-order actuator, s
 
   template <class Owner>
   static void append_table(std::vector<Parameter<Owner, double>>& table) {
+    table.push_back({"friction_compensation", "N", "adds this times sgn(v) to the command; needs friction",
+                     &Owner::friction_compensation, not_negative, false});
     table.push_back(
         {"saturation", "N", "limit of the command", &Owner::saturation, {0.0, infinite, true, false}, false});
     table.push_back({"lag", "s", "time constant of the actuator", &Owner::lag, not_negative, false});
@@ -95,5 +98,12 @@ struct StateSpaceController : Actuator {
 };
 
 using Controller = std::variant<NoController, Pid, TransferFunctionController, StateSpaceController>;
+
+inline ControllerModel model_of(const Controller& controller) {
+  return std::visit([](const auto& c) { return c.model(); }, controller);
+}
+inline const Actuator& actuator_of(const Controller& controller) {
+  return std::visit([](const auto& c) -> const Actuator& { return c; }, controller);
+}
 
 }  // namespace limcycle

@@ -121,4 +121,8 @@ struct StateSpacePlant {
 
 using Plant = std::variant<Mass, TwoMass, Belt, TransferFunction, ZeroPoleGain, StateSpacePlant>;
 
+inline PlantModel model_of(const Plant& plant) {
+  return std::visit([](const auto& p) { return p.model(); }, plant);
+}
+
 }  // namespace limcycle

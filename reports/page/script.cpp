@@ -55,6 +55,16 @@ const draw = {
       {name: "G(jω)", x: d.G.re, y: d.G.im, mode: "lines", line: line("one", 2.5), hovertemplate: hover,
        customdata: d.G.w.map((w) => label(null, w))},
     ];
+    const circle = (c) => [...Array(73).keys()].map((i) => i * Math.PI / 36).map((t) =>
+      [c.re + c.r * Math.cos(t), c.im + c.r * Math.sin(t)]).concat([[null, null]]);
+    for (const [kind, name, dash] of [["rigorous", "error discs (Mees–Bergen, rigorous)", "solid"],
+      ["heuristic", "error discs (heuristic)", "dash"]]) {
+      const own = d.discs.filter((c) => c.kind === kind), points = own.flatMap(circle);
+      if (own.length === 0) continue;
+      traces.push({name, x: points.map((p) => p[0]), y: points.map((p) => p[1]), mode: "lines",
+        line: line("three", 1.2, dash), hovertemplate: hover,
+        customdata: own.flatMap((c) => circle(c).map(() => ["error disc (" + kind + ") of " + label(null, c.w)[0]]))});
+    }
     if (d.roots.length > 0) {
       traces.push({name: "1 + N G = 0", x: d.roots.map((r) => r.re), y: d.roots.map((r) => r.im), mode: "markers",
         marker: {color: colour("ink"), size: 11, symbol: "x"}, hovertemplate: hover,

@@ -77,7 +77,7 @@ TEST_CASE("what is missing from a loop") {
   CHECK(message("[loop.controller]\nkind = \"pid\"\nkp = 1\n[loop.friction]\nkind = \"coulomb\"\nFc = 1\n") ==
         "a.toml:1: loop.plant: is required: a loop needs [loop.plant]");
   CHECK(message("\n[loop.plant]\nkind = \"mass\"\nmass = 1\n") ==
-        "a.toml:2: loop: needs a nonlinear element: add [loop.friction] or [loop.element]");
+        "a.toml:2: loop: needs a nonlinear element: add [loop.friction], [loop.element] or [loop.error]");
   CHECK(message("[loop.plant]\nmass = 1\n").starts_with("a.toml:1: loop.plant.kind: is required: which plant (mass, "));
   CHECK(message("loop = 3\n") == "a.toml:1: loop = 3: must be a table, found a number");
   CHECK(message("[loop]\nplant = \"mass\"\n") == "a.toml:2: loop.plant = \"mass\": must be a table, found a string");
@@ -101,10 +101,77 @@ TEST_CASE("what a later version brings is refused by name, what is misspelt with
         "state-space");
   CHECK(message(with(servo, "\"mass\"", "\"froude-pendulum\"")).find("not available in this version") !=
         std::string::npos);
-  CHECK(message(with(servo, "kd = 6.0", "kd = 6.0\nfriction_compensation = 1.0")) ==
-        "a.toml:9: loop.controller.friction_compensation: known to the case format, not available in this version");
-  CHECK(message(std::string(servo) + "[loop.error]\nkind = \"quantizer\"\n") ==
-        "a.toml:20: loop.error: known to the case format, not available in this version");
+}
+
+TEST_CASE("friction compensation is a key of every controller") {
+  const Case from = read_case(with(servo, "kd = 6.0", "kd = 6.0\nfriction_compensation = 1"), "a.toml");
+  CHECK(std::get<Pid>(from.loop->controller).friction_compensation == 1.0);
+  CHECK(build_loop(*from.loop).elements.size() == 2);
+  const Case none = read_case(with(servo, "kind = \"pid\"\nkp = 3.0\nki = 4.0\nkd = 6.0", "kind = \"none\""), "a.toml",
+                              {"loop.controller.friction_compensation=0.5", "loop.controller.lag=0.1"});
+  CHECK(std::get<NoController>(none.loop->controller).friction_compensation == 0.5);
+  CHECK(message(servo, {"loop.controller.friction_compensation=-1"}) ==
+        "--set loop.controller.friction_compensation=-1: must be >= 0 N");
+  CHECK(message(with(servo, "kd = 6.0", "kd = 6.0\nfriction_compensatoin = 1.0")) ==
+        "a.toml:9: loop.controller.friction_compensatoin: unknown key; did you mean friction_compensation?");
+  CHECK(message("[loop.plant]\nkind = \"mass\"\nmass = 1\n[loop.controller]\nkind = \"pid\"\nkp = 1\n"
+                "friction_compensation = 2\n[loop.element]\nkind = \"relay\"\nlevel = 1\n") ==
+        "a.toml:7: loop.controller.friction_compensation = 2: has nothing to compensate: add [loop.friction]");
+}
+
+TEST_CASE("an element on the error, alone and beside the others") {
+  const std::string error = "[loop.error]\nkind = \"dead-zone\"\nhalf_width = 0.01\n";
+  const Case from = read_case(std::string(servo) + error, "a.toml");
+  REQUIRE(from.loop->error);
+  CHECK(std::get<DeadZone<double>>(*from.loop->error).half_width == 0.01);
+  CHECK(kind_of(df_element(from)) == "lugre");
+  CHECK(from.element_path == "loop.friction");
+  const Case all =
+      read_case(std::string(servo) + error + "[loop.element]\nkind = \"saturation\"\nlimit = 3\n", "a.toml");
+  CHECK(build_loop(*all.loop).elements.size() == 4);
+  const Case alone = read_case(
+      "[loop.plant]\nkind = \"mass\"\nmass = 1\n[loop.controller]\nkind = \"pid\"\nkp = 1\nkd = 1\ntf = 0.1\n"
+      "[loop.error]\nkind = \"quantizer\"\nstep = 0.5\n",
+      "a.toml");
+  CHECK(std::get<Quantizer<double>>(df_element(alone)).step == 0.5);
+  CHECK(alone.element_path == "loop.error");
+}
+
+TEST_CASE("mistakes in the element on the error") {
+  const auto error = [](const std::string& body) {
+    return message(std::string(servo) + "[loop.error]\n" + body + "\n");
+  };
+  CHECK(error("kind = \"dead-zone\"\nhalf_width = 0.01").empty());
+  CHECK(error("kind = \"quantizer\"\nstep = 0.01") ==
+        "a.toml:4: loop.controller.tf: must be > 0: kd differentiates the output of the quantizer, which jumps");
+  CHECK(error("kind = \"quantizer\"").starts_with("a.toml:20: loop.error.step: is required: "));
+  CHECK(error("kind = \"quantizer\"\nstep = 0") == "a.toml:22: loop.error.step = 0: must be > 0");
+  CHECK(error("kind = \"quantizer\"\nstpe = 1") == "a.toml:22: loop.error.stpe: unknown key; did you mean step?");
+  CHECK(error("kind = \"quantiser\"\nstep = 1") ==
+        "a.toml:21: loop.error.kind = \"quantiser\": unknown element on the error; did you mean \"quantizer\"?");
+  CHECK(error("kind = \"relay\"\nlevel = 1") ==
+        "a.toml:21: loop.error.kind = \"relay\": does not act on the error (dead-zone, quantizer, saturation may)");
+  CHECK(error("step = 1") ==
+        "a.toml:20: loop.error.kind: is required: which element on the error (dead-zone, quantizer, saturation)");
+  CHECK(message("[loop.error]\nkind = \"quantizer\"\nstep = 1\n") ==
+        "a.toml:1: loop.plant: is required: a loop needs [loop.plant]");
+  CHECK(message(with(servo, "[loop.friction]", "[loop.element]\nkind = \"quantizer\"\nstep = 1\n[loop.friction]")) ==
+        "a.toml:10: loop.element.kind = \"quantizer\": acts on the error: it belongs in [loop.error]");
+  CHECK(message("[loop.plant]\nkind = \"mass\"\nmass = 1\n[loop.friction]\nkind = \"coulomb\"\nFc = 1\n"
+                "[loop.error]\nkind = \"quantizer\"\nstep = 1\n") ==
+        "a.toml:7: loop.error: needs a controller: with friction alone the error is not used");
+}
+
+TEST_CASE("what a loop makes itself is no kind that a case may name") {
+  for (const auto* kind : {"friction-compensation", "output-rate", "delayed-relay"}) {
+    const std::string written = "kind = \"" + std::string(kind) + "\"\n";
+    for (const auto* section : {"element", "friction", "error"}) {
+      const std::string said = message("[loop.plant]\nkind = \"mass\"\nmass = 1\n[loop." + std::string(section) +
+                                       "]\n" + written + "level = 1\n");
+      CHECK(said.find(": unknown ") != std::string::npos);
+      CHECK(said.find(kind) != std::string::npos);
+    }
+  }
 }
 
 TEST_CASE("the first mistake in the file is the one reported") {

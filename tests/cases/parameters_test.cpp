@@ -22,19 +22,27 @@ template <class Owner>
 constexpr bool is_controller = is_among<Owner, Controller>;
 template <class Owner>
 constexpr bool is_law = is_among<Owner, FrictionLaws::On<double>>;
+template <class Owner>
+constexpr bool is_on_error = std::is_same_v<Owner, Quantizer<double>>;
+
+template <class Owner>
+constexpr const char* section_of() {
+  if (is_plant<Owner>) return "plant";
+  if (is_controller<Owner>) return "controller";
+  if (is_law<Owner>) return "friction";
+  return is_on_error<Owner> ? "error" : "element";
+}
 
 /// The section of the owner first, so that its body begins in line 3, then what makes the case valid.
 template <class Owner>
 std::string case_text(const std::string& body) {
   const std::string relay = "[loop.element]\nkind = \"relay\"\nlevel = 1\n",
                     mass = "[loop.plant]\nkind = \"mass\"\nmass = 1\n";
-  const std::string section = is_plant<Owner>        ? "plant"
-                              : is_controller<Owner> ? "controller"
-                              : is_law<Owner>        ? "friction"
-                                                     : "element";
+  const std::string law = "[loop.friction]\nkind = \"coulomb\"\nFc = 1\n", section = section_of<Owner>();
   return "[loop." + section + "]\nkind = \"" + std::string(Owner::kind) + "\"\n" + body +
          (is_plant<Owner>        ? relay
-          : is_controller<Owner> ? mass + relay
+          : is_controller<Owner> ? mass + relay + law
+          : is_on_error<Owner>   ? mass + relay
                                  : "");
 }
 
@@ -45,6 +53,8 @@ Owner read(const std::string& body) {
     return std::get<Owner>(from.loop->plant);
   } else if constexpr (is_controller<Owner>) {
     return std::get<Owner>(from.loop->controller);
+  } else if constexpr (is_on_error<Owner>) {
+    return std::get<Owner>(*from.loop->error);
   } else {
     return std::get<Owner>(*from.element);
   }
@@ -87,11 +97,8 @@ double value_of(const Owner& owner, const Parameter<Owner, double>& parameter) {
 template <class Owner>
 std::string said(const Parameter<Owner, double>& parameter, const std::string& value) {
   const std::string text = message(case_text<Owner>(with(parameter, value)));
-  const std::string section = is_plant<Owner>        ? "plant"
-                              : is_controller<Owner> ? "controller"
-                              : is_law<Owner>        ? "friction"
-                                                     : "element";
-  const std::string head = "a.toml:3: loop." + section + "." + std::string(parameter.key) + " = ";
+  const std::string head =
+      "a.toml:3: loop." + std::string(section_of<Owner>()) + "." + std::string(parameter.key) + " = ";
   CHECK(text.starts_with(head));
   const auto rule = text.find(": ", std::min(head.size(), text.size()));
   return rule == std::string::npos ? text : text.substr(rule + 2);
@@ -172,6 +179,7 @@ void check_all(std::type_identity<std::variant<Owners...>>) {
 
 TEST_CASE("every parameter of every friction law") { check_all(std::type_identity<FrictionLaws::On<double>>{}); }
 TEST_CASE("every parameter of every element") { check_all(std::type_identity<ForwardElements::On<double>>{}); }
+TEST_CASE("every parameter of the quantizer") { check_owner<Quantizer<double>>(); }
 TEST_CASE("every parameter of every plant") { check_all(std::type_identity<Plant>{}); }
 TEST_CASE("every parameter of every controller") { check_all(std::type_identity<Controller>{}); }
 

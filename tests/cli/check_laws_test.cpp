@@ -87,6 +87,24 @@ TEST_CASE("check: a case of a lone law, and where the documents go") {
   CHECK(scratch.get("c").starts_with("title,plant,controller,elements,states,order,"));
 }
 
+TEST_CASE("check names every element of a loop in the order in which they are evaluated") {
+  const auto elements = [](const std::string& name, const std::vector<std::string>& overrides = {}) {
+    std::vector<std::string> arguments{"check", shipped(name), "--json", "-"};
+    for (const auto& override : overrides) arguments.insert(arguments.end(), {"--set", override});
+    const Json document = Json::parse(run(arguments).out);
+    std::string text;
+    for (const auto& element : document.at("elements"))
+      text += element.at("path").get<std::string>() + ": " + element.at("kind").get<std::string>() + "\n";
+    return text;
+  };
+  CHECK(elements("over-compensated.toml") ==
+        "loop.controller.friction_compensation: friction-compensation\nloop.friction: coulomb\n");
+  CHECK(elements("dead-zoned-error.toml", {"loop.controller.saturation=5.0"}) ==
+        "loop.error: dead-zone\nloop.error.rate: output-rate\nloop.controller.saturation: saturation\n"
+        "loop.friction: lugre\n");
+  CHECK(elements("relay-delay.toml") == "loop.element: relay\n");
+}
+
 TEST_CASE("every shipped case passes check") {
   for (const auto& entry : std::filesystem::directory_iterator(std::string(LIMCYCLE_SOURCE_DIR) + "/cases"))
     if (entry.path().extension() == ".toml") CHECK(run({"check", entry.path().string(), "--quiet"}).code == 0);
@@ -97,6 +115,7 @@ TEST_CASE("laws lists every kind once, with one line each") {
   CHECK(ran.code == 0);
   for (const auto& entry : limcycle::catalogue()) CHECK(ran.out.find("\n  " + entry.kind + " ") != std::string::npos);
   CHECK(ran.out.find("Friction laws") < ran.out.find("Elements"));
+  CHECK(ran.out.find("Elements on the error ([loop.error]; also dead-zone and saturation)\n") != std::string::npos);
 }
 
 TEST_CASE("laws KIND tells every parameter with unit, default, range and meaning") {
@@ -114,6 +133,9 @@ TEST_CASE("laws KIND tells every parameter with unit, default, range and meaning
   CHECK(lugre.find("exponential | tustin | lorentzian") != std::string::npos);
   CHECK(lugre.find("as Fs") != std::string::npos);
   CHECK(run({"laws", "state-space"}).out.find("state-space (controller)") != std::string::npos);
+  CHECK(run({"laws", "quantizer"}).out.starts_with("quantizer (error element)\n"));
+  for (const auto* controller : {"none", "pid", "transfer-function", "state-space"})
+    CHECK(run({"laws", controller}).out.find("\nfriction_compensation  N ") != std::string::npos);
 }
 
 TEST_CASE("laws: the JSON document holds the parameter tables") {

@@ -115,6 +115,32 @@ TEST_CASE("figures hold JSON without what would end their element, and few point
   }
 }
 
+TEST_CASE("trust: a table with reasons, the discs drawn by kind and named in words, absence in a sentence") {
+  const auto text = page(sample::trusted());
+  CHECK(holds(text, "<h2>Trust in the predictions</h2>"));
+  CHECK(holds(text, "a cycle within 6 % of it is proved"));
+  CHECK(holds(text, "no bounded band"));
+  CHECK_FALSE(holds(text, "<h2>Absence of oscillations</h2>"));
+  auto report = sample::trusted();
+  report.predictions[1].trust->band.discs = {{7.0, {-0.1, 0.0}, 0.02}};
+  const auto figures = predict_figures(report, {});
+  REQUIRE(figures[0].id == "nyquist");
+  CHECK(holds(figures[0].finding,
+              "Rigorous error discs (Mees-Bergen, solid circles) are drawn over the band 0.9800 to "
+              "1.030 rad/s in which a cycle is proved."));
+  CHECK(holds(figures[0].finding, "The error disc (dashed) at 7.00 rad/s is heuristic."));
+  const auto discs = Json::parse(figures[0].data)["discs"];
+  REQUIRE(discs.size() == 3);
+  CHECK(discs[0] == Json({{"kind", "rigorous"}, {"re", -0.8}, {"im", 0.1}, {"r", 0.05}, {"w", 0.98}}));
+  CHECK(discs[2]["kind"] == "heuristic");
+  const std::string script(page_script());
+  CHECK(holds(script, "[\"rigorous\", \"error discs (Mees–Bergen, rigorous)\", \"solid\"]"));
+  CHECK(holds(script, "[\"heuristic\", \"error discs (heuristic)\", \"dash\"]"));
+  CHECK(Json::parse(predict_figures(sample::relay(), {})[0].data)["discs"].empty());
+  const auto proved = page(sample::without_roots(BandVerdict::proved));
+  CHECK(holds(proved, "<h2>Absence of oscillations</h2>\n<p>Proved (Mees and Bergen 1975): "));
+}
+
 TEST_CASE("a report without traces or curves has no figures but is a page") {
   auto report = sample::hunting();
   report.nyquist = {};

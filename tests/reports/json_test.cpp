@@ -49,7 +49,7 @@ TEST_CASE("every document says what it is and where it comes from") {
 TEST_CASE("predict: keys and values") {
   const auto document = Json::parse(predict_json(made(), sample::relay()));
   CHECK(keys(document) == Keys{"schema", "command", "case", "provenance", "cycles", "predictions", "missed", "outcomes",
-                               "search", "notes", "status"});
+                               "search", "absence", "notes", "status"});
   const auto& cycle = document["cycles"][0];
   CHECK(keys(cycle) == Keys{"amplitude", "first_harmonic", "period", "frequency", "offset", "stable", "multipliers",
                             "sticking_fraction", "method", "error", "residual", "half_wave_symmetric"});
@@ -60,8 +60,10 @@ TEST_CASE("predict: keys and values") {
   CHECK(cycle["method"] == "exact");
   const auto& predictions = document["predictions"];
   REQUIRE(predictions.size() == 2);
-  CHECK(keys(predictions[0]) ==
-        Keys{"method", "amplitude", "frequency", "stable", "verdict", "cycle", "input_amplitude", "residual", "why"});
+  CHECK(keys(predictions[0]) == Keys{"method", "amplitude", "frequency", "stable", "verdict", "cycle",
+                                     "input_amplitude", "residual", "why", "trust"});
+  CHECK(predictions[0]["trust"].is_null());
+  CHECK(document["absence"].is_null());
   CHECK(predictions[0]["verdict"] == "confirmed");
   CHECK(predictions[0]["cycle"] == 0);
   CHECK(predictions[1]["verdict"] == "false");
@@ -74,6 +76,38 @@ TEST_CASE("predict: keys and values") {
   CHECK(document["notes"] == Json::array({"a note"}));
   CHECK(Json::parse(predict_json(made(), sample::hunting()))["missed"] ==
         Json::array({{{"method", "describing-function"}, {"cycle", 0}}}));
+}
+
+TEST_CASE("predict: trust indicators, bands without ends and the proof of absence") {
+  const auto document = Json::parse(predict_json(made(), sample::trusted()));
+  CHECK(document["predictions"][0]["trust"] ==
+        Json({{"filter_ratio", 0.0075512345},
+              {"worst_harmonic", 3},
+              {"harmonic_residual", 0.0081},
+              {"sticking_fraction", 0.0},
+              {"band",
+               {{"kind", "rigorous"},
+                {"verdict", "proved"},
+                {"frequency", {0.98, 1.03}},
+                {"amplitude", {0.6, 0.7}},
+                {"input_amplitude", {1.2, 1.4}},
+                {"why", "crossed completely"}}},
+              {"sentence", "the loop filters the harmonics well: a cycle within 6 % of it is proved"}}));
+  const auto& poor = document["predictions"][1]["trust"];
+  CHECK(poor["band"]["kind"] == "heuristic");
+  CHECK(poor["band"]["verdict"] == "undecided");
+  CHECK(poor["band"]["frequency"] == Json::array({0.0, nullptr}));
+  CHECK(poor["worst_harmonic"] == 5);
+  CHECK(poor["sticking_fraction"] == 0.01);
+  const auto open = Json::parse(predict_json(made(), sample::without_roots(BandVerdict::undecided)))["absence"];
+  CHECK(open == Json({{"verdict", "undecided"},
+                      {"frequency", {0.01, 100.0}},
+                      {"input_amplitude", {1e-3, 10.0}},
+                      {"undecided", {{0.01, 0.4}, {0.5, 0.6}}},
+                      {"why", "an oscillation is not excluded between 0.01 and 0.6 rad/s"}}));
+  const auto proved = Json::parse(predict_json(made(), sample::without_roots(BandVerdict::proved)))["absence"];
+  CHECK(proved["verdict"] == "proved");
+  CHECK(proved["undecided"] == Json::array());
 }
 
 TEST_CASE("predict: a number that does not exist is null") {

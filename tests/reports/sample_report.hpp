@@ -80,4 +80,40 @@ inline PredictReport relay() {
   return report;
 }
 
+/// The same with trust indicators: a proved band for the first prediction, a heuristic one without ends for the other.
+inline PredictReport trusted() {
+  PredictReport report = relay();
+  Trust good;
+  good.filter_ratio = 0.0075512345;
+  good.harmonic_residual = 0.0081;
+  good.band = {BandKind::rigorous,  BandVerdict::proved, {0.98, 1.03},
+               {0.6, 0.7},          {1.2, 1.4},          {{0.98, {-0.8, 0.1}, 0.05}, {1.03, {-0.81, 0.0}, 0.06}},
+               "crossed completely"};
+  good.sentence = "the loop filters the harmonics well: a cycle within 6 % of it is proved";
+  Trust poor;
+  poor.filter_ratio = 0.2;
+  poor.worst_harmonic = 5;
+  poor.harmonic_residual = 0.95;
+  poor.sticking_fraction = 0.01;
+  poor.band.frequency = poor.band.amplitude = poor.band.input_amplitude = {0.0, infinite};
+  poor.band.why = "no bounded band";
+  poor.sentence = "the loop hardly filters the fifth harmonic: amplitude and frequency may be far off";
+  report.predictions[0].trust = good;
+  report.predictions[1].trust = poor;
+  return report;
+}
+
+/// No prediction, and absence asked for.
+inline PredictReport without_roots(BandVerdict verdict) {
+  PredictReport report = hunting();
+  report.cycles.clear();
+  report.missed.clear();
+  report.absence = Absence{verdict, {1e-3, 10.0, 0.01, 100.0}, {}, "no error disc meets -Psi"};
+  if (verdict == BandVerdict::undecided) {
+    report.absence->undecided = {{0.01, 0.4}, {0.5, 0.6}};
+    report.absence->why = "an oscillation is not excluded between 0.01 and 0.6 rad/s";
+  }
+  return report;
+}
+
 }  // namespace limcycle::sample

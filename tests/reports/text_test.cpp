@@ -64,6 +64,28 @@ TEST_CASE("predict: predictions with their verdicts and deviations") {
   CHECK(widest(text) <= 80);
 }
 
+TEST_CASE("predict: trust in the predictions, with bands that are proved, heuristic or unknown") {
+  const auto text = predict_text("Relay", sample::trusted(), {});
+  CHECK_THAT(text, Contains("Trust in the predictions") && Contains("a cycle within 6 % of it is proved"));
+  CHECK_THAT(text, Contains("0.9800 to 1.030") && Contains("0.6000 to 0.7000  proved\n"));
+  CHECK_THAT(text, Contains("unknown") && Contains("heuristic\n") && Contains("0.0076") && Contains("1 %"));
+  CHECK(widest(text) <= 80);
+  const auto table = trust_table(sample::trusted(), {});
+  REQUIRE(table.rows.size() == 2);
+  CHECK(table.rows[0].back() == "proved");
+  CHECK(table.rows[1].back() == "heuristic");  // whatever it says, it is never called proved
+  CHECK(trust_table(sample::relay(), {}).rows.empty());
+  CHECK(predict_text("Relay", sample::relay(), {}).find("Trust") == std::string::npos);
+}
+
+TEST_CASE("predict: absence of oscillations is proved, or said not to be") {
+  CHECK_THAT(predict_text("x", sample::without_roots(BandVerdict::proved), {}),
+             Contains("Absence of oscillations\nProved (Mees and Bergen 1975): no error disc meets -Psi.\n"));
+  CHECK_THAT(predict_text("x", sample::without_roots(BandVerdict::undecided), {}),
+             Contains("Not proved (Mees and Bergen 1975): an oscillation is not excluded"));
+  CHECK(absence_in_words(sample::hunting()).empty());
+}
+
 TEST_CASE("predict: what is said without a cycle") {
   const auto first = [](const PredictReport& report) { return answer(report, {}).what_happens; };
   CHECK(first(quiet({Outcome::rest, Outcome::rest})) == "This loop does not hunt: from all 2 starts it comes to rest.");

@@ -45,7 +45,7 @@ struct TwoJenkins {
       g[2 * at + 1] = digit_i == 0 ? W(i) + force : S(1.0);
     }
   }
-  Mode next(const Input<double>&, Mode mode, std::span<double>, int fired) const {
+  Mode next(const Input<S>&, Mode mode, std::span<S>, int fired) const {
     const int i = fired / 2, slip = fired % 2 == 0 ? 1 : 2, now = digit(mode, i);
     const int then = now == 0 ? slip : 0;
     return {mode.value + (then - now) * (i == 0 ? 1 : 3)};

@@ -1,0 +1,158 @@
+#include "limcycle/analysis/frequency/composite_describing_function.hpp"
+
+#include <sstream>
+#include <stdexcept>
+#include <variant>
+
+#include "limcycle/analysis/frequency/composite_period.hpp"
+
+namespace limcycle {
+
+/// The solver for one law, behind one virtual call a point.
+struct CompositeDescribingFunction::Solver {
+  virtual ~Solver() = default;
+  virtual CompositeResponse solve(const CompositePoint& point, double relative, int orders,
+                                  const CompositeResponse* near) = 0;
+  virtual bool tears_loose(double force, double frequency) = 0;
+  virtual bool tears_loose(double bias, double force, double frequency, double direction) = 0;
+  virtual bool has_front() const = 0;
+  virtual double level() const = 0;
+};
+
+namespace {
+
+[[noreturn]] void refuse(const char* what, double value, const char* rule) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "composite describing function: " << what << " = " << value << " " << rule;
+  throw std::invalid_argument(text.str());
+}
+
+template <class E, class List>
+inline constexpr bool is_in = false;
+template <class E, class... Kinds>
+inline constexpr bool is_in<E, std::variant<Kinds...>> = (std::is_same_v<E, Kinds> || ...);
+
+template <template <class> class Kind, int D>
+class SolverOf : public CompositeDescribingFunction::Solver {
+ public:
+  SolverOf(const Kind<double>& law, double mass) : period_(law, mass) {}
+  CompositeResponse solve(const CompositePoint& point, double relative, int orders,
+                          const CompositeResponse* near) override {
+    return period_.solve(point, relative, orders, near);
+  }
+  bool tears_loose(double force, double frequency) override { return period_.tears_loose(force, frequency); }
+  bool tears_loose(double bias, double force, double frequency, double direction) override {
+    return period_.tears_loose(bias, force, frequency, direction);
+  }
+  bool has_front() const override { return period_.has_front(); }
+  double level() const override { return period_.level(); }
+
+ private:
+  CompositePeriod<Kind, D> period_;
+};
+
+std::unique_ptr<CompositeDescribingFunction::Solver> solver_of(const Element<double>& friction, double mass) {
+  using Made = std::unique_ptr<CompositeDescribingFunction::Solver>;
+  return std::visit(
+      [&]<template <class> class Kind>(const Kind<double>& law) -> Made {
+        if constexpr (is_in<Kind<double>, FrictionLaws::On<double>>) {
+          if (law.states() == 0) return std::make_unique<SolverOf<Kind, 1>>(law, mass);
+          if (law.states() == 1) return std::make_unique<SolverOf<Kind, 2>>(law, mass);
+          return std::make_unique<SolverOf<Kind, 0>>(law, mass);
+        } else {
+          throw std::invalid_argument("composite describing function: " + std::string(Kind<double>::kind) +
+                                      " is not a friction law");
+        }
+      },
+      friction);
+}
+
+void check(const CompositePoint& p, const CompositeOptions& o) {
+  if (!(p.force > 0.0 && std::isfinite(p.force))) refuse("force", p.force, "must be > 0 and finite");
+  if (!(p.frequency > 0.0 && std::isfinite(p.frequency))) refuse("frequency", p.frequency, "must be > 0 and finite");
+  if (p.bias && !std::isfinite(*p.bias)) refuse("bias", *p.bias, "must be finite");
+  if (!std::isfinite(p.mean_velocity)) refuse("mean velocity", p.mean_velocity, "must be finite");
+  if (o.harmonics < 1 || o.harmonics > 64) refuse("harmonics", o.harmonics, "must lie in 1..64");
+  if (!(o.accuracy >= 1e-11 && o.accuracy <= 0.1)) refuse("accuracy", o.accuracy, "must lie in 1e-11..0.1");
+}
+
+}  // namespace
+
+CompositeDescribingFunction::CompositeDescribingFunction(const Element<double>& friction, double mass) {
+  if (!(mass > 0.0 && std::isfinite(mass))) refuse("mass", mass, "must be > 0 and finite");
+  solver_ = solver_of(friction, mass);
+}
+
+CompositeDescribingFunction::~CompositeDescribingFunction() = default;
+CompositeDescribingFunction::CompositeDescribingFunction(CompositeDescribingFunction&&) noexcept = default;
+CompositeDescribingFunction& CompositeDescribingFunction::operator=(CompositeDescribingFunction&&) noexcept = default;
+
+CompositeResponse CompositeDescribingFunction::operator()(const CompositePoint& point, const CompositeOptions& options,
+                                                          const CompositeResponse* near) {
+  check(point, options);
+  const double relative = 0.1 * options.accuracy;
+  if (!options.estimate_error) return solver_->solve(point, relative, options.harmonics, near);
+  // The tolerance of a stepper with kinks in its way is no error bound: compare with a solution that is ten times
+  // looser, whose error is most of the difference; a half of it is a margin of about five.
+  CompositeResponse coarse = solver_->solve(point, 10.0 * relative, 1, near);
+  CompositeResponse fine =
+      solver_->solve(point, relative, options.harmonics, coarse.status == Status::converged ? &coarse : near);
+  fine.maps += coarse.maps;
+  fine.steps += coarse.steps;
+  if (fine.status != Status::converged) return fine;
+  const double size = std::max(std::abs(fine.gain), std::numeric_limits<double>::min());
+  fine.error += coarse.status == Status::converged ? 0.5 * std::abs(fine.gain - coarse.gain) / size : 1.0;
+  if (fine.error > options.accuracy) fine.status = Status::incomplete;
+  return fine;
+}
+
+double CompositeDescribingFunction::break_away(double frequency, double relative, double guess) {
+  const double level = solver_->level();
+  if (!(frequency > 0.0)) refuse("frequency", frequency, "must be > 0");
+  if (!solver_->has_front()) return level;
+  double low = guess > 0.0 ? guess : level, high = low, widen = guess > 0.0 ? 3e-4 : 0.01;
+  for (int i = 0; i < 60 && solver_->tears_loose(low, frequency); ++i, widen *= 2.0) {
+    high = low;
+    low *= 1.0 - std::min(widen, 0.5);
+  }
+  for (int i = 0; i < 60 && high <= low; ++i, widen *= 2.0) {
+    const double next = high * (1.0 + std::min(widen, 1.0));
+    if (solver_->tears_loose(next, frequency)) {
+      high = next;
+      break;
+    }
+    low = high = next;
+  }
+  while (high > low * (1.0 + relative)) {
+    const double middle = 0.5 * (low + high);
+    if (!(middle > low && middle < high)) break;
+    (solver_->tears_loose(middle, frequency) ? high : low) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double CompositeDescribingFunction::break_away_bias(double force, double frequency, double direction, double relative) {
+  check({force, frequency}, {});
+  const double level = solver_->level(), side = direction < 0.0 ? -1.0 : 1.0;
+  const auto loose = [&](double bias) { return solver_->tears_loose(side * bias, force, frequency, side); };
+  double width = 0.05 * level, low = level - force, high = low;
+  if (loose(low)) {
+    for (int i = 0; i < 40 && loose(low); ++i, width *= 2.0) {
+      high = low;
+      low -= width;
+    }
+  } else {
+    for (int i = 0; i < 40 && !loose(high); ++i, width *= 2.0) {
+      low = high;
+      high += width;
+    }
+  }
+  while (high - low > relative * level) {
+    const double middle = 0.5 * (low + high);
+    (loose(middle) ? high : low) = middle;
+  }
+  return side * 0.5 * (low + high);
+}
+
+}  // namespace limcycle

@@ -1,0 +1,132 @@
+#include <Eigen/LU>
+#include <cmath>
+
+#include "limcycle/analysis/motion/loop_field.hpp"
+
+namespace limcycle {
+namespace {
+
+using Eigen::Index;
+
+std::size_t guards_of(const Element<double>& element, Mode mode) {
+  return std::visit(
+      [&]<class E>(const E& e) -> std::size_t {
+        if constexpr (HasModes<E, double>) return static_cast<std::size_t>(e.guards(mode));
+        return 0;
+      },
+      element);
+}
+
+}  // namespace
+
+std::size_t LoopField::guard_count() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ne_; ++i)
+    if (has_own_guards(i)) count += guards_of(loop_->elements[i], modes_[i]);
+  return count;
+}
+
+void LoopField::guards(const State& x, double t, std::vector<double>& g) {
+  g.resize(guard_count());
+  if (g.empty()) return;
+  evaluate(x, t);
+  find_inputs(x);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < ne_; ++i) {
+    if (!has_own_guards(i)) continue;
+    std::visit(
+        [&]<class E>(const E& e) {
+          if constexpr (HasModes<E, double>) {
+            const auto count = static_cast<std::size_t>(e.guards(modes_[i]));
+            const std::span<const double> z(x.data() + first_state_[i], x.data() + x.size());
+            e.guard(inputs_[i], modes_[i], z, std::span<double>(g.data() + at, count));
+            at += count;
+          }
+        },
+        loop_->elements[i]);
+  }
+}
+
+std::size_t LoopField::owner(std::size_t guard) const {
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < ne_; ++i) {
+    if (has_own_guards(i)) at += guards_of(loop_->elements[i], modes_[i]);
+    if (guard < at) return i;
+  }
+  return modes_.size();
+}
+
+/// Number of a guard among those of its own element.
+std::size_t LoopField::first_guard_of(std::size_t i, std::size_t guard) const {
+  std::size_t first = guard;
+  while (first > 0 && owner(first - 1) == i) --first;
+  return guard - first;
+}
+
+void LoopField::fire(State& x, double t, std::size_t guard) {
+  const std::size_t i = owner(guard), k = first_guard_of(i, guard);
+  evaluate(x, t);
+  find_inputs(x);
+  std::visit(
+      [&]<class E>(const E& e) {
+        if constexpr (HasModes<E, double>) {
+          const std::span<double> z(x.data() + first_state_[i], x.data() + x.size());
+          modes_[i] = e.next(inputs_[i], modes_[i], z, static_cast<int>(k));
+        }
+      },
+      loop_->elements[i]);
+  if (held(i) != Held::rate) return;
+  // The located v is zero to the accuracy of the location; take what is left out along the direction the force acts in.
+  const Port& port = loop_->ports[i];
+  const Eigen::VectorXd column = loop_->B.col(static_cast<Index>(i));
+  Eigen::Map<Eigen::VectorXd>(x.data(), column.size()) -= column * (inputs_[i].v / (port.C_v * column).value());
+}
+
+bool LoopField::fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation) {
+  const std::size_t i = owner(guard), k = first_guard_of(i, guard);
+  const auto size = static_cast<Index>(size_);
+  State before, after;
+  rate(x, before, t);
+  output_gradients(x);
+  find_inputs(x);
+  const Eigen::RowVectorXd n = guard_gradient(x, i, k);
+  const Eigen::MatrixXd reset = reset_gradient(x, i, k);
+  fire(x, t, guard);
+  rate(x, after, t);
+  const Eigen::Map<const Eigen::VectorXd> f_minus(before.data(), size), f_plus(after.data(), size);
+  const double crossing = n * f_minus, speed = n.cwiseAbs() * f_minus.cwiseAbs();
+  if (!(std::abs(crossing) > 1e-12 * speed)) return false;
+  saltation = reset + (f_plus - reset * f_minus) * n / crossing;
+  if (held(i) == Held::rate) {  // deviations of the held velocity end here, to the last bit
+    const Port& port = loop_->ports[i];
+    const Eigen::VectorXd column = loop_->B.col(static_cast<Index>(i));
+    const Eigen::MatrixXd velocity = port.C_v * saltation.topRows(column.size());
+    saltation.topRows(column.size()) -= column * velocity / (port.C_v * column).value();
+  }
+  return true;
+}
+
+void LoopField::start(State& x, double t) {
+  for (std::size_t i = 0; i < ne_; ++i) {
+    if (!has_own_guards(i)) continue;
+    evaluate(x, t);
+    find_inputs(x);
+    std::visit(
+        [&]<class E>(const E& e) {
+          if constexpr (HasModes<E, double>)
+            modes_[i] = e.start(inputs_[i], {x.data() + first_state_[i], x.data() + x.size()});
+        },
+        loop_->elements[i]);
+  }
+}
+
+LoopState without_history(const Loop& loop, const Eigen::VectorXd& X) {
+  LoopField field(loop);
+  LoopState state{State(field.size(), 0.0), std::vector<Mode>(loop.elements.size())};
+  Eigen::Map<Eigen::VectorXd>(state.x.data(), X.size()) = X;
+  field.start(state.x, 0.0);
+  state.modes = field.modes();
+  return state;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,93 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "limcycle/analysis/orbit/return_map.hpp"
+
+namespace limcycle {
+
+/// One loop for each value of a parameter; empty where the value is not valid.
+using LoopFamily = std::function<std::optional<Loop>(double parameter)>;
+
+/// The parameter p as a number s that runs from 0 to `length` over a range: linear in p, or in log p where the range
+/// spans more than a factor of 3 with one sign. `length` weighs the range against the size of the orbit.
+class ParameterScale {
+ public:
+  static constexpr double length = 6.0;
+  /// Throws std::invalid_argument unless both ends are finite and differ.
+  ParameterScale(double from, double to);
+  double s(double p) const;
+  double p(double s) const;
+  double slope(double s) const;  ///< dp/ds
+
+ private:
+  double from_, to_;
+  bool logarithmic_;
+};
+
+/// Coordinates on a section: x = origin + scale * (basis u), basis orthonormal and tangent to the section.
+struct SectionChart {
+  Eigen::VectorXd scale;
+  Eigen::MatrixXd basis;
+
+  SectionChart() = default;
+  /// `largest`: sizes of the states on the orbit, none of them zero.
+  SectionChart(const Section& section, const State& largest);
+  State lift(const State& origin, const Eigen::VectorXd& u) const;
+  Eigen::VectorXd coordinates(const State& x, const State& origin) const;
+  /// A derivative of the map over all states in these coordinates.
+  Eigen::MatrixXd restricted(const Eigen::MatrixXd& derivative) const;
+};
+
+/// What a branch of cycles is solved from: R(u, s) = P(u; s) - u = 0, with P the (half) return map of the loop at s in
+/// coordinates u on a section that stays the same along a stretch of the branch. Costs one map each, dR/ds two.
+class BranchMap {
+ public:
+  struct Frame {
+    Section section;
+    bool half = false;
+    LoopState origin;  ///< a point of the section, u = 0, with the modes that hold around it
+    SectionChart chart;
+  };
+  struct Value {
+    Status status = Status::converged;
+    bool valid = true;  ///< false: there is no loop at this s (then status is not_finite)
+    Eigen::VectorXd r;
+    Eigen::MatrixXd D;  ///< dP/du, if it was asked for
+    double time = 0.0;  ///< of the (half) period
+    LoopState start;
+    State largest;
+  };
+
+  BranchMap(LoopFamily family, ParameterScale scale, double rtol, std::function<bool()> stop)
+      : family_(std::move(family)), scale_(scale), rtol_(rtol), stop_(std::move(stop)) {}
+
+  /// Null where the case is not valid.
+  std::shared_ptr<const Loop> loop(double s);
+  const ParameterScale& scale() const { return scale_; }
+  void set_frame(Frame frame) { frame_ = std::move(frame); }
+  const Frame& frame() const { return frame_; }
+  Eigen::Index dimension() const { return frame_.chart.basis.cols(); }
+  double rtol() const { return rtol_; }
+  long maps() const { return maps_; }
+  bool stopped() const { return stop_ && stop_(); }
+
+  Value at(const Eigen::VectorXd& u, double s, bool with_derivative) { return at(u, s, with_derivative, rtol_); }
+  Value at(const Eigen::VectorXd& u, double s, bool with_derivative, double rtol);
+  /// dR/ds by central differences; one-sided where the other side is not valid, has no map or jumps (`here`: R at
+  /// (u, s), by which that is seen). Empty if neither side will do.
+  std::optional<Eigen::VectorXd> slope(const Eigen::VectorXd& u, double s, double step, const Eigen::VectorXd& here);
+
+ private:
+  LoopFamily family_;
+  ParameterScale scale_;
+  double rtol_;
+  std::function<bool()> stop_;
+  Frame frame_;
+  std::vector<std::pair<double, std::shared_ptr<const Loop>>> recent_;
+  long maps_ = 0;
+};
+
+}  // namespace limcycle

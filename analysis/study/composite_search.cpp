@@ -1,0 +1,335 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "limcycle/analysis/study/composite_balance.hpp"
+
+namespace limcycle {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Half-width of the leap, relative to the force: within it, when the body tears loose depends on digits that nobody
+/// knows.
+constexpr double front_width = 1e-4;
+
+/// Steps of the integrator that a search of one side may cost: about a second.
+constexpr long step_budget = 400000;
+
+double cross(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
+double dot(Complex a, Complex b) { return a.real() * b.real() + a.imag() * b.imag(); }
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string ended(Status status) {
+  return status == Status::interrupted ? "its budget of steps used up" : "status " + std::string(to_string(status));
+}
+
+void check(const CompositeSearchOptions& o) {
+  const auto refuse = [](const std::string& what, double value) {
+    throw std::invalid_argument("composite balance: " + what + ", got " + number(value));
+  };
+  if (!(o.frequency_min > 0.0)) refuse("frequency_min must be > 0", o.frequency_min);
+  if (!(o.frequency_max > o.frequency_min && std::isfinite(o.frequency_max)))
+    refuse("frequency_max must be finite and exceed frequency_min", o.frequency_max);
+  if (!(o.force_min >= 0.0)) refuse("force_min must not be negative", o.force_min);
+  if (!(o.force_max >= 0.0 && std::isfinite(o.force_max))) refuse("force_max must be finite, 0 or more", o.force_max);
+  if (!(o.coarse_accuracy >= 1e-8 && o.coarse_accuracy <= 1e-2))
+    refuse("coarse_accuracy must lie in 1e-8..1e-2", o.coarse_accuracy);
+  if (!(o.accuracy >= 1e-10 && o.accuracy <= 1e-4)) refuse("accuracy must lie in 1e-10..1e-4", o.accuracy);
+}
+
+}  // namespace
+
+/// What two known neighbours say, on a straight line over the logarithm of the frequency; 0: nothing is known.
+double CompositeBalance::guess_front(double frequency) const {
+  double nearest = infinite, next = infinite, at[2] = {0.0, 0.0}, force[2] = {0.0, 0.0};
+  for (const auto& [key, value] : fronts_) {
+    const double place = std::log(key.first / frequency), apart = std::abs(place);
+    if (apart < nearest) {
+      next = nearest;
+      at[1] = at[0];
+      force[1] = force[0];
+      nearest = apart;
+      at[0] = place;
+      force[0] = value;
+    } else if (apart < next && place != at[0]) {
+      next = apart;
+      at[1] = place;
+      force[1] = value;
+    }
+  }
+  if (!std::isfinite(next) || std::abs(at[1] - at[0]) < 1e-6) return force[0];
+  return force[0] - at[0] * (force[1] - force[0]) / (at[1] - at[0]);
+}
+
+/// Break-away force and N on either side. The force is kept: it is asked for at every amplitude of a frequency.
+CompositeBalance::Front CompositeBalance::front(double frequency, double accuracy) {
+  const double relative = accuracy > 1e-5 ? 0.03 * front_width : 1e-9;
+  const auto key = std::pair(frequency, relative);
+  auto known = fronts_.find(key);
+  if (known == fronts_.end()) {
+    known = fronts_.emplace(key, element_.break_away(frequency, relative, guess_front(frequency))).first;
+  }
+  return {known->second, {}, {}, 0.0, 0.0};
+}
+
+/// The force at a coordinate that keeps the leap at 1: below it U itself, above it 1 + (ln)^2/2 + ..., because N leaves
+/// the leap like a square root.
+double CompositeBalance::side_force(double coordinate, double frequency, bool above, double accuracy) {
+  const double leap = front(frequency, accuracy).force;
+  return above ? leap * (1.0 + front_width) * std::cosh(std::log(coordinate)) : leap * (1.0 - front_width) * coordinate;
+}
+
+/// Frequencies at which a passive N can balance: Im(1/K) <= 0, with three degrees to spare.
+std::vector<CompositeBalance::Window> CompositeBalance::windows(const CompositeSearchOptions& options) const {
+  if (biased_) return {{options.frequency_min, options.frequency_max}};
+  std::vector<Window> found;
+  const int n = 200;
+  const double ratio = std::log(options.frequency_max / options.frequency_min) / n;
+  bool open = false;
+  double last = options.frequency_min;
+  for (int i = 0; i <= n; ++i) {
+    const double w = i == n ? options.frequency_max : options.frequency_min * std::exp(ratio * i);
+    const Complex N = 1.0 / rest_of_loop(w);
+    const bool may = !(N.imag() > 0.05 * std::abs(N));
+    if (may && !open) found.push_back({last, w});
+    if (may || open) found.back().high = w;
+    open = may;
+    last = w;
+  }
+  return found;
+}
+
+void CompositeBalance::add(double force, double frequency, int index, const CompositeSearchOptions& options,
+                           CompositeSearch& found) {
+  const CompositeResponse r = solve(force, frequency, options.accuracy, false);
+  if (r.status != Status::converged) return;
+  CompositeRoot root = describe(force, frequency, r.gain, index);
+  root.bias = r.bias;
+  root.sticking_fraction = r.sticking_fraction;
+  found.roots.push_back(root);
+}
+
+/// The caller's wish to stop, or too many steps.
+std::function<bool()> CompositeBalance::bounded(const CompositeSearchOptions& options) const {
+  return [this, stop = options.stop, limit = steps_ + (biased_ ? 2 : 1) * step_budget] {
+    return steps_ > limit || (stop && stop());
+  };
+}
+
+/// Below break-away |N| is that of a stiff spring, mostly far too small: is |K N| anywhere above a half? N grows with
+/// the force there and changes smoothly with the frequency (the natural frequency of mass and bristles included, where
+/// the samples stand closer than its width).
+bool CompositeBalance::may_balance_below(const Window& window, const CompositeSearchOptions& options,
+                                         CompositeSearch& found) {
+  const int n = std::clamp(static_cast<int>(10.0 * std::log10(window.high / window.low)), 4, 80);
+  for (int i = 0; i <= n; ++i) {
+    if (options.stop && options.stop()) {
+      found.status = Status::interrupted;
+      return false;
+    }
+    const double w = window.low * std::pow(window.high / window.low, double(i) / n);
+    for (const double share : {0.2, 1.0}) {
+      const double force = side_force(share, w, false, options.coarse_accuracy);
+      const CompositeResponse r = solve(force, w, options.coarse_accuracy, false);
+      if (r.status != Status::converged || std::abs(r.gain * rest_of_loop(w)) > 0.5) return true;
+    }
+  }
+  return false;
+}
+
+void CompositeBalance::search_side(const Window& window, bool above, const CompositeSearchOptions& options,
+                                   CompositeSearch& found) {
+  const double low = options.force_min > 0.0 ? options.force_min : 0.2 * level_;
+  const double high = options.force_max > 0.0 ? options.force_max : 100.0 * level_;
+  RootSearchOptions search;
+  SearchBox box{low / level_, 1.0, window.low, window.high};
+  if (above) box = {1.0, std::exp(std::acosh(std::max(high / level_, 1.01))), window.low, window.high};
+  if (!(box.amplitude_max > box.amplitude_min * 1.001)) return;
+  const double decades = std::log10(window.high / window.low);
+  search.initial_cells_amplitude = above ? 8 : 4;
+  search.initial_cells_frequency = std::clamp(static_cast<int>(std::ceil(4.0 * decades)), 6, 24);
+  search.coarse_accuracy = options.coarse_accuracy;
+  search.fine_accuracy = options.accuracy;
+  search.residual = 100.0 * options.accuracy;
+  search.max_evaluations = 3000;
+  search.interrupted = bounded(options);
+  near_.reset();
+  if (!above && !may_balance_below(window, options, found)) return;
+  near_.reset();
+  const auto side = find_roots(
+      [&](double a, double w, double accuracy) { return (*this)(side_force(a, w, above, accuracy), w, accuracy); }, box,
+      search);
+  for (const Root& root : side.roots)
+    add(side_force(root.amplitude, root.frequency, above, 1e-12), root.frequency, root.index, options, found);
+  if (options.stop && options.stop()) found.status = Status::interrupted;
+  if (side.status != Status::converged && side.status != Status::no_cycle)
+    found.notes.push_back(std::string("the search ") + (above ? "above" : "below") + " break-away ended with " +
+                          ended(side.status) + ": roots may be missing");
+}
+
+/// On a belt or a ramp: the sheet of motions that stick in every period (see stick_slip), then that of motions that
+/// slide all the time, whose velocity amplitude U/(m w) is below the mean velocity, or without a mean velocity
+/// everything.
+void CompositeBalance::search_biased(const CompositeSearchOptions& options, CompositeSearch& found) {
+  const double low = options.force_min > 0.0 ? options.force_min : 0.1 * level_;
+  const double high = options.force_max > 0.0 ? options.force_max : 10.0 * level_;
+  RootSearchOptions search;
+  search.initial_cells_amplitude = 8;
+  search.initial_cells_frequency =
+      std::clamp(static_cast<int>(std::ceil(4.0 * std::log10(options.frequency_max / options.frequency_min))), 6, 24);
+  search.coarse_accuracy = options.coarse_accuracy;
+  search.fine_accuracy = options.accuracy;
+  search.residual = 100.0 * options.accuracy;
+  search.max_evaluations = 3000;
+  search.max_border_depth = 5;
+  search.interrupted = bounded(options);
+  const SearchBox box{low, high, options.frequency_min, options.frequency_max};
+  const Complex undefined{std::nan(""), std::nan("")};
+  const double speed = std::abs(mean_velocity_);
+  near_.reset();
+  const auto note = [&](const RootSearch& side, const char* what) {
+    if (options.stop && options.stop()) found.status = Status::interrupted;
+    if (side.status == Status::converged || side.status == Status::no_cycle) return;
+    found.notes.push_back(std::string("the search among ") + what + " ended with " + ended(side.status) +
+                          ": roots may be missing");
+  };
+  if (speed == 0.0) {
+    const auto all =
+        find_roots([&](double U, double w, double accuracy) { return (*this)(U, w, accuracy); }, box, search);
+    for (const Root& root : all.roots) add(root.amplitude, root.frequency, root.index, options, found);
+    return note(all, "biased motions");
+  }
+  const auto sticking = find_roots(
+      [&](double U, double w, double accuracy) {
+        const auto s = stick_slip(U, w, accuracy);
+        return s ? residue(s->gain, w) : undefined;
+      },
+      box, search);
+  for (const Root& root : sticking.roots) {
+    const auto s = stick_slip(root.amplitude, root.frequency, options.accuracy);
+    if (!s) continue;
+    CompositeRoot made = describe(root.amplitude, root.frequency, s->gain, root.index);
+    made.bias = s->bias;
+    made.sticking_fraction = s->sticking;
+    made.on_break_away_front = s->share < 1.0;
+    if (made.on_break_away_front)
+      made.note = "lies in the leap of the mean velocity at break-away: full stick-slip would be " +
+                  number(1.0 / s->share) +
+                  " times as fast as the mean motion: a first-harmonic balance is hardly a prediction there";
+    found.roots.push_back(made);
+  }
+  note(sticking, "motions that stick");
+  // Friction of constant slope makes this sheet linear: no cycle, or a family of sines.
+  const bool curved =
+      std::visit([](const auto& e) { return std::isfinite(e.scales().velocity); }, loop_->elements.back());
+  if (!curved || found.status == Status::interrupted) return;
+  search.interrupted = bounded(options);
+  const auto sliding = find_roots(
+      [&](double a, double w, double accuracy) {
+        near_.reset();
+        return (*this)(a * mass_ * w, w, accuracy);
+      },
+      {0.01 * speed, 0.999 * speed, options.frequency_min, options.frequency_max}, search);
+  for (const Root& root : sliding.roots)
+    add(root.amplitude * mass_ * root.frequency, root.frequency, root.index, options, found);
+  note(sliding, "motions that slide all the time");
+}
+
+/// Along the leap: 1 - K N is 0 on the straight line between its two sides where they point in opposite directions.
+void CompositeBalance::search_front(const Window& window, const CompositeSearchOptions& options,
+                                    CompositeSearch& found) {
+  const auto sides = [&](double w, double accuracy) {
+    Front f = front(w, accuracy);
+    near_.reset();
+    const CompositeResponse low = solve(f.force * (1.0 - front_width), w, accuracy, false);
+    near_.reset();
+    const CompositeResponse high = solve(f.force * (1.0 + front_width), w, accuracy, false);
+    near_.reset();
+    f.below = f.above = {std::nan(""), std::nan("")};
+    if (low.status == Status::converged) f.below = residue(low.gain, w);
+    if (high.status == Status::converged) f.above = residue(high.gain, w);
+    f.sticking_below = low.sticking_fraction;
+    f.sticking_above = high.sticking_fraction;
+    return f;
+  };
+  const int n = std::clamp(static_cast<int>(8.0 * std::log10(window.high / window.low)), 12, 60);
+  const double ratio = std::log(window.high / window.low) / n;
+  double w0 = window.low;
+  Front last = sides(w0, options.coarse_accuracy);
+  for (int i = 1; i <= n; ++i) {
+    if (options.stop && options.stop()) {
+      found.status = Status::interrupted;
+      return;
+    }
+    const double w1 = window.low * std::exp(ratio * i);
+    const Front now = sides(w1, options.coarse_accuracy);
+    const double c0 = cross(last.below, last.above), c1 = cross(now.below, now.above);
+    if (c0 * c1 < 0.0) {
+      double low = w0, high = w1, at_low = c0, at_high = c1;
+      Front f = last;
+      double w = w0;
+      for (int k = 0; k < 30 && high - low > 1e-5 * low; ++k) {
+        w = k % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * at_low / (at_low - at_high);
+        f = sides(w, 1e-6);
+        const double c = cross(f.below, f.above);
+        if (!std::isfinite(c) || c == 0.0) break;
+        ((c < 0.0) == (at_low < 0.0) ? low : high) = w;
+        ((c < 0.0) == (at_low < 0.0) ? at_low : at_high) = c;
+      }
+      last = now;
+      w0 = w1;
+      if (!(dot(f.below, f.above) < 0.0)) continue;
+      const double share = std::abs(f.below) / (std::abs(f.below) + std::abs(f.above));
+      const double step = 1e-3;
+      const Front later = sides(w * (1.0 + step), 1e-6);
+      const Complex along = ((1.0 - share) * (later.below - f.below) + share * (later.above - f.above)) / step;
+      const int index = cross(f.above - f.below, along) > 0.0 ? 1 : -1;
+      CompositeRoot root = describe(f.force, w, 1.0 / rest_of_loop(w), index);
+      root.residual = std::abs(cross(f.below, f.above)) / std::abs(f.above - f.below);
+      root.sticking_fraction = (1.0 - share) * f.sticking_below + share * f.sticking_above;
+      root.on_break_away_front = true;
+      root.note = "lies in the leap of N at break-away (U = " + number(f.force) +
+                  " N), between x1 = " + number(std::abs((1.0 - f.below) / rest_of_loop(w)) * f.force) + " m and " +
+                  number(std::abs((1.0 - f.above) / rest_of_loop(w)) * f.force) +
+                  " m: a first-harmonic balance is hardly a prediction there";
+      found.roots.push_back(root);
+    }
+    last = now;
+    w0 = w1;
+  }
+}
+
+CompositeSearch CompositeBalance::find(const CompositeSearchOptions& options) {
+  check(options);
+  CompositeSearch found;
+  const long evaluations = evaluations_, steps = steps_;
+  fronts_.clear();
+  if (biased_) {
+    search_biased(options, found);
+  } else {
+    for (const Window& window : windows(options)) {
+      if (!(window.high > window.low * 1.0001)) continue;
+      search_front(window, options, found);
+      for (const bool above : {false, true})
+        if (found.status != Status::interrupted) search_side(window, above, options, found);
+    }
+  }
+  std::ranges::sort(found.roots, {}, &CompositeRoot::frequency);
+  found.evaluations = evaluations_ - evaluations;
+  found.steps = steps_ - steps;
+  if (found.status == Status::interrupted) return found;
+  if (!found.notes.empty())
+    found.status = Status::incomplete;
+  else if (!found.roots.empty())
+    found.status = Status::converged;
+  return found;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,45 @@
+#include "limcycle/analysis/study/cycle_hunt.hpp"
+
+#include <algorithm>
+
+#include "limcycle/analysis/orbit/edge.hpp"
+#include "limcycle/analysis/study/verdicts.hpp"
+
+namespace limcycle {
+
+CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box) : loop_(loop) {
+  settle_.amplitude_floor = box.amplitude_min;
+  settle_.amplitude_ceiling = 1e4 * box.amplitude_max;
+  settle_.shooting.rtol = std::clamp(3e-4 * options.accuracy, 1e-13, 1e-9);
+  settle_.shooting.tolerance = 30.0 * settle_.shooting.rtol;
+  settle_.stop = settle_.shooting.stop = options.stop;
+}
+
+const OutcomeOfStart& CycleHunt::settle_from(const LoopState& start, std::string name) {
+  settle_.known = cycles_;
+  Settled settled = settle(loop_, start, settle_);
+  OutcomeOfStart outcome{std::move(name), settled.outcome, std::move(settled.why), {}, std::move(settled.trace)};
+  outcome.cycle = settled.known;
+  if (settled.shot) outcome.cycle = merge(cycles_, settled.shot->cycle);
+  outcomes_.push_back(std::move(outcome));
+  return outcomes_.back();
+}
+
+std::optional<std::size_t> CycleHunt::keep(const ShootingResult& shot) {
+  if (shot.status != Status::converged || !shot.cycle.stable) return std::nullopt;
+  if (shot.cycle.amplitude < settle_.amplitude_floor) return std::nullopt;
+  return merge(cycles_, shot.cycle);
+}
+
+std::optional<std::size_t> CycleHunt::shoot_from(const OrbitGuess& guess) {
+  ShootingOptions options = settle_.shooting;
+  options.max_maps = 60;
+  return keep(shoot_multiple(loop_, guess, options));
+}
+
+std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(double scale)>& ray, double period) {
+  settle_.known = cycles_;
+  return keep(edge_cycle(loop_, ray, period, settle_));
+}
+
+}  // namespace limcycle

@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/orbit/multiple_shooting.hpp"
+#include "limcycle/analysis/study/predict.hpp"
+
+namespace limcycle {
+
+/// What really happens in a loop: the distinct limit cycles found so far, and what was reached from each start.
+class CycleHunt {
+ public:
+  CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box);
+
+  /// Simulates from a state until it is clear what is reached; a cycle reached joins `cycles`.
+  const OutcomeOfStart& settle_from(const LoopState& start, std::string name);
+  /// Newton for the cycle near a guess, stable or not; index of the cycle found (and whether it is near is for the
+  /// caller to say).
+  std::optional<std::size_t> shoot_from(const OrbitGuess& guess);
+  /// The unstable cycle between the smaller and larger oscillations of a family that grow and shrink.
+  std::optional<std::size_t> edge_along(const std::function<LoopState(double scale)>& ray, double period);
+
+  const std::vector<Cycle>& cycles() const { return cycles_; }
+  const std::vector<OutcomeOfStart>& outcomes() const { return outcomes_; }
+
+ private:
+  std::optional<std::size_t> keep(const ShootingResult& shot);
+
+  const Loop& loop_;
+  SettleOptions settle_;
+  std::vector<Cycle> cycles_;
+  std::vector<OutcomeOfStart> outcomes_;
+};
+
+}  // namespace limcycle

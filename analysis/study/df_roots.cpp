@@ -1,0 +1,102 @@
+#include "limcycle/analysis/study/df_roots.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/short_number.hpp"
+
+namespace limcycle {
+namespace {
+
+class Search {
+ public:
+  Search(const Loop& loop, const LoopBalance& balance, const SearchBox& box, const std::function<bool()>& stop)
+      : loop_(loop), balance_(balance), box_(box), stop_(stop) {}
+
+  DfRoots run() {
+    for (const double pole : undamped_poles())
+      found_.notes.push_back("the rest of the loop has an undamped resonance at " + short_number(pole) +
+                             " rad/s: roots within 0.1 % of it are not looked for");
+    for (const SearchBox& box : between_undamped_poles()) {
+      auto part = search(box);
+      found_.roots.insert(found_.roots.end(), part.roots.begin(), part.roots.end());
+    }
+    return std::move(found_);
+  }
+
+ private:
+  std::vector<double> undamped_poles() const {
+    std::vector<double> found;
+    for (const auto& pole : loop_.A.eigenvalues())
+      if (pole.imag() > 0.0 && std::abs(pole.real()) < 1e-9 * pole.imag()) found.push_back(pole.imag());
+    std::ranges::sort(found);
+    return found;
+  }
+
+  /// G is infinite at an undamped pole of the rest of the loop: the box is cut there, a part in 1e3 of the frequency.
+  std::vector<SearchBox> between_undamped_poles() const {
+    const auto cuts = undamped_poles();
+    std::vector<SearchBox> boxes{box_};
+    for (const double cut : cuts) {
+      SearchBox& last = boxes.back();
+      if (cut <= last.frequency_min * 1.001 || cut >= last.frequency_max * 0.999) continue;
+      SearchBox next = last;
+      last.frequency_max = cut * (1.0 - 1e-3);
+      next.frequency_min = cut * (1.0 + 1e-3);
+      boxes.push_back(next);
+    }
+    return boxes;
+  }
+
+  /// On a belt N has a kink where the velocity amplitude A w is the mean velocity: there the search runs over (A w, w),
+  /// in which that line is straight.
+  RootSearch search(SearchBox box) {
+    RootSearchOptions options;
+    options.interrupted = stop_;
+    if (balance_.main_element() > 0) options.max_evaluations = 20000;  // the other element's kink crosses the whole box
+    for (const auto& pole : loop_.A.eigenvalues())
+      if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)
+        options.frequency_hints.push_back(std::abs(pole));
+    // The phase of a delay must not turn by more than about 0.7 between two samples.
+    const double turns = box.frequency_max * loop_.delay * std::log(box.frequency_max / box.frequency_min);
+    options.initial_cells_frequency = std::clamp(static_cast<int>(turns / 1.4), options.initial_cells_frequency, 800);
+    const double speed = std::abs(balance_.mean_velocity());
+    if (speed > 0.0) {
+      box.amplitude_min *= box.frequency_min;
+      box.amplitude_max *= box.frequency_max;
+      if (speed > box.amplitude_min && speed < box.amplitude_max) options.amplitude_hints = {speed};
+    }
+    auto found =
+        find_roots([&](double A, double w, double accuracy) { return balance_(speed > 0.0 ? A / w : A, w, accuracy); },
+                   box, options);
+    if (speed > 0.0) {
+      for (Root& root : found.roots) root.amplitude /= root.frequency;
+      std::erase_if(found.roots, [&](const Root& root) {
+        return root.amplitude < box_.amplitude_min || root.amplitude > box_.amplitude_max;
+      });
+    }
+    if (found.status != Status::converged && found.status != Status::no_cycle) {
+      found_.notes.push_back("the root search between " + short_number(box.frequency_min) + " and " +
+                             short_number(box.frequency_max) + " rad/s ended with status " +
+                             std::string(to_string(found.status)) + ": roots may be missing");
+      found_.status = found.status == Status::not_finite ? Status::not_finite : Status::incomplete;
+    }
+    return found;
+  }
+
+  const Loop& loop_;
+  const LoopBalance& balance_;
+  const SearchBox& box_;
+  const std::function<bool()>& stop_;
+  DfRoots found_;
+};
+
+}  // namespace
+
+DfRoots find_df_roots(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+                      const std::function<bool()>& stop) {
+  return Search(loop, balance, box, stop).run();
+}
+
+}  // namespace limcycle

@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/study/loop_balance.hpp"
+
+namespace limcycle {
+
+struct DfRoots {
+  std::vector<Root> roots;
+  std::vector<std::string> notes;  ///< where roots may be missing
+  Status status = Status::converged;
+};
+
+/// All roots of 1 + N(A, w) G(jw) of a loop in a box: the box is cut at undamped poles of the rest of the loop (where G
+/// is infinite), the phase of a delay sets the grid, and on a belt the search runs along the kink of N.
+DfRoots find_df_roots(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+                      const std::function<bool()>& stop);
+
+}  // namespace limcycle

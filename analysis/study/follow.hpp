@@ -1,0 +1,35 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/orbit/continuation.hpp"
+#include "limcycle/analysis/study/predict.hpp"
+
+namespace limcycle {
+
+struct FollowOptions {
+  ContinuationOptions continuation;  ///< from, to; its stop and progress are set from those of `predict`
+  PredictOptions predict;            ///< how cycles are found at the start; its search box is for the case's own value
+  std::optional<double> own;         ///< the case's own value, if it has one
+  int scan = 12;                     ///< values over the range that are tried if there is no cycle at the start
+};
+
+/// Every branch of limit cycles that passes through one value of a parameter.
+struct FollowReport {
+  double from = 0.0, to = 0.0;
+  double start = 0.0;  ///< the value at which cycles were looked for
+  std::vector<Branch> branches;
+  std::vector<std::string> notes;
+  Status status = Status::converged;  ///< no_cycle: none was found at any value that was tried
+};
+
+/// Finds the limit cycles at the case's own value (or at `from`, if that lies outside the range; or, if there are none,
+/// at the first of `scan` values over the range that has one) by predict(), and follows each of them that does not lie
+/// on a branch already. Throws std::invalid_argument for a bad range.
+FollowReport follow(const LoopFamily& family, const FollowOptions& options);
+
+/// Does the branch pass through this cycle at this value of the parameter (as far as its points tell)?
+bool passes(const Branch& branch, double parameter, const Cycle& cycle);
+
+}  // namespace limcycle

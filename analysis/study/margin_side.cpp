@@ -1,0 +1,147 @@
+#include "limcycle/analysis/study/margin_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace limcycle {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double beyond = 1e-2;  ///< how far past a lost cycle, relative, one looks whether the loop still hunts
+constexpr int successors = 3;    ///< other cycles that are followed in turn
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5g", value);
+  return text;
+}
+
+}  // namespace
+
+SideSearch::SideSearch(const MarginParameter& parameter, bool up, const MarginOptions& options,
+                       std::function<void(double)> progress)
+    : parameter_(parameter),
+      options_(options),
+      progress_(std::move(progress)),
+      limit_(up ? parameter.value * options.factor : parameter.value / options.factor) {}
+
+SideSearch::Lost SideSearch::follow(const Cycle& cycle, double p, double limit) {
+  ContinuationOptions continuing;
+  continuing.from = p;
+  continuing.to = limit;
+  continuing.downwards = false;
+  continuing.until_event = true;
+  continuing.accuracy = options_.accuracy;
+  continuing.first_step = 0.1;
+  continuing.max_step = 0.6;
+  continuing.max_points = 150;
+  continuing.stop = options_.predict.stop;
+  continuing.progress = progress_;
+  const Branch branch = continue_cycle(parameter_.family, cycle, p, continuing);
+  if (branch.points.empty() || branch.events.empty())
+    return {p, unknown, branch.why.empty() ? "the cycle could not be followed" : branch.why, Lost::Kind::failed,
+            cycle.start};
+  LoopState last = cycle.start;
+  for (const auto& point : branch.points)
+    if (point.cycle.stable == true) last = point.cycle.start;
+  const BranchEvent& event = branch.events.back();
+  const bool reached = event.type == BranchEvent::Type::end && event.parameter == limit;
+  const bool cut = branch.status == Status::max_iterations || branch.status == Status::interrupted;
+  return {event.parameter, event.error, event.why,
+          reached ? Lost::Kind::border
+          : cut   ? Lost::Kind::failed
+                  : Lost::Kind::lost,
+          std::move(last)};
+}
+
+std::optional<Cycle> SideSearch::cycle_at(double p, const LoopState* from, Outcome& outcome) {
+  const auto loop = parameter_.family(p);
+  outcome = Outcome::undecided;
+  if (!loop) return std::nullopt;
+  const SearchBox box = default_search_box(*loop);
+  SettleOptions settling;
+  settling.amplitude_floor = box.amplitude_min;
+  settling.amplitude_ceiling = 1e4 * box.amplitude_max;
+  settling.shooting.rtol = 3e-10;
+  settling.shooting.tolerance = 1e-8;
+  settling.stop = settling.shooting.stop = options_.predict.stop;
+  std::vector<LoopState> starts;
+  const LoopState rest = displaced(*loop, box.amplitude_max);
+  if (from && from->x.size() == rest.x.size()) starts.push_back(*from);
+  starts.push_back(rest);
+  starts.push_back(displaced(*loop, 0.01 * box.amplitude_max));
+  for (const LoopState& start : starts) {
+    auto settled = settle(*loop, start, settling);
+    if (settled.shot && settled.shot->cycle.stable == true) {
+      outcome = Outcome::cycle;
+      return std::move(settled.shot->cycle);
+    }
+    if (outcome == Outcome::undecided) outcome = settled.outcome;
+    if (settled.outcome == Outcome::divergence || stopped()) break;
+  }
+  return std::nullopt;
+}
+
+MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
+  using What = MarginSide::What;
+  const auto stable = std::ranges::find(cycles, std::optional<bool>(true), &Cycle::stable);
+  Cycle cycle = *stable;
+  double p = parameter_.value;
+  for (int i = 0; i <= successors; ++i) {
+    const Lost lost = follow(cycle, p, limit_);
+    if (lost.kind == Lost::Kind::border) return {What::none, 0.0, 0.0, "it hunts all the way to " + number(limit_)};
+    if (lost.kind == Lost::Kind::failed) return {What::unknown, 0.0, unknown, lost.why};
+    const double step = limit_ > p ? beyond : -beyond;
+    const double next = lost.value * (1.0 + (parameter_.value > 0.0 ? step : -step));
+    const bool past = std::abs(std::log(next / parameter_.value)) >= std::abs(std::log(limit_ / parameter_.value));
+    if (past || !parameter_.family(next)) return {What::ends, lost.value, lost.error, lost.why};
+    Outcome outcome{};
+    auto other = cycle_at(next, &lost.last, outcome);
+    if (stopped()) break;
+    if (!other) {
+      if (outcome != Outcome::undecided) {
+        const std::string after = outcome == Outcome::divergence
+                                      ? "; beyond it the motion diverges"
+                                      : "; beyond it the motion ends in " + std::string(to_string(outcome));
+        return {What::ends, lost.value, lost.error, lost.why + after};
+      }
+      return {What::ends, lost.value, lost.error, lost.why + "; what the motion does just beyond was not decided"};
+    }
+    cycle = std::move(*other);
+    p = next;
+  }
+  return {What::unknown, 0.0, unknown, "one cycle takes over from the next; the last was lost near " + number(p)};
+}
+
+MarginSide SideSearch::where_hunting_begins() {
+  using What = MarginSide::What;
+  const int steps = std::max(1, static_cast<int>(std::ceil(options_.scan_per_decade * std::log10(options_.factor))));
+  double last = parameter_.value;
+  for (int i = 1; i <= steps && !stopped(); ++i) {
+    const double p = parameter_.value * std::pow(limit_ / parameter_.value, static_cast<double>(i) / steps);
+    if (progress_) progress_(static_cast<double>(i) / (steps + 1));
+    if (!parameter_.family(p))
+      return {What::none, 0.0, 0.0, "none up to " + number(last) + "; the case is not valid at " + number(p)};
+    Outcome outcome{};
+    const auto cycle = cycle_at(p, nullptr, outcome);
+    if (outcome == Outcome::divergence)
+      return {What::none, 0.0, 0.0, "none up to " + number(last) + "; at " + number(p) + " the motion diverges"};
+    if (cycle) {
+      const Lost lost = follow(*cycle, p, parameter_.value);
+      if (lost.kind == Lost::Kind::lost) return {What::begins, lost.value, lost.error, lost.why};
+      if (lost.kind == Lost::Kind::border)
+        return {What::begins, parameter_.value, 0.0,
+                "the cycle found at " + number(p) +
+                    " reaches back to the parameter's own value: the loop hunts there "
+                    "from starts that were not tried"};
+      return {What::begins, p, unknown,
+              "it hunts at " + number(p) + "; where that begins could not be followed: " + lost.why};
+    }
+    last = p;
+  }
+  return {What::none, 0.0, 0.0, "it does not hunt up to " + number(last)};
+}
+
+}  // namespace limcycle

@@ -1,0 +1,29 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/cases/case.hpp"
+
+namespace limcycle {
+
+/// A parameter of a case's loop that is one number.
+struct CaseNumber {
+  std::string path;  ///< "loop.controller.kd"
+  std::string unit;  ///< "1" if dimensionless
+  std::string meaning;
+  double value = 0.0;    ///< infinite where the parameter stands for something absent (a saturation)
+  bool follows = false;  ///< it is not written and has the value of another one (Fs_minus, of Fs)
+};
+
+/// All of them: plant, controller, friction, elements, then reference and load.
+std::vector<CaseNumber> numbers_of(const Case& from);
+
+/// The number at a path. Throws InputError (of `flag`, such as "--parameter") if there is none.
+CaseNumber number_at(const Case& from, const std::string& flag, const std::string& path);
+
+/// The case's loop with another value at a path, read as `--set` would; empty where that is not a valid case.
+std::optional<Loop> loop_with(const Case& from, const std::string& path, double value);
+
+}  // namespace limcycle

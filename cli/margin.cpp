@@ -1,0 +1,117 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+
+#include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/units_of.hpp"
+#include "limcycle/reports/margin.hpp"
+
+namespace limcycle {
+namespace {
+
+struct MarginFlags : CommonFlags {
+  std::string html;                     ///< --html
+  double factor = 10.0;                 ///< --factor
+  std::vector<std::string> parameters;  ///< --parameter PATH, repeatable; empty: all
+};
+
+MarginParameter parameter_of(const Case& from, const CaseNumber& number) {
+  return {number.path, number.unit, number.value, number.path.starts_with("loop.friction."),
+          [&from, path = number.path](double p) { return loop_with(from, path, p); }};
+}
+
+/// The parameters that were asked for, or all that a factor can change; what is left out goes into `notes`.
+std::vector<MarginParameter> parameters_of(const Case& from, const MarginFlags& flags,
+                                           std::vector<std::string>& notes) {
+  std::vector<MarginParameter> chosen;
+  for (const auto& path : flags.parameters) {
+    const CaseNumber number = number_at(from, "--parameter", path);
+    if (number.value == 0.0 || !std::isfinite(number.value))
+      throw InputError({.file = {},
+                        .line = 0,
+                        .override = {},
+                        .key = "--parameter " + path,
+                        .value = {},
+                        .rule = "is zero or absent: no factor changes it",
+                        .suggestion = {}});
+    chosen.push_back(parameter_of(from, number));
+  }
+  if (!chosen.empty()) return chosen;
+  std::string zero;
+  for (const auto& number : numbers_of(from)) {
+    if (number.follows || !std::isfinite(number.value)) continue;
+    if (number.value != 0.0)
+      chosen.push_back(parameter_of(from, number));
+    else
+      zero += (zero.empty() ? "" : ", ") + number.path;
+  }
+  if (!zero.empty()) notes.push_back("zero, so that no factor changes them: " + zero);
+  return chosen;
+}
+
+int exit_code(const MarginReport& report) {
+  const bool nothing = report.parameters.empty() && !report.balance;
+  return nothing && report.status != Status::converged && report.status != Status::interrupted ? exit_no_answer
+                                                                                               : exit_done;
+}
+
+int run(MarginFlags flags) {
+  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  const Case from = load_case(flags);
+  const LoopParts& parts = need_loop(from);
+  const Units units = units_of(parts);
+  std::vector<std::string> notes;
+  const auto parameters = parameters_of(from, flags, notes);
+  Output output(flags);
+  output.check_file("--html", flags.html);
+
+  MarginReport report;
+  {
+    Progress progress(flags.quiet);
+    MarginOptions options;
+    options.factor = flags.factor;
+    options.predict = from.predict;
+    options.predict.stop = interrupted;
+    options.predict.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
+    catch_interrupts();
+    report = margin(build_loop(parts), parameters, options);
+  }
+  report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+  const auto made = provenance(flags, &from);
+  std::string text = margin_text(from.title, report, units);
+  if (!flags.html.empty()) {
+    output.file(flags.html, margin_page(report, made, from.text, units));
+    text += "\nreport: " + flags.html + "\n";
+  }
+  output.text(text);
+  if (output.wants_json()) output.json(margin_json(made, report));
+  if (output.wants_csv()) output.csv(margin_csv(report));
+  output.finish();
+  if (report.status == Status::interrupted && !flags.quiet)
+    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  return exit_code(report);
+}
+
+}  // namespace
+
+void add_margin(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<MarginFlags>();
+  CLI::App* command =
+      add_command(program, action, "margin", "How far each parameter is from where hunting begins or ends", true, flags,
+                  [flags] { return run(*flags); });
+  command->add_option("--factor", flags->factor, "How far either way")
+      ->type_name("X")
+      ->check(CLI::Range(1.01, 1000.0))
+      ->capture_default_str();
+  command->add_option("--parameter", flags->parameters, "Only this parameter; repeatable")
+      ->type_name("PATH")
+      ->allow_extra_args(false);
+  command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
+      ->type_name("FILE");
+}
+
+}  // namespace limcycle

@@ -1,0 +1,67 @@
+#include "limcycle/cases/case_numbers.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace limcycle;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string servo = R"(
+[loop.plant]
+kind = "mass"
+mass = 2.0
+[loop.controller]
+kind = "pid"
+kp = 3.0
+kd = 6.0
+[loop.friction]
+kind = "coulomb"
+Fs = 1.5
+Fc = 1.0
+)";
+
+}  // namespace
+
+TEST_CASE("numbers of a case: written, by default, absent, and those that follow another") {
+  const Case from = read_case(servo, "servo.toml");
+  const auto list = numbers_of(from);
+  const auto named = [&](const std::string& path) {
+    const auto found = std::ranges::find(list, path, &CaseNumber::path);
+    REQUIRE(found != list.end());
+    return *found;
+  };
+  CHECK(named("loop.plant.mass").value == 2.0);
+  CHECK(named("loop.plant.mass").unit == "kg");
+  CHECK(named("loop.plant.damping").value == 0.0);
+  CHECK(std::isinf(named("loop.controller.saturation").value));
+  CHECK(named("loop.friction.Fs").value == 1.5);
+  CHECK_FALSE(named("loop.friction.Fs").follows);
+  CHECK(named("loop.friction.Fs_minus").follows);
+  CHECK(named("loop.load").value == 0.0);
+  CHECK(std::ranges::none_of(list, [](const auto& one) { return one.path.ends_with(".kind"); }));
+}
+
+TEST_CASE("numbers of a case: an unknown path is refused with the nearest one") {
+  const Case from = read_case(servo, "servo.toml");
+  CHECK(number_at(from, "--parameter", "loop.controller.kd").value == 6.0);
+  CHECK_THROWS_WITH(number_at(from, "--parameter", "loop.controller.kdd"),
+                    Contains("--parameter loop.controller.kdd") && Contains("did you mean loop.controller.kd?"));
+  CHECK_THROWS_AS(number_at(from, "--parameter", "loop.plant.kind"), InputError);
+}
+
+TEST_CASE("a case's loop with another value is the one that --set would make") {
+  const Case from = read_case(servo, "servo.toml", {"loop.controller.ki=4.0"});
+  const auto changed = loop_with(from, "loop.plant.mass", 4.0);
+  REQUIRE(changed);
+  const Case same = read_case(servo, "servo.toml", {"loop.controller.ki=4.0", "loop.plant.mass=4.0"});
+  CHECK(changed->A == build_loop(*same.loop).A);
+  // What is not written follows: a higher Fs is the Fs of both directions.
+  const auto stiction = loop_with(from, "loop.friction.Fs", 2.0);
+  REQUIRE(stiction);
+  CHECK(std::get<Coulomb<double>>(stiction->elements.back()).Fs_minus == 2.0);
+  CHECK_FALSE(loop_with(from, "loop.friction.Fs", 0.5));  // below Fc
+  CHECK_FALSE(loop_with(from, "loop.plant.mass", -1.0));
+  CHECK(loop_with(from, "loop.plant.mass", 1e-5));  // written with an exponent
+}
