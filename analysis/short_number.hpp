@@ -4,10 +4,10 @@
 
 namespace limcycle {
 
-/// A number in a sentence: four digits.
-inline std::string short_number(double value) {
+/// A number in a sentence, with `digits` (up to 17) significant ones.
+inline std::string short_number(double value, int digits = 4) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
 }
 

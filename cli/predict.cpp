@@ -6,6 +6,7 @@
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/html.hpp"
 #include "limcycle/reports/json.hpp"
@@ -25,13 +26,6 @@ struct PredictFlags : CommonFlags {
 void sort_out(PredictFlags& flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   if (flags.pictures.empty() && flags.output.ends_with(".svg")) flags.pictures = std::exchange(flags.output, {});
-}
-
-/// Metres and newtons where there is something mechanical, else bare numbers.
-Units units_of(const LoopParts& loop) {
-  const auto plant = kind_of(loop.plant);
-  const bool mechanical = loop.friction || plant == "mass" || plant == "belt" || plant == "two-mass";
-  return mechanical ? Units{} : Units{"", ""};
 }
 
 int exit_code(const PredictReport& report, bool require_agreement) {

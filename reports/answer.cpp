@@ -146,9 +146,14 @@ std::string worth_of(const std::string& method, const PredictReport& report, con
     return subject + (agrees ? "predicts none either." : "predicts no limit cycle in the search box.");
   }
   const std::string which = report.cycles.size() == 1 ? "it" : counted(missed, "limit cycle");
-  if (own.empty()) return subject + "predicts no limit cycle in the search box and misses " + which + ".";
+  // Harmonic balance starts from what other methods find and searches no box; a cycle that sticks it does not even try.
+  const bool searches = method != "harmonic-balance";
+  if (own.empty())
+    return subject + (searches ? "predicts no limit cycle in the search box and misses " : "does not see ") + which +
+           ".";
   std::string out = subject + (own.size() == 1 ? of_one(report, *own[0], units) : of_many(own));
-  if (missed > 0) out += ", and misses " + (report.cycles.size() == 1 ? "the one that exists" : which);
+  const std::string verb = searches ? ", and misses " : ", and does not see ";
+  if (missed > 0) out += verb + (report.cycles.size() == 1 ? "the one that exists" : which);
   return out + ".";
 }
 

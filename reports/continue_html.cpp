@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
 #include "limcycle/reports/continue.hpp"
-#include "limcycle/reports/html.hpp"
+#include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/number.hpp"
-#include "limcycle/reports/study_page.hpp"
 
 namespace limcycle {
 
@@ -19,16 +18,16 @@ std::string continue_page(const ContinueReport& report, const Provenance& proven
     std::size_t row = 0;
     for (const auto& branch : report.found.branches)
       for (const auto& event : branch.events) table.rows[row++].push_back(event.why);
-    body += "<h2>Events</h2>\n" + static_table(table, "Folds, changes of stability and ends of the branches");
+    body += "<h2>Events</h2>\n" + html_table(table, "Folds, changes of stability and ends of the branches");
   }
-  if (!report.found.notes.empty()) {
-    body += "<h2>Notes</h2>\n<ul>\n";
-    for (const auto& note : report.found.notes) body += "<li>" + html_escaped(note) + "</li>\n";
-    body += "</ul>\n";
-  }
-  const std::string command = fmt::format("continue {} --parameter {}={}:{}", provenance.file, report.path,
-                                          shortest(report.found.from), shortest(report.found.to));
-  return static_page(provenance, continue_answer(report, units), body, command, case_text);
+  body += html_notes(report.found.notes);
+  return html_page({.provenance = provenance,
+                    .answer = continue_answer(report, units),
+                    .body = body,
+                    .command = "continue",
+                    .flags = fmt::format("--parameter {}={}:{}", report.path, shortest(report.found.from),
+                                         shortest(report.found.to)),
+                    .case_text = case_text});
 }
 
 }  // namespace limcycle

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limcycle/reports/continue.hpp"
-#include "limcycle/reports/html.hpp"
+#include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {

@@ -9,8 +9,6 @@
 namespace limcycle {
 namespace {
 
-std::string in_words(const std::optional<bool>& value) { return value ? (*value ? "yes" : "no") : "?"; }
-
 std::string unit_of(const ContinueReport& report) { return report.unit == "1" ? "" : report.unit; }
 
 /// An event's parameter with the digits that are right; an end of the range is exact.
@@ -70,7 +68,7 @@ Table branch_table(const Branch& branch, const ContinueReport& report, const Uni
     const auto& [parameter, cycle] = branch.points[i];
     const double error = std::max(cycle.error, 0.6e-6);
     table.rows.push_back({with_digits(parameter, 6), with_error(cycle.amplitude, error),
-                          with_error(cycle.period, error), in_words(cycle.stable),
+                          with_error(cycle.period, error), yes_or_no(cycle.stable),
                           cycle.multipliers.empty() ? "-" : with_digits(std::abs(cycle.multipliers.front()), 3),
                           as_percent(cycle.sticking_fraction)});
   }
@@ -97,7 +95,7 @@ std::string continue_answer(const ContinueReport& report, const Units&) {
                                         Units::attach(with_digits(found.to, 4), unit_of(report)));
   std::string out;
   if (found.status == Status::interrupted) out = "Interrupted; as far as it went: ";
-  if (found.branches.empty()) return out + "no limit cycle was found for " + range + ".";
+  if (found.branches.empty()) return out + (out.empty() ? "No" : "no") + " limit cycle was found for " + range + ".";
   const Span span = stable_span(report);
   if (span.any())
     out += fmt::format("Over {}, stable limit cycles were followed between {} and {}.", range, with_digits(span.low, 5),
@@ -129,10 +127,7 @@ std::string continue_text(const std::string& title, const ContinueReport& report
       out += fmt::format("(some of {} points; --csv FILE writes all)\n", branch.points.size());
     out += branch_table(branch, report, units).text();
   }
-  if (!report.found.notes.empty()) {
-    out += "\nNotes\n";
-    for (const auto& note : report.found.notes) out += wrapped("- " + note, 80);
-  }
+  out += notes_text(report.found.notes);
   if (report.found.status != Status::converged && report.found.status != Status::no_cycle)
     out += fmt::format("\nStatus: {}\n", to_string(report.found.status));
   return out;

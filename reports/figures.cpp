@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "limcycle/reports/multipliers.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/nyquist_window.hpp"
 #include "limcycle/reports/thin.hpp"
@@ -275,6 +276,7 @@ std::vector<Figure> predict_figures(const PredictReport& report, const Units& un
   out.push_back(time_figure(what, units));
   out.push_back(phase_figure(report, units));
   if (has_element(*what.trace)) out.push_back(loop_figure(what, units));
+  if (auto multipliers = multiplier_figure(report)) out.push_back(*std::move(multipliers));
   return out;
 }
 

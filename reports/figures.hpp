@@ -9,7 +9,7 @@ namespace limcycle {
 
 /// A figure of the page: what it shows, in words that also serve those who do not see it, and the numbers to draw.
 struct Figure {
-  std::string id;  ///< "nyquist", "time", "phase", "loop": the part of the script that draws it
+  std::string id;  ///< "nyquist", "time", "phase", "loop", "multipliers": the part of the script that draws it
   std::string heading;
   std::string finding;  ///< plain text: what one sees
   std::string data;     ///< JSON object, without '<'

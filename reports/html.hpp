@@ -7,10 +7,6 @@
 
 namespace limcycle {
 
-/// Text as it may stand between tags or in a quoted attribute: & < > " ' escaped, control characters and bytes that are
-/// not UTF-8 replaced.
-std::string html_escaped(std::string_view text);
-
 /// A prediction as one self-contained HTML page: it asks nothing of the network (its own policy forbids it) and holds
 /// the case file, so that the result can be made again. The verdict in words stands first. The page tells a test how it
 /// fared by data-figures="drawn/total" and data-errors on its root element. `case_text`: the case file as read; empty:

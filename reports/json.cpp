@@ -81,6 +81,7 @@ Json prediction_json(const Prediction& prediction) {
           {"input_amplitude", number(prediction.input_amplitude)},
           {"residual", number(prediction.residual)},
           {"why", prediction.why},
+          {"harmonics", prediction.harmonics},
           {"trust", trust_json(prediction.trust)}};
 }
 

@@ -1,8 +1,5 @@
-#include <fmt/format.h>
-
-#include "limcycle/reports/html.hpp"
+#include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/margin.hpp"
-#include "limcycle/reports/study_page.hpp"
 
 namespace limcycle {
 
@@ -22,14 +19,14 @@ std::string margin_page(const MarginReport& report, const Provenance& provenance
     }
     const std::string heading = friction ? "Friction" : "Plant and controller";
     body += "<h2>" + heading + "</h2>\n" +
-            static_table(table, heading + ": where hunting " + (report.hunts ? "ends" : "begins"));
+            html_table(table, heading + ": where hunting " + (report.hunts ? "ends" : "begins"));
   }
-  if (!report.notes.empty()) {
-    body += "<h2>Notes</h2>\n<ul>\n";
-    for (const auto& note : report.notes) body += "<li>" + html_escaped(note) + "</li>\n";
-    body += "</ul>\n";
-  }
-  return static_page(provenance, margin_answer(report, units), body, "margin " + provenance.file, case_text);
+  body += html_notes(report.notes);
+  return html_page({.provenance = provenance,
+                    .answer = margin_answer(report, units),
+                    .body = body,
+                    .command = "margin",
+                    .case_text = case_text});
 }
 
 }  // namespace limcycle

@@ -105,7 +105,7 @@ std::string margin_answer(const MarginReport& report, const Units& units) {
   const std::string verb = report.hunts ? "ends" : "starts";
   if (design)
     out += fmt::format(" The smallest change of plant or controller that {} it: {}.", verb, step(*design));
-  else if (!report.parameters.empty())
+  else if (std::ranges::any_of(report.parameters, [](const auto& one) { return !one.parameter.friction; }))
     out += fmt::format(" No single change of plant or controller within a factor of {:g} {} it.", report.factor, verb);
   if (law) out += fmt::format(" Of the friction: {}.", step(*law));
   return out + of_balance(report);
@@ -120,10 +120,7 @@ std::string margin_text(const std::string& title, const MarginReport& report, co
                        report.hunts ? "ends" : "begins") +
            table.text() + reasons(report, friction);
   }
-  if (!report.notes.empty()) {
-    out += "\nNotes\n";
-    for (const auto& note : report.notes) out += wrapped("- " + note, 80);
-  }
+  out += notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "limcycle/reports/answer.hpp"
-#include "limcycle/reports/html.hpp"
+#include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/thin.hpp"
 

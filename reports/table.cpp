@@ -125,11 +125,22 @@ std::size_t display_width(std::string_view text) {
   return width;
 }
 
+namespace {
+
+/// Where the word that begins at `from` ends; a per cent sign stays with its number.
+std::size_t end_of_word(std::string_view text, std::size_t from) {
+  std::size_t end = std::min(text.find_first_of(" \n", from), text.size());
+  if (end > from && text.substr(end).starts_with(" %")) end = std::min(text.find_first_of(" \n", end + 2), text.size());
+  return end;
+}
+
+}  // namespace
+
 std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
   std::string out;
   std::size_t column = 0;
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t end = std::min(text.find_first_of(" \n", i), text.size());
+    const std::size_t end = end_of_word(text, i);
     const std::string word = cleaned(std::string(text.substr(i, end - i)));
     i = end + 1;
     if (word.empty()) continue;
@@ -144,6 +155,20 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t indent
   }
   return out + '\n';
 }
+
+std::string item(const std::string& label, std::size_t width, const std::string& text) {
+  const std::string body = wrapped(text, 80, width + 2);
+  const std::size_t own = std::min(display_width(label), width);
+  return label + std::string(width + 2 - own, ' ') + (body.size() > width + 2 ? body.substr(width + 2) : "\n");
+}
+
+std::string notes_text(const std::vector<std::string>& notes) {
+  std::string out;
+  for (const auto& note : notes) out += item("-", 1, note);
+  return out.empty() ? "" : "\nNotes\n" + out;
+}
+
+std::string yes_or_no(const std::optional<bool>& value) { return value ? (*value ? "yes" : "no") : "?"; }
 
 std::string Table::text(std::size_t width) const {
   Cells cells;

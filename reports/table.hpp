@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,9 +10,18 @@ namespace limcycle {
 /// characters of East Asia. A byte that is not UTF-8 counts as one.
 std::size_t display_width(std::string_view text);
 
-/// The text broken at spaces into lines of at most `width` columns, each after `indent` spaces. A longer word stands
-/// alone.
+/// The text broken at spaces into lines of at most `width` columns, each after `indent` spaces, but never between a
+/// number and its %. A longer word stands alone.
 std::string wrapped(std::string_view text, std::size_t width = 80, std::size_t indent = 0);
+
+/// "LABEL  text", the label padded to `width`, the text wrapped under itself to 80 columns.
+std::string item(const std::string& label, std::size_t width, const std::string& text);
+
+/// The section of a report that lists its notes; nothing without notes.
+std::string notes_text(const std::vector<std::string>& notes);
+
+/// "yes", "no", or "?" where it is not known.
+std::string yes_or_no(const std::optional<bool>& value);
 
 enum class Align { left, right };
 

@@ -6,23 +6,15 @@
 #include <cmath>
 
 #include "limcycle/reports/answer.hpp"
+#include "limcycle/reports/multipliers.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
 
-std::string in_words(const std::optional<bool>& value) { return value ? (*value ? "yes" : "no") : "?"; }
-
 std::string index(const std::optional<std::size_t>& value) { return value ? std::to_string(*value) : "-"; }
 
 std::string section(const std::string& heading, const std::string& body) { return "\n" + heading + "\n" + body; }
-
-/// "LABEL  text", the text wrapped under itself.
-std::string item(const std::string& label, std::size_t width, const std::string& text) {
-  const std::string body = wrapped(text, 80, width + 2);
-  const std::size_t own = std::min(display_width(label), width);
-  return label + std::string(width + 2 - own, ' ') + (body.size() > width + 2 ? body.substr(width + 2) : "\n");
-}
 
 std::string outcomes(const PredictReport& report) {
   std::string out;
@@ -74,7 +66,7 @@ Table cycle_table(const PredictReport& report, const Units& units) {
     const double of_harmonic = std::max(cycle.error, 0.6e-6);
     table.rows.push_back({std::to_string(i), with_error(cycle.period, cycle.error),
                           with_error(cycle.amplitude, cycle.error), with_error(cycle.first_harmonic, of_harmonic),
-                          with_absolute_error(cycle.offset, error), in_words(cycle.stable),
+                          with_absolute_error(cycle.offset, error), yes_or_no(cycle.stable),
                           as_percent(cycle.sticking_fraction), as_error(cycle.error)});
   }
   return table;
@@ -92,7 +84,7 @@ Table prediction_table(const PredictReport& report, const Units& units) {
   for (std::size_t i = 0; i < report.predictions.size(); ++i) {
     const auto& one = report.predictions[i];
     table.rows.push_back({std::to_string(i), one.method, with_digits(one.amplitude, 6), with_digits(one.frequency, 6),
-                          in_words(one.stable), std::string(to_string(one.verdict)), index(one.cycle)});
+                          yes_or_no(one.stable), std::string(to_string(one.verdict)), index(one.cycle)});
   }
   return table;
 }
@@ -130,6 +122,8 @@ std::string predict_text(const std::string& title, const PredictReport& report, 
   std::string out = wrapped(title) + "\n" + wrapped(words.what_happens);
   for (const auto& sentence : words.worth) out += wrapped(sentence);
   if (!report.cycles.empty()) out += section("Limit cycles", cycle_table(report, units).text());
+  if (const Table multipliers = multiplier_table(report); !multipliers.rows.empty())
+    out += section("Floquet multipliers, without the trivial 1", multipliers.text());
   if (!report.predictions.empty())
     out += section("Predictions", prediction_table(report, units).text() + reasons(report));
   if (const Table trust = trust_table(report, units); !trust.rows.empty())
@@ -140,11 +134,7 @@ std::string predict_text(const std::string& title, const PredictReport& report, 
   out += section("Search box",
                  wrapped(fmt::format("amplitude of the element's input {:g} to {:g}, frequency {:g} to {:g} rad/s",
                                      box.amplitude_min, box.amplitude_max, box.frequency_min, box.frequency_max)));
-  if (!report.notes.empty()) {
-    std::string notes;
-    for (const auto& note : report.notes) notes += item("-", 1, note);
-    out += section("Notes", notes);
-  }
+  out += notes_text(report.notes);
   if (report.status != Status::converged && report.status != Status::no_cycle)
     out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;

@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/frequency/composite_describing_function.hpp"
 #include "limcycle/analysis/frequency/composite_march.hpp"
+#include "limcycle/analysis/frequency/steady_sliding.hpp"
 
 namespace limcycle {
 
@@ -129,36 +130,11 @@ class CompositePeriod {
   void slide(double inertial) {
     const double V = point_.mean_velocity;
     state_.y[0] = V - inertial;
-    Vectorless relaxed(march_.law(), V);
+    const SteadySliding<Kind> relaxed(march_.law(), V);
     for (std::size_t k = 1; k < march_.size(); ++k) state_.y[k] = relaxed.z[k - 1];
     bias_ = relaxed.force;
     march_.start(state_, {bias_, point_.force, point_.frequency}, 0.0);
   }
-
-  /// The law after sliding at a constant velocity for long, by implicit steps of growing length (Newton's method along
-  /// the diagonal is enough for the decoupled states of friction laws; the guess need not be exact).
-  struct Vectorless {
-    std::vector<double> z;
-    double force = 0.0;
-    Vectorless(const Kind<double>& law, double V) : z(static_cast<std::size_t>(law.states()), 0.0) {
-      const Input<double> in{0.0, V, V < 0.0 ? -infinite : infinite};
-      Mode mode{};
-      if constexpr (March::has_modes) mode = law.start(in, z);
-      std::vector<double> rate(z.size()), up(z.size()), shifted(z.size());
-      for (int i = 0; i < 60 && !z.empty(); ++i) {
-        law.rate(in, mode, z, rate);
-        for (std::size_t k = 0; k < z.size(); ++k) {
-          shifted = z;
-          const double delta = 1e-6 * law.state_scale(static_cast<int>(k));
-          shifted[k] += delta;
-          law.rate(in, mode, shifted, up);
-          const double slope = (up[k] - rate[k]) / delta;
-          if (slope < 0.0) z[k] -= rate[k] / slope;
-        }
-      }
-      force = law.output(in, mode, z);
-    }
-  };
 
   /// Whether and when a body tears loose is decided by how it creeps, which is a displacement of the bristles in a part
   /// of a period: that speed counts, not only the Stribeck velocity.

@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <queue>
 #include <stdexcept>
 
 #include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
 namespace {
 
 constexpr long most_blocks = 20000;  ///< of harmonics; beyond: taken as not filtered
 constexpr long most_cells = 200000;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 std::optional<std::pair<double, double>> slopes(const Element<double>& element) {
   return std::visit(
@@ -191,8 +185,9 @@ Existence ErrorBand::existence(double frequency, double amplitude) const {
     return answer;
   };
   if (!filtered(frequency))
-    return undecided("the loop does not filter enough at " + number(frequency) + " rad/s for a proof: rho is at most " +
-                     number(rho(frequency)) + ", half the range of slopes is " + number(gamma_));
+    return undecided("the loop does not filter enough at " + short_number(frequency) +
+                     " rad/s for a proof: rho is at most " + short_number(rho(frequency)) +
+                     ", half the range of slopes is " + short_number(gamma_));
   if (!(std::abs(response_.inverse(frequency) + gain(amplitude)) <= sigma(frequency)))
     return undecided("the point is no root of the describing function");
   const auto low = edge_frequency(frequency, -1.0), high = edge_frequency(frequency, 1.0);
@@ -211,8 +206,9 @@ Existence ErrorBand::existence(double frequency, double amplitude) const {
   answer.verdict = BandVerdict::proved;
   answer.frequency = w;
   answer.amplitude = {*least, *most};
-  answer.why = "the error discs are crossed completely between " + number(w.low) + " and " + number(w.high) +
-               " rad/s and input amplitudes " + number(*least) + " and " + number(*most);
+  answer.why = "the error discs are crossed completely between " + short_number(w.low) + " and " +
+               short_number(w.high) + " rad/s and input amplitudes " + short_number(*least) + " and " +
+               short_number(*most);
   return answer;
 }
 

@@ -1,19 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "limcycle/analysis/frequency/error_band.hpp"
+#include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
 namespace {
 
 constexpr long most_tests = 20000;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 double middle_of(Interval w) { return std::sqrt(w.low * w.high); }
 
@@ -99,11 +93,11 @@ Absence ErrorBand::absence(const SearchBox& box) const {
     answer.why =
         circle <= box.frequency_min
             ? "no half-wave symmetric oscillation is possible, since the incremental circle criterion holds from " +
-                  number(box.frequency_min) + " rad/s on"
+                  short_number(box.frequency_min) + " rad/s on"
             : "no half-wave symmetric oscillation is possible, since no error disc meets -Psi";
   } else {
-    answer.why = "a half-wave symmetric oscillation is not excluded between " + number(open.front().low) + " and " +
-                 number(open.back().high) + " rad/s" +
+    answer.why = "a half-wave symmetric oscillation is not excluded between " + short_number(open.front().low) +
+                 " and " + short_number(open.back().high) + " rad/s" +
                  (open.size() > 1 ? " (in " + std::to_string(open.size()) + " intervals)" : "");
   }
   return answer;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
 
 namespace limcycle {
 
@@ -14,6 +13,23 @@ bool AffineFlow::applies(const Loop& loop) {
     return std::visit([]<class E>(const E&) { return PiecewiseAffine<E>; }, element);
   });
 }
+
+namespace {
+
+/// exp(A) as I + X, X = exp(A) - I by its series on A/2^s, then X <- 2 X + X^2 s times: what A leaves in place stays in
+/// place to the last bit (squaring exp(A/2^s) itself would multiply the rounding of its ones by 2^s).
+MatrixXd exponential(const MatrixXd& A) {
+  const Index n = A.rows();
+  const double norm = A.cwiseAbs().colwise().sum().maxCoeff();
+  const int s = norm > 0.5 && std::isfinite(norm) ? static_cast<int>(std::ceil(std::log2(norm / 0.5))) : 0;
+  const MatrixXd B = A * std::ldexp(1.0, -s), I = MatrixXd::Identity(n, n);
+  MatrixXd X = B / 16.0;
+  for (int k = 15; k >= 1; --k) X = (B / k * (I + X)).eval();
+  for (int i = 0; i < s; ++i) X = (2.0 * X + X * X).eval();
+  return I + X;
+}
+
+}  // namespace
 
 AffineFlow::InMode& AffineFlow::present() {
   std::vector<std::int64_t> key;
@@ -33,13 +49,13 @@ AffineFlow::InMode& AffineFlow::present() {
   return modes_.emplace(std::move(key), std::move(fresh)).first->second;
 }
 
-MatrixXd AffineFlow::over(double h) { return (present().generator * h).exp(); }
+MatrixXd AffineFlow::over(double h) { return exponential(present().generator * h); }
 
 const MatrixXd& AffineFlow::over_power(int k) {
   InMode& mode = present();
   const auto known = mode.powers.find(k);
   if (known != mode.powers.end()) return known->second;
-  return mode.powers.emplace(k, (mode.generator * std::ldexp(1.0, k)).exp()).first->second;
+  return mode.powers.emplace(k, exponential(mode.generator * std::ldexp(1.0, k))).first->second;
 }
 
 void AffineFlow::apply(const MatrixXd& exponential, const State& x, State& out) {

@@ -261,8 +261,10 @@ void LoopField::find_inputs(const State& x) {
   for (std::size_t i = 0; i < ne_; ++i) {
     const SparsePort& port = ports_[i];
     inputs_[i].v = port.C_v.dot(x.data()) + port.D_v.dot(w_.data()) + port.c_v.dot(ext_.data());
-    if (held(i) != Held::nothing) continue;
-    inputs_[i].drive = has_follower_[i] ? drive_with_follower(i, x) : drive_of(i);
+    if (has_follower_[i])  // friction that is more than compensated holds nothing, even where the forces would balance
+      inputs_[i].drive = drive_with_follower(i, x);
+    else if (held(i) == Held::nothing)
+      inputs_[i].drive = drive_of(i);
   }
 }
 

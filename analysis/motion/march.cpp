@@ -1,10 +1,8 @@
 #include "limcycle/analysis/motion/march.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <variant>
 
@@ -17,7 +15,6 @@
 namespace limcycle {
 namespace {
 
-constexpr std::size_t section_guard = std::numeric_limits<std::size_t>::max();
 constexpr std::array<std::pair<StepperKind, std::string_view>, 6> names{{{StepperKind::automatic, "auto"},
                                                                          {StepperKind::exact, "exact"},
                                                                          {StepperKind::rodas5p, "rodas5p"},
@@ -61,10 +58,6 @@ auto implicit_system(LoopField& field) {
   });
 }
 
-bool finite(const State& x) {
-  return std::ranges::all_of(x, [](double value) { return std::isfinite(value); });
-}
-
 }  // namespace
 
 StepperKind stepper_kind(const std::string& name) {
@@ -80,11 +73,8 @@ StepperKind choose_stepper(const Loop& loop, double rtol, bool driven) {
   const bool bristle = std::ranges::any_of(loop.elements, [](const auto& element) {
     return std::visit([](const auto& e) { return e.states() > 0 && std::isfinite(e.scales().displacement); }, element);
   });
-  const Eigen::VectorXd poles = loop.A.eigenvalues().cwiseAbs();
-  double slowest = infinite;
-  for (const double pole : poles)
-    if (pole > 1e-9 * poles.maxCoeff()) slowest = std::min(slowest, pole);
-  if (bristle || poles.maxCoeff() > 200.0 * slowest) return StepperKind::rodas5p;
+  const auto moduli = pole_moduli(loop);
+  if (bristle || (!moduli.empty() && moduli.back() > 200.0 * moduli.front())) return StepperKind::rodas5p;
   return rtol < 1e-8 ? StepperKind::fehlberg78 : StepperKind::dopri5;
 }
 
@@ -166,7 +156,7 @@ bool March::try_step(double& dt) {
   step_.x1 = x_;
   step_.t1 = t_;
   if (kind_ == StepperKind::exact) {
-    if (try_exact(dt)) return finite(step_.x1);
+    if (try_exact(dt)) return is_finite(step_.x1);
     return false;
   }
   const double tried = dt;
@@ -181,7 +171,7 @@ bool March::try_step(double& dt) {
       },
       stepper_->any);
   if (result != boost::numeric::odeint::success) return false;
-  if (finite(step_.x1)) return true;
+  if (is_finite(step_.x1)) return true;
   dt = 0.1 * tried;  // a NaN that the error estimate did not see
   return false;
 }
@@ -218,7 +208,7 @@ Status March::step(double t_end) {
   step_.switched.reset();
   step_.on_section = false;
   field_.rate(x_, step_.dx0, t_);
-  if (!finite(x_) || !finite(step_.dx0)) return Status::not_finite;
+  if (!is_finite(x_) || !is_finite(step_.dx0)) return Status::not_finite;
   field_.guards(x_, t_, guards_start_);
   if (fresh_) {
     std::visit(
@@ -233,7 +223,8 @@ Status March::step(double t_end) {
   const bool shortened = dt < dt_;
   truncated_ = dt == t_end - t_;
   while (!try_step(dt)) {
-    if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12))) return finite(step_.x1) ? Status::stalled : Status::not_finite;
+    if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12)))
+      return is_finite(step_.x1) ? Status::stalled : Status::not_finite;
   }
   if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers call a step that does not move a success
   dt_ = shortened ? std::max(dt, dt_) : dt;
@@ -247,112 +238,6 @@ Status March::step(double t_end) {
   t_ = step_.t1;
   if (section_ && section_->before(x_)) armed_ = true;
   return Status::converged;
-}
-
-double March::event_value(std::size_t guard, const State& x, double t) {
-  if (guard == section_guard) return -section_->value(x);
-  field_.guards(x, t, guards_mid_);
-  return guards_mid_[guard];
-}
-
-/// Looks at quarters of the step for the first guard that has turned negative, and brackets it by fractions of the
-/// step.
-bool March::negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard) {
-  const bool watch_section = section_ && (armed_ || section_->before(step_.x0));
-  if (at_start.empty() && !(watch_section && section_->value(step_.x1) >= 0.0)) return false;
-  for (int quarter = 1; quarter <= 4; ++quarter) {
-    to = 0.25 * quarter;
-    if (quarter == 4)
-      work_ = step_.x1;
-    else
-      step_.interpolate(to, work_);
-    if (!at_start.empty()) field_.guards(work_, step_.t0 + to * (step_.t1 - step_.t0), guards_end_);
-    double earliest = infinite;
-    for (std::size_t k = 0; k < at_start.size(); ++k) {
-      if (guards_end_[k] >= 0.0) continue;
-      // Of several that turned negative here, the one that was relatively nearest to zero did so first.
-      const double before = std::max(at_start[k], 0.0);
-      const double when = before / (before - guards_end_[k]);
-      if (when < earliest) {
-        earliest = when;
-        guard = k;
-      }
-    }
-    if (watch_section && section_->value(work_) >= 0.0 && earliest == infinite) {
-      guard = section_guard;
-      earliest = 0.0;
-    }
-    if (earliest < infinite) return true;
-    from = to;
-  }
-  return false;
-}
-
-/// Length of the step after which the guard is zero: bisection and secant on whole steps.
-double March::locate(std::size_t guard, double from, double to) {
-  const double h = step_.t1 - step_.t0;
-  if (from == 0.0 && guard != section_guard && guards_start_[guard] <= 0.0) return 0.0;
-  // A rough bracket from the interpolant costs no steps.
-  double a = from, b = to;
-  for (int i = 0; i < 30; ++i) {
-    const double mid = 0.5 * (a + b);
-    step_.interpolate(mid, work_);
-    (event_value(guard, work_, step_.t0 + mid * h) >= 0.0 ? a : b) = mid;
-  }
-  double low = from * h, high = to * h, at = 0.5 * (a + b) * h;
-  double previous = 0.0, previous_value = 0.0, best = at, best_value = infinite;
-  for (int i = 0; i < 60; ++i) {
-    repeat(at, work_);
-    const double value = event_value(guard, work_, step_.t0 + at);
-    if (std::abs(value) < best_value) {
-      best = at;
-      best_value = std::abs(value);
-    }
-    (value >= 0.0 ? low : high) = at;
-    double next =
-        i == 0 ? at * (1.0 + (value >= 0.0 ? 1e-6 : -1e-6)) : at - value * (at - previous) / (value - previous_value);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    previous = at;
-    previous_value = value;
-    if (value == 0.0 || std::abs(next - at) <= 2e-16 * std::max(h, std::abs(step_.t0)) || high - low < 1e-16 * h) break;
-    at = next;
-  }
-  return best;
-}
-
-Status March::land(std::size_t guard, double h) {
-  if (h > 0.0) {
-    repeat(h, step_.x1);
-  } else {
-    step_.x1 = step_.x0;
-  }
-  step_.t1 = step_.t0 + h;
-  field_.rate(step_.x1, step_.dx1, step_.t1);
-  if (!finite(step_.x1) || !finite(step_.dx1)) return Status::not_finite;
-  if (tracks_) step_.transition = smooth_transition();
-  x_ = step_.x1;
-  t_ = step_.t1;
-  fresh_ = true;
-  if (guard == section_guard) {
-    step_.on_section = true;
-    armed_ = false;
-    return Status::converged;
-  }
-  step_.switched = field_.owner(guard);
-  if (tracks_) {
-    Eigen::MatrixXd saltation;
-    if (field_.fire(x_, t_, guard, saltation))
-      step_.transition = saltation * step_.transition;
-    else
-      step_.transition.resize(0, 0);
-  } else {
-    field_.fire(x_, t_, guard);
-  }
-  ++events_;
-  event_times_.push_back(t_);
-  if (event_times_.size() > 50) event_times_.pop_front();
-  const bool accumulate = event_times_.size() == 50 && t_ - event_times_.front() < 1e-10 * std::max(1.0, std::abs(t_));
-  return accumulate ? Status::chattering : Status::converged;
 }
 
 }  // namespace limcycle

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limcycle/analysis/motion/error_weights.hpp"
@@ -91,6 +92,8 @@ class March {
   double first_dt();
   bool negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard);
   double event_value(std::size_t guard, const State& x, double t);
+  std::pair<double, double> crossing(std::size_t guard, double from, double to);
+  std::size_t first_of_candidates(const std::vector<double>& at_start, double from, double to);
   double locate(std::size_t guard, double from, double to);
   Status land(std::size_t guard, double h);
 
@@ -107,6 +110,7 @@ class March {
   Step step_;
   std::deque<double> event_times_;
   std::vector<double> guards_start_, guards_end_, guards_mid_;
+  std::vector<std::size_t> candidates_;
 };
 
 }  // namespace limcycle

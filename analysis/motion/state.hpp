@@ -2,6 +2,8 @@
 /// The state vector that every stepper marches.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace limcycle {
@@ -9,5 +11,9 @@ namespace limcycle {
 /// State of x' = f(x, t), one entry a component, in the units of the model. A std::vector because that is what
 /// Boost.Odeint resizes and copies without an adapter.
 using State = std::vector<double>;
+
+inline bool is_finite(const State& x) {
+  return std::ranges::all_of(x, [](double value) { return std::isfinite(value); });
+}
 
 }  // namespace limcycle

@@ -1,6 +1,7 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -9,27 +10,28 @@ namespace {
 
 using Eigen::Index;
 
-/// Frequencies at which the linear part has something to say: moduli of its poles.
-std::vector<double> pole_frequencies(const Loop& loop) {
-  std::vector<double> found;
-  const Eigen::VectorXcd poles = loop.A.eigenvalues();
-  const double largest = poles.cwiseAbs().maxCoeff();
-  for (const auto& pole : poles)
-    if (std::abs(pole) > 1e-9 * largest) found.push_back(std::abs(pole));
-  if (found.empty()) found.push_back(1.0);
-  return found;
-}
-
 Scales scales_of(const Element<double>& element) {
   return std::visit([](const auto& e) { return e.scales(); }, element);
 }
 
 }  // namespace
 
+std::vector<double> pole_moduli(const Loop& loop) {
+  std::vector<double> found;
+  if (loop.states() == 0) return found;
+  const Eigen::VectorXd moduli = loop.A.eigenvalues().cwiseAbs();
+  for (const double modulus : moduli)
+    if (modulus > 1e-9 * moduli.maxCoeff()) found.push_back(modulus);
+  std::ranges::sort(found);
+  return found;
+}
+
 State typical_sizes(const Loop& loop) {
   const Index n = loop.states();
+  std::vector<double> frequencies = pole_moduli(loop);  // at which the linear part has something to say
+  if (frequencies.empty()) frequencies.push_back(1.0);
   Eigen::VectorXd size = Eigen::VectorXd::Zero(n);
-  for (const double w : pole_frequencies(loop)) {
+  for (const double w : frequencies) {
     Eigen::MatrixXcd M =
         std::complex<double>(0.0, w) * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<std::complex<double>>();
     const Eigen::MatrixXcd response = M.fullPivLu().solve(loop.B.cast<std::complex<double>>());

@@ -9,8 +9,9 @@ struct Step;
 
 /// Derivative of the state at the end of a step over the state at its start, in the field's present modes: the
 /// variational equation dV/dt = J(x(t)) V, V = I at the start, along the interpolated step, by one step of the
-/// three-stage Radau IIA method (order 5, L-stable: directions that contract within a step come out as nearly zero, not
-/// as noise; Hairer and Wanner II, 1996, section IV.5). Cost: three Jacobians and a linear system of 3n.
+/// three-stage Radau IIA method (L-stable: directions that contract within a step come out as nearly zero, not as
+/// noise; Hairer and Wanner II, 1996, section IV.5). Order 5 for a constant J, 4 along a curve, which is interpolated.
+/// Cost: three Jacobians and a linear system of 3n.
 Eigen::MatrixXd transition(LoopField& field, const Step& step);
 
 }  // namespace limcycle

@@ -1,21 +1,15 @@
 #include "limcycle/analysis/orbit/branch_end.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 /// Which elements switch, in order, in one period from `start`.
 std::optional<std::vector<std::size_t>> switches(const Loop& loop, const LoopState& start, double period) {
@@ -83,7 +77,7 @@ std::optional<EndDiagnosis> faded(const EndEvidence& evidence) {
   const auto at = zero_ahead(evidence, small ? amplitude_of : large ? smallness_of : rate_of);
   if (!at) return std::nullopt;
   EndDiagnosis end{at->parameter, relative(at->error, at->parameter), "", true};
-  const std::string place = number(at->parameter);
+  const std::string place = short_number(at->parameter, 6);
   if (small)
     end.why = "the amplitude falls to zero: the cycle shrinks into rest at " + place;
   else if (large)
@@ -151,7 +145,7 @@ EndDiagnosis diagnose_end(BranchMap& map, const BranchSpot& spot, const EndEvide
   end.understood = true;
   if (evidence.on_purpose) {
     const double largest = spot.multipliers.empty() ? 0.0 : std::abs(spot.multipliers.front());
-    end.why = largest > 1e3 ? "the cycle is so unstable (multiplier " + number(largest) +
+    end.why = largest > 1e3 ? "the cycle is so unstable (multiplier " + short_number(largest, 6) +
                                   ") that its branch could only be followed in ever smaller steps"
                             : "the orbit has become too small, too large or too slow to be followed";
     return end;

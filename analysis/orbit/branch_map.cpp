@@ -12,8 +12,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd as_vector(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
-
 constexpr long steps_a_map = 200000;
 constexpr std::size_t loops_kept = 6;  // a corrector step and its differences use three
 
@@ -39,29 +37,6 @@ double ParameterScale::p(double s) const {
 
 double ParameterScale::slope(double s) const {
   return (logarithmic_ ? p(s) * std::log(to_ / from_) : to_ - from_) / length;
-}
-
-SectionChart::SectionChart(const Section& section, const State& largest) : scale(as_vector(largest)) {
-  VectorXd normal = VectorXd::Zero(scale.size());
-  normal.head(section.C.size()) = section.C.transpose();
-  normal.array() *= scale.array();
-  const MatrixXd q = normal.householderQr().householderQ();
-  basis = q.rightCols(scale.size() - 1);
-}
-
-State SectionChart::lift(const State& origin, const VectorXd& u) const {
-  State x = origin;
-  const VectorXd step = scale.cwiseProduct(basis * u);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += step(static_cast<Index>(i));
-  return x;
-}
-
-VectorXd SectionChart::coordinates(const State& x, const State& origin) const {
-  return basis.transpose() * (as_vector(x) - as_vector(origin)).cwiseQuotient(scale);
-}
-
-MatrixXd SectionChart::restricted(const MatrixXd& derivative) const {
-  return basis.transpose() * scale.cwiseInverse().asDiagonal() * derivative * scale.asDiagonal() * basis;
 }
 
 std::shared_ptr<const Loop> BranchMap::loop(double s) {

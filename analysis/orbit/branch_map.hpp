@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "limcycle/analysis/orbit/return_map.hpp"
+#include "limcycle/analysis/orbit/section_chart.hpp"
 
 namespace limcycle {
 
@@ -25,20 +26,6 @@ class ParameterScale {
  private:
   double from_, to_;
   bool logarithmic_;
-};
-
-/// Coordinates on a section: x = origin + scale * (basis u), basis orthonormal and tangent to the section.
-struct SectionChart {
-  Eigen::VectorXd scale;
-  Eigen::MatrixXd basis;
-
-  SectionChart() = default;
-  /// `largest`: sizes of the states on the orbit, none of them zero.
-  SectionChart(const Section& section, const State& largest);
-  State lift(const State& origin, const Eigen::VectorXd& u) const;
-  Eigen::VectorXd coordinates(const State& x, const State& origin) const;
-  /// A derivative of the map over all states in these coordinates.
-  Eigen::MatrixXd restricted(const Eigen::MatrixXd& derivative) const;
 };
 
 /// What a branch of cycles is solved from: R(u, s) = P(u; s) - u = 0, with P the (half) return map of the loop at s in

@@ -167,13 +167,7 @@ bool BranchSolver::place_frame(const LoopState& start, const Trace& trace, doubl
     if (!switches_near(*loop, onto.state, round.time)) break;
   }
   frame.origin = onto.state;
-  const State typical = typical_sizes(*loop);
-  State sizes = round.largest;
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const double floor = 1e-6 * typical[i];
-    sizes[i] = std::max({sizes[i], floor, 1e-300});
-  }
-  frame.chart = SectionChart(frame.section, sizes);
+  frame.chart = SectionChart(frame.section, round.largest, typical_sizes(*loop));
   map_.set_frame(std::move(frame));
   return true;
 }

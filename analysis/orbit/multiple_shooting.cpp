@@ -181,6 +181,7 @@ ShootingResult shoot_multiple(const Loop& loop, const OrbitGuess& guess, const S
   }
   ShootingOptions polish = options;
   polish.warm_maps = 0;
+  polish.longest_map = 5.0 * shooter.period();
   return shoot(loop, shooter.start(), choose_section(loop, period), guess.half, polish);
 }
 

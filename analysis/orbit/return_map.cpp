@@ -60,8 +60,8 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
   result.largest.assign(from.x.size(), 0.0);
   do {
     if (options_.stop && options_.stop()) result.status = Status::interrupted;
-    if (march.steps() > options_.max_steps) result.status = Status::max_iterations;
-    if (result.status == Status::converged) result.status = march.step(infinite);
+    if (march.steps() > options_.max_steps || march.t() >= options_.longest) result.status = Status::max_iterations;
+    if (result.status == Status::converged) result.status = march.step(options_.longest);
     if (options_.derivative && result.status == Status::converged) result.factors.push_back(march.last().transition);
     for (std::size_t i = 0; i < result.largest.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);

@@ -32,6 +32,7 @@ class ReturnMap {
     long max_steps = 200000;
     std::function<bool()> stop;
     bool derivative = false;
+    double longest = infinite;  ///< time after which a motion that has not come back is given up, s
   };
   struct Result {
     Status status = Status::converged;

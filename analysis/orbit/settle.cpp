@@ -13,11 +13,8 @@ namespace {
 
 /// Slowest time constant of the linear part, s.
 double slow_time(const Loop& loop) {
-  const Eigen::VectorXd poles = loop.A.eigenvalues().cwiseAbs();
-  double slowest = infinite;
-  for (const double pole : poles)
-    if (pole > 1e-9 * poles.maxCoeff()) slowest = std::min(slowest, pole);
-  return std::isfinite(slowest) ? 1.0 / slowest : 1.0;
+  const auto moduli = pole_moduli(loop);
+  return moduli.empty() ? 1.0 : 1.0 / moduli.front();
 }
 
 /// Watches whether all rates die out: every time by half, it compares what the rates would still move the state by,
@@ -206,7 +203,10 @@ class Settling {
     const auto reflection = symmetry(loop_);
     const double middle = reflection ? (loop_.C_y * reflection->centre).value() : 0.0;
     const bool half = reflection && order % 4 == 2 && std::abs(0.5 * (low + high) - middle) < 0.02 * swing;
-    auto shot = shoot(loop_, here, choose_section(loop_, period), half, options_.shooting);
+    ShootingOptions shooting = options_.shooting;
+    shooting.max_maps = std::min(shooting.max_maps, 80);
+    shooting.longest_map = 10.0 * (period.t.back() - period.t.front());
+    auto shot = shoot(loop_, here, choose_section(loop_, period), half, shooting);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
     if (shot.status != Status::converged || shot.cycle.stable == false) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);

@@ -7,44 +7,13 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/floquet.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
+#include "limcycle/analysis/orbit/section_chart.hpp"
 
 namespace limcycle {
 namespace {
 
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-VectorXd as_vector(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
-
-/// Coordinates on the section: x = origin + scale * (basis u), basis orthonormal and tangent to the section.
-struct Chart {
-  VectorXd scale;
-  MatrixXd basis;
-
-  Chart(const Section& section, const State& largest, const State& typical) : scale(as_vector(largest)) {
-    for (Index i = 0; i < scale.size(); ++i) scale(i) = std::max(scale(i), 1e-6 * typical[static_cast<std::size_t>(i)]);
-    VectorXd normal = VectorXd::Zero(scale.size());
-    normal.head(section.C.size()) = section.C.transpose();
-    normal.array() *= scale.array();
-    const MatrixXd q = normal.householderQr().householderQ();
-    basis = q.rightCols(scale.size() - 1);
-  }
-  State lift(const State& origin, const VectorXd& u) const {
-    State x = origin;
-    const VectorXd step = scale.cwiseProduct(basis * u);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += step(static_cast<Index>(i));
-    return x;
-  }
-  VectorXd coordinates(const State& x, const State& origin) const {
-    return basis.transpose() * (as_vector(x) - as_vector(origin)).cwiseQuotient(scale);
-  }
-  MatrixXd into(const MatrixXd& factor) const {
-    return scale.cwiseInverse().asDiagonal() * factor * scale.asDiagonal();
-  }
-  /// Derivative of a map of the section to itself.
-  MatrixXd of(const MatrixXd& derivative) const { return basis.transpose() * into(derivative) * basis; }
-};
 
 /// Newton on the return map.
 class Shooter {
@@ -113,14 +82,14 @@ class Shooter {
     map_.set_derivative(false);
     if (linear_.status != Status::converged) return linear_.status;
     if (linear_.derivative.size() == 0) return Status::stalled;
-    jacobian_ = chart_->of(linear_.derivative);
+    jacobian_ = chart_->restricted(linear_.derivative);
     return Status::converged;
   }
 
   /// Multipliers of the (half) map, from the factors of its derivative; the trivial one, taken out, tells their error.
   std::vector<std::complex<double>> multipliers(double& trivial_error) const {
     auto factors = linear_.factors;
-    for (auto& factor : factors) factor = chart_->into(factor);
+    for (auto& factor : factors) factor = chart_->scaled(factor);
     auto values = product_eigenvalues(factors);
     const auto trivial =
         std::ranges::min_element(values, {}, [](const std::complex<double>& value) { return std::abs(value - 1.0); });
@@ -172,7 +141,7 @@ class Shooter {
   ReturnMap map_;
   const ShootingOptions& options_;
   State typical_, largest_;
-  std::optional<Chart> chart_;
+  std::optional<SectionChart> chart_;
   LoopState state_;
   ReturnMap::Result linear_;
   MatrixXd jacobian_;
@@ -188,14 +157,14 @@ ShootingResult failed(Status status, const Shooter& shooter, std::string why) {
   return result;
 }
 
-/// Fills the cycle from the solved map; false if the recording fails.
-bool describe(const Loop& loop, const Shooter& shooter, double rtol, Cycle& cycle) {
+/// Fills the cycle from the solved map; false if the recording fails. Two resolutions tell the error of the extremes.
+bool describe(const Loop& loop, const Shooter& shooter, double rtol, int resolution, Cycle& cycle) {
   cycle.period = shooter.period();
   cycle.residual = shooter.residual_size();
   cycle.half_wave_symmetric = shooter.half();
   cycle.start = shooter.state();
   cycle.trace = {};
-  if (record(loop, cycle.start, cycle.period, rtol, 1000, cycle.trace) != Status::converged) return false;
+  if (record(loop, cycle.start, cycle.period, rtol, resolution, cycle.trace) != Status::converged) return false;
   measure(loop, cycle);
   return true;
 }
@@ -242,7 +211,9 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
   const bool exact = choose_stepper(loop, options.rtol) == StepperKind::exact;
   std::optional<Reflection> reflection;
   if (half) reflection = symmetry(loop);
-  Shooter shooter(loop, {loop, section, reflection, {coarse, options.max_steps_per_map, options.stop}}, options);
+  Shooter shooter(
+      loop, {loop, section, reflection, {coarse, options.max_steps_per_map, options.stop, false, options.longest_map}},
+      options);
   Status status = shooter.warm_up(guess);
   if (status != Status::converged) return failed(status, shooter, "the motion did not return to the section");
   if (!exact) status = shooter.solve(coarse, 30.0 * coarse);
@@ -250,14 +221,14 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
   if (status == Status::converged) status = shooter.solve(loose, tolerance);
   if (status != Status::converged) return failed(status, shooter, "no fixed point of the return map was reached");
   Cycle rough;
-  if (!describe(loop, shooter, loose, rough))
+  if (!describe(loop, shooter, loose, 500, rough))
     return failed(Status::stalled, shooter, "the cycle could not be followed");
 
   status = shooter.solve(options.rtol, tolerance);
   if (status != Status::converged) return failed(status, shooter, "the fixed point was lost at the tight tolerance");
   ShootingResult result;
   Cycle& cycle = result.cycle;
-  if (!describe(loop, shooter, options.rtol, cycle))
+  if (!describe(loop, shooter, options.rtol, 1000, cycle))
     return failed(Status::stalled, shooter, "the cycle could not be followed");
   cycle.method = exact ? "exact" : "shooting";
   const double floor = exact ? 1e-13 : 10.0 * options.rtol;

@@ -12,6 +12,7 @@ struct ShootingOptions {
   int warm_maps = 4;         ///< plain maps before the first Newton step (0: start from the guess itself)
   int max_maps = 400;        ///< budget
   long max_steps_per_map = 200000;
+  double longest_map = infinite;  ///< s: a motion that has not come back by then does not
   std::function<bool()> stop;
 };
 

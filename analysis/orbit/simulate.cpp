@@ -108,7 +108,7 @@ std::vector<std::string> state_names(const Loop& loop) {
 
 Simulation simulate(const Loop& loop, const SimulateOptions& options) {
   check(options);
-  if (loop.delay > 0.0) throw std::invalid_argument("loop.plant.delay: the time domain does not treat a delay yet");
+  if (loop.delay > 0.0) throw std::invalid_argument("loop.plant.delay: simulate does not treat a delay yet");
   Simulation run;
   run.columns = columns(loop);
   LoopField field(loop);

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
+#include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/composite_balance.hpp"
 
 namespace limcycle {
@@ -10,21 +10,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Half-width of the leap, relative to the force: within it, when the body tears loose depends on digits that nobody
-/// knows.
-constexpr double front_width = 1e-4;
-
 /// Steps of the integrator that a search of one side may cost: about a second.
 constexpr long step_budget = 400000;
-
-double cross(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
-double dot(Complex a, Complex b) { return a.real() * b.real() + a.imag() * b.imag(); }
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 std::string ended(Status status) {
   return status == Status::interrupted ? "its budget of steps used up" : "status " + std::string(to_string(status));
@@ -32,7 +19,7 @@ std::string ended(Status status) {
 
 void check(const CompositeSearchOptions& o) {
   const auto refuse = [](const std::string& what, double value) {
-    throw std::invalid_argument("composite balance: " + what + ", got " + number(value));
+    throw std::invalid_argument("composite balance: " + what + ", got " + short_number(value));
   };
   if (!(o.frequency_min > 0.0)) refuse("frequency_min must be > 0", o.frequency_min);
   if (!(o.frequency_max > o.frequency_min && std::isfinite(o.frequency_max)))
@@ -45,46 +32,6 @@ void check(const CompositeSearchOptions& o) {
 }
 
 }  // namespace
-
-/// What two known neighbours say, on a straight line over the logarithm of the frequency; 0: nothing is known.
-double CompositeBalance::guess_front(double frequency) const {
-  double nearest = infinite, next = infinite, at[2] = {0.0, 0.0}, force[2] = {0.0, 0.0};
-  for (const auto& [key, value] : fronts_) {
-    const double place = std::log(key.first / frequency), apart = std::abs(place);
-    if (apart < nearest) {
-      next = nearest;
-      at[1] = at[0];
-      force[1] = force[0];
-      nearest = apart;
-      at[0] = place;
-      force[0] = value;
-    } else if (apart < next && place != at[0]) {
-      next = apart;
-      at[1] = place;
-      force[1] = value;
-    }
-  }
-  if (!std::isfinite(next) || std::abs(at[1] - at[0]) < 1e-6) return force[0];
-  return force[0] - at[0] * (force[1] - force[0]) / (at[1] - at[0]);
-}
-
-/// Break-away force and N on either side. The force is kept: it is asked for at every amplitude of a frequency.
-CompositeBalance::Front CompositeBalance::front(double frequency, double accuracy) {
-  const double relative = accuracy > 1e-5 ? 0.03 * front_width : 1e-9;
-  const auto key = std::pair(frequency, relative);
-  auto known = fronts_.find(key);
-  if (known == fronts_.end()) {
-    known = fronts_.emplace(key, element_.break_away(frequency, relative, guess_front(frequency))).first;
-  }
-  return {known->second, {}, {}, 0.0, 0.0};
-}
-
-/// The force at a coordinate that keeps the leap at 1: below it U itself, above it 1 + (ln)^2/2 + ..., because N leaves
-/// the leap like a square root.
-double CompositeBalance::side_force(double coordinate, double frequency, bool above, double accuracy) {
-  const double leap = front(frequency, accuracy).force;
-  return above ? leap * (1.0 + front_width) * std::cosh(std::log(coordinate)) : leap * (1.0 - front_width) * coordinate;
-}
 
 /// Frequencies at which a passive N can balance: Im(1/K) <= 0, with three degrees to spare.
 std::vector<CompositeBalance::Window> CompositeBalance::windows(const CompositeSearchOptions& options) const {
@@ -221,7 +168,7 @@ void CompositeBalance::search_biased(const CompositeSearchOptions& options, Comp
     made.on_break_away_front = s->share < 1.0;
     if (made.on_break_away_front)
       made.note = "lies in the leap of the mean velocity at break-away: full stick-slip would be " +
-                  number(1.0 / s->share) +
+                  short_number(1.0 / s->share) +
                   " times as fast as the mean motion: a first-harmonic balance is hardly a prediction there";
     found.roots.push_back(made);
   }
@@ -240,70 +187,6 @@ void CompositeBalance::search_biased(const CompositeSearchOptions& options, Comp
   for (const Root& root : sliding.roots)
     add(root.amplitude * mass_ * root.frequency, root.frequency, root.index, options, found);
   note(sliding, "motions that slide all the time");
-}
-
-/// Along the leap: 1 - K N is 0 on the straight line between its two sides where they point in opposite directions.
-void CompositeBalance::search_front(const Window& window, const CompositeSearchOptions& options,
-                                    CompositeSearch& found) {
-  const auto sides = [&](double w, double accuracy) {
-    Front f = front(w, accuracy);
-    near_.reset();
-    const CompositeResponse low = solve(f.force * (1.0 - front_width), w, accuracy, false);
-    near_.reset();
-    const CompositeResponse high = solve(f.force * (1.0 + front_width), w, accuracy, false);
-    near_.reset();
-    f.below = f.above = {std::nan(""), std::nan("")};
-    if (low.status == Status::converged) f.below = residue(low.gain, w);
-    if (high.status == Status::converged) f.above = residue(high.gain, w);
-    f.sticking_below = low.sticking_fraction;
-    f.sticking_above = high.sticking_fraction;
-    return f;
-  };
-  const int n = std::clamp(static_cast<int>(8.0 * std::log10(window.high / window.low)), 12, 60);
-  const double ratio = std::log(window.high / window.low) / n;
-  double w0 = window.low;
-  Front last = sides(w0, options.coarse_accuracy);
-  for (int i = 1; i <= n; ++i) {
-    if (options.stop && options.stop()) {
-      found.status = Status::interrupted;
-      return;
-    }
-    const double w1 = window.low * std::exp(ratio * i);
-    const Front now = sides(w1, options.coarse_accuracy);
-    const double c0 = cross(last.below, last.above), c1 = cross(now.below, now.above);
-    if (c0 * c1 < 0.0) {
-      double low = w0, high = w1, at_low = c0, at_high = c1;
-      Front f = last;
-      double w = w0;
-      for (int k = 0; k < 30 && high - low > 1e-5 * low; ++k) {
-        w = k % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * at_low / (at_low - at_high);
-        f = sides(w, 1e-6);
-        const double c = cross(f.below, f.above);
-        if (!std::isfinite(c) || c == 0.0) break;
-        ((c < 0.0) == (at_low < 0.0) ? low : high) = w;
-        ((c < 0.0) == (at_low < 0.0) ? at_low : at_high) = c;
-      }
-      last = now;
-      w0 = w1;
-      if (!(dot(f.below, f.above) < 0.0)) continue;
-      const double share = std::abs(f.below) / (std::abs(f.below) + std::abs(f.above));
-      const double step = 1e-3;
-      const Front later = sides(w * (1.0 + step), 1e-6);
-      const Complex along = ((1.0 - share) * (later.below - f.below) + share * (later.above - f.above)) / step;
-      const int index = cross(f.above - f.below, along) > 0.0 ? 1 : -1;
-      CompositeRoot root = describe(f.force, w, 1.0 / rest_of_loop(w), index);
-      root.residual = std::abs(cross(f.below, f.above)) / std::abs(f.above - f.below);
-      root.sticking_fraction = (1.0 - share) * f.sticking_below + share * f.sticking_above;
-      root.on_break_away_front = true;
-      root.note = "lies in the leap of N at break-away (U = " + number(f.force) +
-                  " N), between x1 = " + number(std::abs((1.0 - f.below) / rest_of_loop(w)) * f.force) + " m and " +
-                  number(std::abs((1.0 - f.above) / rest_of_loop(w)) * f.force) +
-                  " m: a first-harmonic balance is hardly a prediction there";
-      found.roots.push_back(root);
-    }
-    last = now;
-    w0 = w1;
-  }
 }
 
 CompositeSearch CompositeBalance::find(const CompositeSearchOptions& options) {

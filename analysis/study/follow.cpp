@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 class Following {
  public:
@@ -46,11 +41,11 @@ class Following {
   std::vector<Cycle> cycles_at(double p) {
     const auto loop = family_(p);
     if (!loop) {
-      report_.notes.push_back("the case is not valid at " + number(p));
+      report_.notes.push_back("the case is not valid at " + short_number(p, 6));
       return {};
     }
     if (loop->delay > 0.0) {
-      report_.notes.push_back("the time domain does not treat a delay yet: no cycle can be followed");
+      report_.notes.push_back("continuation does not treat a delay yet: no cycle can be followed");
       report_.status = Status::incomplete;
       return {};
     }
@@ -71,12 +66,12 @@ class Following {
       tell(0.2 * i / options_.scan, "looking for a cycle");
       auto cycles = cycles_at(p);
       if (cycles.empty()) continue;
-      report_.notes.push_back("there is no limit cycle at " + number(report_.start) +
-                              "; the one followed was found at " + number(p));
+      report_.notes.push_back("there is no limit cycle at " + short_number(report_.start, 6) +
+                              "; the one followed was found at " + short_number(p, 6));
       report_.start = p;
       return cycles;
     }
-    report_.notes.push_back("no limit cycle was found at " + number(report_.start) + " nor at " +
+    report_.notes.push_back("no limit cycle was found at " + short_number(report_.start, 6) + " nor at " +
                             std::to_string(options_.scan + 1) + " values over the range");
     return {};
   }
@@ -98,7 +93,7 @@ class Following {
     };
     Branch branch = continue_cycle(family_, cycle, report_.start, continuing);
     if (branch.points.empty()) {
-      report_.notes.push_back("the cycle of period " + number(cycle.period) +
+      report_.notes.push_back("the cycle of period " + short_number(cycle.period, 6) +
                               " s could not be followed: " + branch.why);
       report_.status = branch.status == Status::interrupted ? branch.status : Status::incomplete;
       return;

@@ -19,7 +19,7 @@ class Margins {
 
   MarginReport run() {
     if (loop_.delay > 0.0) {
-      report_.notes.emplace_back("the time domain does not treat a delay yet: only the describing function was asked");
+      report_.notes.emplace_back("margins do not treat a delay yet: only the describing function was asked");
       report_.status = Status::incomplete;
       measure_balance();
       return std::move(report_);

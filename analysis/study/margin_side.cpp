@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
 namespace {
@@ -11,12 +12,6 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double beyond = 1e-2;  ///< how far past a lost cycle, relative, one looks whether the loop still hunts
 constexpr int successors = 3;    ///< other cycles that are followed in turn
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -91,7 +86,8 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
   double p = parameter_.value;
   for (int i = 0; i <= successors; ++i) {
     const Lost lost = follow(cycle, p, limit_);
-    if (lost.kind == Lost::Kind::border) return {What::none, 0.0, 0.0, "it hunts all the way to " + number(limit_)};
+    if (lost.kind == Lost::Kind::border)
+      return {What::none, 0.0, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
     if (lost.kind == Lost::Kind::failed) return {What::unknown, 0.0, unknown, lost.why};
     const double step = limit_ > p ? beyond : -beyond;
     const double next = lost.value * (1.0 + (parameter_.value > 0.0 ? step : -step));
@@ -112,7 +108,8 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
     cycle = std::move(*other);
     p = next;
   }
-  return {What::unknown, 0.0, unknown, "one cycle takes over from the next; the last was lost near " + number(p)};
+  return {What::unknown, 0.0, unknown,
+          "one cycle takes over from the next; the last was lost near " + short_number(p, 5)};
 }
 
 MarginSide SideSearch::where_hunting_begins() {
@@ -123,25 +120,27 @@ MarginSide SideSearch::where_hunting_begins() {
     const double p = parameter_.value * std::pow(limit_ / parameter_.value, static_cast<double>(i) / steps);
     if (progress_) progress_(static_cast<double>(i) / (steps + 1));
     if (!parameter_.family(p))
-      return {What::none, 0.0, 0.0, "none up to " + number(last) + "; the case is not valid at " + number(p)};
+      return {What::none, 0.0, 0.0,
+              "none up to " + short_number(last, 5) + "; the case is not valid at " + short_number(p, 5)};
     Outcome outcome{};
     const auto cycle = cycle_at(p, nullptr, outcome);
     if (outcome == Outcome::divergence)
-      return {What::none, 0.0, 0.0, "none up to " + number(last) + "; at " + number(p) + " the motion diverges"};
+      return {What::none, 0.0, 0.0,
+              "none up to " + short_number(last, 5) + "; at " + short_number(p, 5) + " the motion diverges"};
     if (cycle) {
       const Lost lost = follow(*cycle, p, parameter_.value);
       if (lost.kind == Lost::Kind::lost) return {What::begins, lost.value, lost.error, lost.why};
       if (lost.kind == Lost::Kind::border)
         return {What::begins, parameter_.value, 0.0,
-                "the cycle found at " + number(p) +
+                "the cycle found at " + short_number(p, 5) +
                     " reaches back to the parameter's own value: the loop hunts there "
                     "from starts that were not tried"};
       return {What::begins, p, unknown,
-              "it hunts at " + number(p) + "; where that begins could not be followed: " + lost.why};
+              "it hunts at " + short_number(p, 5) + "; where that begins could not be followed: " + lost.why};
     }
     last = p;
   }
-  return {What::none, 0.0, 0.0, "it does not hunt up to " + number(last)};
+  return {What::none, 0.0, 0.0, "it does not hunt up to " + short_number(last, 5)};
 }
 
 }  // namespace limcycle

@@ -1,6 +1,6 @@
 #include "limcycle/analysis/study/predict.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <future>
@@ -23,11 +23,14 @@ namespace {
 constexpr std::string_view df_name = "describing-function", composite_name = "composite-describing-function",
                            balance_name = "harmonic-balance";
 
-/// The loop as the time domain can treat it, and a note of what was done to a delay. The Pade approximation is right to
-/// 1e-9 up to 20 rad of phase or the end of the box.
-TimeDomainLoop treat_in_time(const Loop& loop, const SearchBox& box, std::vector<std::string>& notes) {
+/// The loop as the time domain can treat it, and a note of what was done to a delay: the Pade approximation is right to
+/// 1e-9 up to the seventh harmonic of the fastest prediction.
+TimeDomainLoop treat_in_time(const Loop& loop, const PredictReport& report, std::vector<std::string>& notes) {
   if (loop.delay == 0.0) return {loop, 0, 0};
-  const double highest = std::min(box.frequency_max, 20.0 / loop.delay);
+  double highest = 0.0;
+  for (const Prediction& p : report.predictions) highest = std::max(highest, 7.0 * p.frequency);
+  if (highest == 0.0) highest = 7.0 / loop.delay;
+  highest = std::min(highest, 40.0 / loop.delay);
   int order = lowest_pade_order;
   while (order < highest_pade_order && pade_error(highest, loop.delay, order) > 1e-9) ++order;
   auto treated = in_time_domain(loop, order);
@@ -45,17 +48,17 @@ TimeDomainLoop treat_in_time(const Loop& loop, const SearchBox& box, std::vector
 class Study {
  public:
   Study(const Loop& loop, const PredictOptions& options)
-      : loop_(loop),
-        options_(options),
-        box_(options.search.value_or(default_search_box(loop))),
-        time_(treat_in_time(loop, box_, report_.notes).loop),
-        hunt_(time_, options, box_) {
+      : loop_(loop), options_(options), box_(options.search.value_or(default_search_box(loop))) {
     report_.search = box_;
   }
 
   PredictReport run() {
     if (options_.methods.composite) begin_composite();
     if (options_.methods.describing_function) find_df();
+    auto treated = treat_in_time(loop_, report_, report_.notes);
+    time_ = std::move(treated.loop);
+    pade_order_ = treated.pade_order;
+    hunt_.emplace(time_, options_, box_);
     run_starts();
     end_composite();
     for (std::size_t i = 0; i < report_.predictions.size() && !stopped(); ++i) check(report_.predictions[i], i);
@@ -132,7 +135,7 @@ class Study {
     for (int i = 0; i < options_.starts && !stopped(); ++i, displacement *= i == 1 ? 0.1 : 0.01) {
       tell(0.2 + 0.4 * i / std::max(1, options_.starts), "simulation");
       if (displacement < box_.amplitude_min) break;
-      hunt_.settle_from(displaced(time_, displacement), "y displaced by " + short_number(displacement));
+      hunt_->settle_from(displaced(time_, displacement), "y displaced by " + short_number(displacement));
     }
   }
 
@@ -154,13 +157,13 @@ class Study {
     const bool plain = p.method == df_name;
     if (plain && p.stable != true && unstable_cycle_near(p)) return;
     const auto& outcome =
-        hunt_.settle_from(start_of(p, index), "the oscillation predicted by root " + std::to_string(index));
+        hunt_->settle_from(start_of(p, index), "the oscillation predicted by root " + std::to_string(index));
     // What a stable prediction leads to is what it is about, unless it is absurdly far from it.
-    if (outcome.cycle && p.stable != false && nearest({hunt_.cycles()[*outcome.cycle]}, p))
-      return compare(p, hunt_.cycles(), *outcome.cycle);
-    if (const auto cycle = nearest(hunt_.cycles(), p);
-        cycle && (!p.stable || hunt_.cycles()[*cycle].stable == p.stable))
-      return compare(p, hunt_.cycles(), *cycle);
+    if (outcome.cycle && p.stable != false && nearest({hunt_->cycles()[*outcome.cycle]}, p))
+      return compare(p, hunt_->cycles(), *outcome.cycle);
+    if (const auto cycle = nearest(hunt_->cycles(), p);
+        cycle && (!p.stable || hunt_->cycles()[*cycle].stable == p.stable))
+      return compare(p, hunt_->cycles(), *cycle);
     conclude_without_cycle(p, outcome);
   }
 
@@ -180,17 +183,17 @@ class Study {
   bool unstable_cycle_near(Prediction& p) {
     const bool odd = symmetry(time_).has_value();
     const auto accept = [&](std::optional<std::size_t> cycle) {
-      if (!cycle || hunt_.cycles()[*cycle].stable != false || !nearest({hunt_.cycles()[*cycle]}, p)) return false;
-      compare(p, hunt_.cycles(), *cycle);
+      if (!cycle || hunt_->cycles()[*cycle].stable != false || !nearest({hunt_->cycles()[*cycle]}, p)) return false;
+      compare(p, hunt_->cycles(), *cycle);
       return true;
     };
     for (const double scale : {1.0, 0.9, 1.1}) {
       if (stopped()) return false;
       const auto states = [&](double phase) { return linear_state(p, phase, scale); };
-      if (accept(hunt_.shoot_from(guess_orbit(time_, states, p.frequency, odd)))) return true;
+      if (accept(hunt_->shoot_from(guess_orbit(time_, states, p.frequency, odd)))) return true;
     }
     const auto ray = [&](double scale) { return without_history(time_, linear_state(p, 0.0, scale)); };
-    return !stopped() && accept(hunt_.edge_along(ray, 2.0 * std::numbers::pi / p.frequency));
+    return !stopped() && accept(hunt_->edge_along(ray, 2.0 * std::numbers::pi / p.frequency));
   }
 
   /// Harmonic balance from every root of the plain describing function, and from every cycle it missed.
@@ -208,20 +211,42 @@ class Study {
       guess.first(ne - 1) = p.input_amplitude;
       guesses.push_back(std::move(guess));
     }
-    for (std::size_t i = 0; i < hunt_.cycles().size(); ++i) {
-      const Cycle& cycle = hunt_.cycles()[i];
-      if (ne != 1 || !missed_by_df(i)) continue;
-      if (cycle.sticking_fraction < 0.02)
+    for (std::size_t i = 0; i < hunt_->cycles().size(); ++i) {
+      const Cycle& cycle = hunt_->cycles()[i];
+      if (!missed_by_df(i)) continue;
+      if (ne == 1 && cycle.sticking_fraction < 0.02)
         guesses.push_back(guess_from(cycle));
       else
         report_.notes.push_back("harmonic balance was not tried on cycle " + std::to_string(i) +
-                                ", which sticks: harmonics ripple more than pre-sliding is wide");
+                                (ne > 1 ? ": it has no describing-function root to begin from"
+                                        : ", which sticks: harmonics ripple more than pre-sliding is wide"));
     }
     for (const HarmonicGuess& guess : guesses) {
       if (stopped()) return;
       add_balance(harmonic_balance(loop_, guess, options));
     }
     used_.emplace_back(balance_name);
+  }
+
+  /// Linear states of the loop that is treated in time on a harmonic balance.
+  Eigen::VectorXd linear_state(const HarmonicBalance& found, double phase) const {
+    using Complex = std::complex<double>;
+    const Eigen::Index n = time_.states();
+    const auto output = [&](int order) {
+      Eigen::VectorXcd W(std::ssize(found.outputs));
+      for (std::size_t k = 0; k < found.outputs.size(); ++k) W(static_cast<Eigen::Index>(k)) = found.outputs[k](order);
+      return W;
+    };
+    const Eigen::VectorXd pull = time_.E * time_.external + time_.B * output(0).imag();
+    Eigen::VectorXd x = time_.A.completeOrthogonalDecomposition().solve(-pull);
+    const bool relay_is_late = loop_.delay > 0.0 && n == loop_.states();
+    for (int order = 1; order <= found.harmonics; ++order) {
+      const Complex s(0.0, order * found.frequency);
+      const Eigen::MatrixXcd M = s * Eigen::MatrixXcd::Identity(n, n) - time_.A.cast<Complex>();
+      const Complex turn = std::polar(1.0, order * phase) * (relay_is_late ? std::exp(-s * loop_.delay) : 1.0);
+      x += (M.partialPivLu().solve(time_.B.cast<Complex>() * output(order)) * turn).imag();
+    }
+    return x;
   }
 
   bool missed_by_df(std::size_t cycle) const {
@@ -253,17 +278,31 @@ class Study {
              std::abs(q.amplitude / p.amplitude - 1.0) < 1e-6;
     };
     if (std::ranges::any_of(report_.predictions, same)) return;
-    if (const auto cycle = nearest(hunt_.cycles(), p))
-      compare(p, hunt_.cycles(), *cycle);
+    if (!nearest(hunt_->cycles(), p))
+      hunt_->shoot_from(guess_orbit(
+          time_, [&](double phase) { return linear_state(found, phase); }, p.frequency, symmetry(time_).has_value()));
+    if (const auto cycle = nearest(hunt_->cycles(), p))
+      compare(p, hunt_->cycles(), *cycle);
     else
       p.why = "no cycle was found near it";
     if (!found.why.empty()) p.why += "; " + found.why;
     report_.predictions.push_back(std::move(p));
   }
 
+  /// What the approximation of a delay may do to a cycle: the distortion of the delayed signal, harmonic by harmonic.
+  double delay_error(const Cycle& cycle) const {
+    if (pade_order_ == 0) return 0.0;
+    const Eigen::VectorXcd X = input_harmonics(cycle, 199);
+    double sum = 0.0;
+    for (int n = 1; n < X.size(); ++n)
+      sum += std::abs(X(n)) * pade_error(n * cycle.frequency(), loop_.delay, pade_order_);
+    return sum / std::abs(X(1));
+  }
+
   void finish() {
-    report_.cycles = hunt_.cycles();
-    report_.outcomes = hunt_.outcomes();
+    report_.cycles = hunt_->cycles();
+    for (Cycle& cycle : report_.cycles) cycle.error = std::max(cycle.error, delay_error(cycle));
+    report_.outcomes = hunt_->outcomes();
     for (const auto& method : used_) {
       const auto missed = missed_by(method, report_.cycles, report_.predictions);
       report_.missed.insert(report_.missed.end(), missed.begin(), missed.end());
@@ -277,7 +316,8 @@ class Study {
   PredictReport report_;
   SearchBox box_;
   Loop time_;  ///< the same loop as the time domain can treat it
-  CycleHunt hunt_;
+  int pade_order_ = 0;
+  std::optional<CycleHunt> hunt_;
   std::optional<LoopBalance> balance_;
   std::optional<CompositeBalance> composite_;
   std::future<CompositeSearch> composite_search_;

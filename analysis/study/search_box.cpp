@@ -1,7 +1,7 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 
 namespace limcycle {
@@ -9,14 +9,8 @@ namespace limcycle {
 /// Two decades around the loop's poles; amplitudes up to three times the largest response to the element's level there
 /// (at s = (0.1 + j) w, so that an undamped resonance does not count as infinite), six decades down.
 SearchBox default_search_box(const Loop& loop) {
-  double slow = infinite, fast = 0.0;
-  const Eigen::VectorXd poles = loop.A.eigenvalues().cwiseAbs();
-  for (const double pole : poles)
-    if (pole > 1e-9 * poles.maxCoeff()) {
-      slow = std::min(slow, pole);
-      fast = std::max(fast, pole);
-    }
-  if (!std::isfinite(slow)) slow = fast = 1.0;
+  const auto moduli = pole_moduli(loop);
+  const double slow = moduli.empty() ? 1.0 : moduli.front(), fast = moduli.empty() ? 1.0 : moduli.back();
   SearchBox box{0.0, 0.0, 0.01 * slow, 100.0 * fast};
   // A delay makes roots without end, at every turn of its phase: the first few turns are what can matter.
   if (loop.delay > 0.0) box.frequency_max = std::min(box.frequency_max, std::max(10.0 * fast, 30.0 / loop.delay));

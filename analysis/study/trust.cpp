@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/loop_balance.hpp"
 
 namespace limcycle {
@@ -19,11 +19,7 @@ constexpr Interval unbounded{0.0, infinite};
 
 bool rubs(const Loop& loop, std::size_t i) { return loop.ports[i].rubs; }
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * share);
-  return text;
-}
+std::string percent(double share) { return short_number(100.0 * share, 2) + " %"; }
 
 /// Fills filter_ratio, worst_harmonic and harmonic_residual: sizes of the harmonics that come back to the element's
 /// input.

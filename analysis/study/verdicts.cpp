@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
 namespace {
@@ -11,11 +12,7 @@ constexpr double agreement = 0.05;      ///< relative difference up to which a p
 constexpr double amplitude_reach = 10;  ///< a prediction farther off than this is not about that cycle
 constexpr double frequency_reach = 3;
 
-std::string percent(double ratio) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%+.3g %%", 100.0 * (ratio - 1.0));
-  return text;
-}
+std::string percent(double ratio) { return (ratio < 1.0 ? "" : "+") + short_number(100.0 * (ratio - 1.0), 3) + " %"; }
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "limcycle/models/linear/plants.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace limcycle {
 namespace {
@@ -81,6 +82,12 @@ PlantModel TransferFunction::model() const { return from_input_output(realise(nu
 std::optional<BrokenRule> ZeroPoleGain::validate() const {
   if (poles.empty()) return BrokenRule{"poles", "must not be empty"};
   if (gain == 0.0) return BrokenRule{"gain", "must not be zero"};
+  // Poles without a partner are their own fault, not that of the zeros.
+  try {
+    realise_zpk({}, poles, gain);
+  } catch (const std::invalid_argument& error) {
+    return BrokenRule{"poles", error.what()};
+  }
   return strictly_proper("zeros", [this] { return realise_zpk(zeros, poles, gain); });
 }
 

@@ -121,6 +121,15 @@ const draw = {
       yaxis2: axis("", {domain: narrow ? [0, 0.42] : [0, 1], anchor: "x2", matches: "y"}),
     })];
   },
+
+  multipliers(d) {
+    const angle = [...Array(145).keys()].map((i) => i * Math.PI / 72);
+    const traces = [{name: "unit circle", x: angle.map(Math.cos), y: angle.map(Math.sin), mode: "lines", hoverinfo: "skip",
+      line: line("three", 1.5)}];
+    d.cycles.forEach((one, i) => traces.push({name: one.name, x: one.re, y: one.im, mode: "markers",
+      marker: {color: colour(i % 2 === 0 ? "one" : "two"), size: 10, symbol: i}}));
+    return [traces, layout({xaxis: axis("real part"), yaxis: axis("imaginary part", {scaleanchor: "x"})})];
+  },
 };
 
 // + and - zoom, arrows move, a shows all, 0 the first view: for those who use no pointer.

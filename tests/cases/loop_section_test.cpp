@@ -3,6 +3,8 @@
 #include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 using limcycle::test::message;
 using limcycle::test::servo;
 using limcycle::test::with;
@@ -213,6 +215,10 @@ TEST_CASE("improper and non-causal plants") {
         "a.toml:4: loop.plant.denominator = []: must not be empty or zero");
   CHECK(plant("kind = \"zpk\"\nzeros = [1, 2]\npoles = [-1]\ngain = 1")
             .starts_with("a.toml:3: loop.plant.zeros = [1, 2]: "));
+  CHECK_THAT(plant("kind = \"zpk\"\nzeros = []\npoles = [[-1, 2], -3]\ngain = 1"),
+             StartsWith("a.toml:4: loop.plant.poles = [[-1, 2], -3]: ") && Contains("conjugate"));
+  CHECK_THAT(plant("kind = \"zpk\"\nzeros = [[-1, 2]]\npoles = [-1, -2, -3]\ngain = 1"),
+             StartsWith("a.toml:3: loop.plant.zeros = [[-1, 2]]: ") && Contains("conjugate"));
   CHECK(plant("kind = \"state-space\"\nA = [[0, 1], [0, 0]]\nB = [[0], [1]]\nC = [[1, 0]]\nD = [[1]]") ==
         "a.toml:6: loop.plant.D = [[1]]: must be zero: the plant must be strictly proper");
   CHECK(plant("kind = \"state-space\"\nA = [[0, 1], [0]]\nB = [[0], [1]]\nC = [[1, 0]]") ==

@@ -55,8 +55,11 @@ TEST_CASE("predict: the default case is answered in words, in documents and as a
   const auto document = Json::parse(scratch.get("r.json"));
   REQUIRE(document["cycles"].size() == 1);
   CHECK(document["cycles"][0]["period"].get<double>() == Approx(24.436786455993).epsilon(1e-8));
-  CHECK(document["predictions"].empty());
-  CHECK(document["missed"] == Json::array({{{"method", "describing-function"}, {"cycle", 0}}}));
+  REQUIRE(document["predictions"].size() == 1);
+  CHECK(document["predictions"][0]["method"] == "composite-describing-function");
+  CHECK(document["predictions"][0]["verdict"] == "biased");
+  CHECK(document["missed"] == Json::array({{{"method", "describing-function"}, {"cycle", 0}},
+                                           {{"method", "harmonic-balance"}, {"cycle", 0}}}));
   CHECK_THAT(scratch.get("r.csv"), StartsWith("kind,index,method,amplitude") && Contains("\ncycle,0,shooting,0.06"));
   const auto page = scratch.get("r.html");
   CHECK_THAT(page, StartsWith("<!DOCTYPE html>"));

@@ -171,7 +171,7 @@ TEST_CASE("error, compensation, saturation, element and friction stand in one lo
   CHECK((loop.element_response(5.0) - H).norm() < 1e-13 * H.norm());
 }
 
-TEST_CASE("an element on the error alone makes a loop; without a controller it puts out the command") {
+TEST_CASE("an element on the error alone makes a loop and without a controller puts out the command") {
   LoopParts parts;
   parts.plant = TransferFunction{{1.0}, {1.0, 1.0, 1.0}, 0.0};
   parts.error = quantizer(0.1);

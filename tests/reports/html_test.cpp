@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "limcycle/reports/figures.hpp"
+#include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
 #include "limcycle/reports/plotly.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
@@ -57,9 +58,9 @@ TEST_CASE("nothing that a user wrote becomes markup") {
   for (const char* part : {"<script>alert", "<script>bad", "<script>start", "<img src=x", "<!--"})
     CHECK_FALSE(holds(text, part));
   CHECK(holds(text, "&lt;script&gt;alert(&#39;title&#39;)&lt;/script&gt;"));
-  // Four figures, the library, the script; the same number of closing tags.
-  CHECK(count(text, "<script") == 6);
-  CHECK(count(text, "</script>") == 6);
+  // Five figures, the library, the script; the same number of closing tags.
+  CHECK(count(text, "<script") == 7);
+  CHECK(count(text, "</script>") == 7);
 }
 
 TEST_CASE("the page says the verdict, shows the tables and how to make it again") {
@@ -83,7 +84,7 @@ TEST_CASE("the page asks nothing of the network") {
 
 TEST_CASE("each figure says in words what it shows") {
   const auto figures = predict_figures(sample::hunting(), {});
-  REQUIRE(figures.size() == 4);
+  REQUIRE(figures.size() == 5);
   const auto text = page(sample::hunting());
   for (const auto& figure : figures) {
     CHECK(figure.finding.size() > 40);
@@ -93,6 +94,20 @@ TEST_CASE("each figure says in words what it shows") {
   }
   CHECK(holds(figures[1].finding, "y moves between -0.0639 and 0.0639 m"));
   CHECK(holds(figures[1].finding, "it sticks for 50 % of the time"));
+}
+
+TEST_CASE("Floquet multipliers: a table, and a figure that says the size of the largest") {
+  const auto figures = predict_figures(sample::hunting(), {});
+  CHECK(figures.back().id == "multipliers");
+  CHECK(holds(figures.back().finding, "Size of the largest: 0.00955 of limit cycle 0."));
+  CHECK(Json::parse(figures.back().data) ==
+        Json({{"cycles", {{{"name", "limit cycle 0"}, {"re", {0.0095, 0.0}}, {"im", {-0.001, 0.0}}}}}}));
+  CHECK(holds(page(sample::hunting()), ">0.00950 - 0.00100j, 1 below 1e-06</td>"));
+  auto report = sample::hunting();
+  report.cycles[0].multipliers.clear();
+  CHECK(predict_figures(report, {}).size() == 4);
+  report.cycles[0].multipliers = {{std::numeric_limits<double>::quiet_NaN(), 0.0}};
+  CHECK(Json::parse(predict_figures(report, {}).back().data)["cycles"][0]["re"][0].is_null());
 }
 
 TEST_CASE("figures hold JSON without what would end their element, and few points") {

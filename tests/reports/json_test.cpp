@@ -61,7 +61,11 @@ TEST_CASE("predict: keys and values") {
   const auto& predictions = document["predictions"];
   REQUIRE(predictions.size() == 2);
   CHECK(keys(predictions[0]) == Keys{"method", "amplitude", "frequency", "stable", "verdict", "cycle",
-                                     "input_amplitude", "residual", "why", "trust"});
+                                     "input_amplitude", "residual", "why", "harmonics", "trust"});
+  CHECK(predictions[0]["harmonics"] == 1);
+  auto balanced = sample::relay();
+  balanced.predictions[0].harmonics = 15;
+  CHECK(Json::parse(predict_json(made(), balanced))["predictions"][0]["harmonics"] == 15);
   CHECK(predictions[0]["trust"].is_null());
   CHECK(document["absence"].is_null());
   CHECK(predictions[0]["verdict"] == "confirmed");

@@ -37,6 +37,19 @@ TEST_CASE("a table is aligned, with units and without trailing spaces") {
         "Ångström       7   1234.5\n");
 }
 
+TEST_CASE("a per cent sign stays with its number at the end of a line") {
+  CHECK(wrapped("errors of about 72 % of it", 18) == "errors of about\n72 % of it\n");
+  CHECK(wrapped("errors of about 72 %", 18) == "errors of about\n72 %\n");
+  CHECK(wrapped("72 %, or more", 5) == "72 %,\nor\nmore\n");
+  CHECK(wrapped("% of it", 4) == "% of\nit\n");
+}
+
+TEST_CASE("notes are listed under their heading, each under its own mark") {
+  CHECK(notes_text({}) == "");
+  CHECK(notes_text({"one", "two"}) == "\nNotes\n-  one\n-  two\n");
+  CHECK(item("a", 3, "b") == "a    b\n");
+}
+
 TEST_CASE("a table that is too wide is turned") {
   Table table{{{"first one", "s"}, {"second", ""}}, {{"1", "x"}, {"22", "y"}, {"333", "z"}}};
   CHECK(table.text(80).substr(0, 9) == "first one");

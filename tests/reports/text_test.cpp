@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "limcycle/reports/answer.hpp"
+#include "limcycle/reports/multipliers.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
 
 using namespace limcycle;
@@ -103,6 +104,34 @@ TEST_CASE("predict: a method that was not applicable is not said to predict noth
   auto report = quiet({Outcome::rest});
   report.nyquist = {};
   CHECK(answer(report, {}).worth.empty());
+}
+
+TEST_CASE("predict: harmonic balance, which searches no box, does not see a cycle") {
+  auto report = sample::hunting();
+  report.missed.push_back({"harmonic-balance", 0});
+  CHECK(answer(report, {}).worth.back() == "Harmonic balance does not see it.");
+  report.predictions = {
+      {"harmonic-balance", 0.1, 7.0, 0.1, 2e-12, std::nullopt, Verdict::wrong, std::nullopt, "it comes to rest"}};
+  CHECK_THAT(answer(report, {}).worth.back(), Contains("that does not exist, and does not see the one that exists."));
+}
+
+TEST_CASE("predict: Floquet multipliers, the largest few, of the period they belong to") {
+  CHECK(multipliers_in_words({}) == "");
+  CHECK(multipliers_in_words({{-1.25, 0.0}, {0.5, 0.0}}) == "-1.25, 0.500");
+  CHECK(multipliers_in_words({{0.9, 0.1}, {0.9, -0.1}, {0.5, 0.0}, {1e-9, 0.0}, {0.0, 0.0}}) ==
+        "0.900 ± 0.100j, 0.500, 2 below 1e-06");
+  CHECK(multipliers_in_words(std::vector<std::complex<double>>(9, 0.5)) ==
+        "0.500, 0.500, 0.500, 0.500, 0.500, 0.500, 0.500, 2 smaller");
+  CHECK(multipliers_in_words({{0.0, 0.0}}) == "1 below 1e-06");
+  CHECK(multipliers_in_words({{0.0095, -0.001}}) == "0.00950 - 0.00100j");
+  const auto text = predict_text("A servo", sample::hunting(), {});
+  CHECK_THAT(text, Contains("Floquet multipliers, without the trivial 1\n") &&
+                       Contains("0  24.44  0.00950 - 0.00100j, 1 below 1e-06\n"));
+  auto report = sample::hunting();
+  report.cycles[0].multipliers.clear();
+  CHECK(predict_text("A servo", report, {}).find("Floquet") == std::string::npos);
+  report.cycles[0].multipliers.assign(40, {-0.123456789, 0.234567});
+  CHECK(widest(predict_text("A servo", report, {})) <= 80);
 }
 
 TEST_CASE("predict: unstable cycles and interrupted work are named") {

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/tests/analysis/predictions.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -160,7 +161,7 @@ TEST_CASE("cycles found by shooting lie in the proved band") {
                           forward(saturation(1.0), {3.0}, {1.0, 2.0, 1.0, 0.0}),
                           forward(dead_zone(0.1), {10.0}, three_lags)};
   for (const Loop& loop : loops) {
-    const auto report = predict(loop);
+    const auto report = predict(loop, df_only());
     REQUIRE(report.predictions.size() == 1);
     REQUIRE(report.cycles.size() == 1);
     const Cycle& cycle = report.cycles[0];

@@ -77,6 +77,38 @@ TEST_CASE("exact Jacobian agrees with differences: bristle, static curve, stick,
   }
 }
 
+TEST_CASE("exact Jacobian agrees with differences where a compensation follows the friction") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  int stuck = 0, sliding = 0, saturated = 0;
+  for (int i = 0; i < 120; ++i) {
+    const bool lags = i % 2 == 1, limited = i % 3 == 2;
+    auto parts = servo_parts(i % 4 < 2 ? Element<double>(coulomb(1.5, 1.0, 0.4)) : stribeck(1.5, 1.0, 0.05));
+    auto controller = pid(3.0, 4.0, 6.0);
+    controller.friction_compensation = 0.7;
+    if (lags) controller.lag = 0.05;
+    if (limited) controller.saturation = 1.0;
+    parts.controller = controller;
+    const Loop loop = build_loop(parts);
+    const auto v = static_cast<std::size_t>(std::ranges::find(loop.state_names, "v") - loop.state_names.begin());
+    const std::size_t friction = loop.elements.size() - 1;
+    LoopField field(loop);
+    State x(field.size());
+    for (auto& value : x) value = 0.2 * u(random);
+    if (i % 5 < 2) x[v] = 0.0;
+    if (x[v] != 0.0) x[v] += std::copysign(0.01, x[v]);
+    field.start(x, 0.0);
+    (field.modes()[friction] == Mode{0} ? stuck : sliding) += 1;
+    for (std::size_t e = 0; e < loop.elements.size(); ++e)
+      if (loop.ports[e].path == "loop.controller.saturation" && field.modes()[e] != Mode{0}) ++saturated;
+    CAPTURE(i, lags, limited);
+    CHECK(jacobian_error(field, x, State(x.size(), 1e-7)) < 1e-6);
+  }
+  CHECK(stuck > 20);
+  CHECK(sliding > 20);
+  CHECK(saturated > 5);
+}
+
 TEST_CASE("stuck: velocity has no rate, friction equals the drive") {
   const Loop loop = servo(coulomb(1.5, 1.0));
   LoopField field(loop);

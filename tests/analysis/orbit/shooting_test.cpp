@@ -1,6 +1,9 @@
 #include "limcycle/analysis/orbit/shooting.hpp"
 
+#include <Eigen/Dense>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <unsupported/Eigen/MatrixFunctions>
 
 #include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/orbit/settle.hpp"
@@ -18,6 +21,96 @@ Cycle cycle_of(const Loop& loop, double displacement = 1.0) {
   INFO(settled.why);
   REQUIRE(settled.outcome == Outcome::cycle);
   return settled.shot->cycle;
+}
+
+/// exp(A h) and the integral of exp(A s) B over 0..h.
+std::pair<Eigen::MatrixXd, Eigen::VectorXd> discretised(const Loop& loop, double h) {
+  const Eigen::Index n = loop.states();
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  M.topLeftCorner(n, n) = loop.A * h;
+  M.topRightCorner(n, 1) = loop.B.col(0) * h;
+  const Eigen::MatrixXd E = M.exp();
+  return {E.topLeftCorner(n, n), E.topRightCorner(n, 1)};
+}
+
+/// C (I + Phi)^-1 Gamma - eps of claim B1, y where a relay of level 1 switches if the half period is h.
+double switching_excess(const Loop& loop, double h, double hysteresis) {
+  const auto [Phi, Gamma] = discretised(loop, h);
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(Phi.rows(), Phi.cols());
+  return (loop.C_y * (I + Phi).partialPivLu().solve(Gamma)).value() - hysteresis;
+}
+
+/// Half period by bisection of that equation within 1 % of a guess.
+double half_period(const Loop& loop, double guess, double hysteresis) {
+  double low = 0.99 * guess, high = 1.01 * guess;
+  const double sign = switching_excess(loop, low, hysteresis);
+  REQUIRE(sign * switching_excess(loop, high, hysteresis) < 0.0);
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (sign * switching_excess(loop, middle, hysteresis) > 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Floquet multipliers of a relay loop, largest first: squares of the eigenvalues of W = (I - w C/(C w)) Phi, w = dx/dt
+/// just before a switch, without the zero that belongs to the direction of w.
+std::vector<double> relay_multipliers(const Loop& loop, double h) {
+  const auto [Phi, Gamma] = discretised(loop, h);
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(Phi.rows(), Phi.cols());
+  const Eigen::VectorXd x = (I + Phi).partialPivLu().solve(Gamma);
+  const Eigen::VectorXd w = loop.A * x + loop.B.col(0);
+  const Eigen::MatrixXd W = (I - w * loop.C_y / (loop.C_y * w).value()) * Phi;
+  std::vector<double> squares;
+  for (const auto& value : W.eigenvalues()) squares.push_back(std::norm(value));
+  std::ranges::sort(squares, std::greater{});
+  CHECK(squares.back() < 1e-28);
+  squares.pop_back();
+  return squares;
+}
+
+struct Reference {
+  double period = 0.0, amplitude = 0.0, multiplier = 0.0;
+};
+
+/// Period, amplitude and non-trivial multiplier exp(integral of mu (1 - x^2)) of van der Pol, by the Runge-Kutta method
+/// of order 4.
+Reference van_der_pol_reference(double mu, int steps_per_second, int crossings) {
+  const double h = 1.0 / steps_per_second;
+  using V = Eigen::Vector3d;
+  const auto f = [mu](const V& z) { return V(z(1), mu * (1.0 - z(0) * z(0)) * z(1) - z(0), mu * (1.0 - z(0) * z(0))); };
+  const auto advanced = [&](const V& z, double step) -> V {
+    const V k1 = f(z), k2 = f(z + 0.5 * step * k1), k3 = f(z + 0.5 * step * k2), k4 = f(z + step * k3);
+    return z + step / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
+  };
+  // Time of the step within [0, h] at which component i is zero.
+  const auto zero_of = [&](const V& z, Eigen::Index i) {
+    double low = 0.0, high = h;
+    for (int k = 0; k < 50; ++k) {
+      const double middle = 0.5 * (low + high);
+      (advanced(z, middle)(i) * z(i) > 0.0 ? low : high) = middle;
+    }
+    return high;
+  };
+  V z(2.0, 0.0, 0.0);
+  double time = 0.0, last_time = 0.0, last_integral = 0.0, top = 0.0;
+  for (;; time += h) {
+    const V next = advanced(z, h);
+    if (z(1) > 0.0 && next(1) <= 0.0) top = advanced(z, zero_of(z, 1))(0);
+    if (z(0) < 0.0 && next(0) >= 0.0) {
+      const double part = zero_of(z, 0), integral = advanced(z, part)(2);
+      if (--crossings == 0) return {time + part - last_time, top, std::exp(integral - last_integral)};
+      last_time = time + part;
+      last_integral = integral;
+    }
+    z = next;
+  }
+}
+
+Loop van_der_pol(double mu) {
+  // x'' - mu x' + x + mu (x^3/3)' = 0: plant mu s/(s^2 - mu s + 1), element x^3/3.
+  Cubic<double> cubic;
+  cubic.coefficient = 1.0 / 3.0;
+  return forward(cubic, {mu, 0.0}, {1.0, -mu, 1.0});
 }
 
 }  // namespace
@@ -55,24 +148,38 @@ TEST_CASE("PID with Coulomb friction and stiction: the exact cycles of claim B7"
     CHECK(cycle.period == Approx(row.period).epsilon(1e-9));
     CHECK(cycle.sticking_fraction == Approx(2.0 * row.stick / row.period).epsilon(1e-6));
     REQUIRE(cycle.multipliers.size() == 2);
-    CHECK(cycle.multipliers[0].real() == Approx(row.multiplier * row.multiplier).epsilon(1e-5));
-    CHECK(std::abs(cycle.multipliers[1]) < 1e-9);  // the exact zero of sticking
+    CHECK(cycle.multipliers[0].real() == Approx(row.multiplier * row.multiplier).epsilon(2e-6));  // of the half map
+    CHECK(cycle.multipliers[1] == 0.0);  // the exact zero of sticking
   }
 }
 
-TEST_CASE("relay loops: period and peak of claim B1") {
+TEST_CASE("relay loops: period, peak and multipliers of claim B1, exact by its own equation") {
   struct Row {
     Loop loop;
-    double half_period, peak, radius;
+    double hysteresis, half_period, frequency, peak, radius;
   };
-  for (const Row& row : {Row{forward(relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0}), 1.83987534, 0.16306148, 0.383990575},
-                         Row{forward(relay(1.0), {1.0}, {1.0, 2.0, 1.0, 0.0}), 3.21223060, 0.65831341, 0.353748014},
-                         Row{forward(relay(1.0, 0.1), {1.0}, {1.0, 1.0, 0.0}), 1.42362311, 0.23445282, 0.240839845}}) {
+  for (const Row& row :
+       {Row{forward(relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0}), 0.0, 1.83987534, 1.70750300, 0.16306148, 0.383990575},
+        Row{forward(relay(1.0), {1.0}, {1.0, 2.0, 1.0, 0.0}), 0.0, 3.21223060, 0.97800969, 0.65831341, 0.353748014},
+        Row{forward(relay(1.0, 0.1), {1.0}, {1.0, 1.0, 0.0}), 0.1, 1.42362311, 2.20675868, 0.23445282, 0.240839845}}) {
     const Cycle cycle = cycle_of(row.loop);
-    CHECK(cycle.period == Approx(2.0 * row.half_period).epsilon(1e-8));
-    CHECK(cycle.amplitude == Approx(row.peak).epsilon(1e-7));
-    CHECK(cycle.multipliers[0].real() == Approx(row.radius * row.radius).epsilon(1e-5));
+    CAPTURE(row.half_period);
+    // To the digits that the table prints.
+    CHECK(std::abs(0.5 * cycle.period - row.half_period) < 0.6e-8);
+    CHECK(std::abs(cycle.frequency() - row.frequency) < 0.6e-8);
+    CHECK(std::abs(cycle.amplitude - row.peak) < 0.6e-8);
+    CHECK(std::abs(std::sqrt(cycle.multipliers[0].real()) - row.radius) < 3e-9);
     CHECK(cycle.sticking_fraction == 0.0);
+    // And to rounding.
+    const double h = half_period(row.loop, row.half_period, row.hysteresis);
+    CHECK(std::abs(switching_excess(row.loop, 0.5 * cycle.period, row.hysteresis)) < 1e-12);
+    CHECK(cycle.period == Approx(2.0 * h).epsilon(1e-12));
+    const auto multipliers = relay_multipliers(row.loop, h);
+    REQUIRE(cycle.multipliers.size() == multipliers.size());
+    for (std::size_t i = 0; i < multipliers.size(); ++i)
+      CHECK(cycle.multipliers[i].real() == Approx(multipliers[i]).epsilon(1e-9));
+    CHECK(cycle.stable == true);
+    CHECK(cycle.error < 1e-11);
   }
   const Cycle triangle = cycle_of(forward(relay(1.0, 0.1), {1.0}, {1.0, 0.0}));
   CHECK(triangle.period == Approx(0.4).epsilon(1e-11));
@@ -88,6 +195,9 @@ TEST_CASE("stick-slip on a belt: claim B4, ideal stiction and LuGre") {
   const double slip = 2.0 / w0 * (std::acos(-1.0) - std::atan(w0 * delta / speed)), stick = 2.0 * delta / speed;
   CHECK(dry.period == Approx(slip + stick).epsilon(1e-10));
   CHECK(dry.amplitude == Approx(std::hypot(delta, speed / w0)).epsilon(1e-9));
+  CHECK(slip == Approx(2.611259).epsilon(1e-6));
+  REQUIRE(dry.multipliers.size() == 1);
+  CHECK(dry.multipliers[0] == 0.0);  // each stick forgets everything
   CHECK(dry.sticking_fraction == Approx(stick / (slip + stick)).epsilon(1e-9));
   CHECK_FALSE(dry.half_wave_symmetric);
   CHECK(cycle_of(belt(coulomb(1.5, 1.0, 0.4)), 0.0).period == Approx(6.453933).epsilon(1e-7));
@@ -95,18 +205,36 @@ TEST_CASE("stick-slip on a belt: claim B4, ideal stiction and LuGre") {
   CHECK(cycle_of(belt(lugre(1.5, 1.0, 0.0)), 0.0).period == Approx(7.49381).epsilon(1e-6));
 }
 
-TEST_CASE("van der Pol (mu = 1) as a forward loop with a cubic: claim B3") {
-  // x'' - x' + x + (x^3/3)' = 0: plant s/(s^2 - s + 1), element x^3/3.
-  Cubic<double> cubic;
-  cubic.coefficient = 1.0 / 3.0;
-  const Cycle cycle = cycle_of(forward(cubic, {1.0, 0.0}, {1.0, -1.0, 1.0}));
-  CHECK(cycle.period == Approx(6.66328686).epsilon(1e-8));
-  CHECK(cycle.amplitude == Approx(2.00861986).epsilon(1e-8));
-  CHECK(cycle.multipliers[0].real() == Approx(8.596951e-4).epsilon(1e-3));
+TEST_CASE("van der Pol: periods, amplitudes and multipliers of claim B3, however small") {
+  struct Row {
+    double mu, period, amplitude, multiplier, printed;  // printed: relative accuracy of the table's multiplier
+    double amplitude_accuracy = 1e-9, multiplier_accuracy = 1e-7;
+  };
+  // The stiff ones: a cubic finds the peak between steps, and the step errors of 300 e-folds add up in the multiplier.
+  for (const Row& row :
+       {Row{0.1, 6.28711127, 2.00010398, 0.5330693, 1e-7}, Row{0.5, 6.38067580, 2.00248793, 3.917692e-2, 2e-7},
+        Row{1.0, 6.66328686, 2.00861986, 8.596951e-4, 2e-7}, Row{2.0, 7.62987448, 2.01989138, 1.273849e-8, 5e-7},
+        Row{5.0, 11.61223066, 2.02150806, 7.7e-38, 0.01, 1e-9, 1e-4},
+        Row{10.0, 19.07836956, 2.01428536, 3.7e-136, 0.01, 5e-8, 0.015}}) {
+    const Cycle cycle = cycle_of(van_der_pol(row.mu));
+    CAPTURE(row.mu);
+    CHECK(std::abs(cycle.period - row.period) < 1e-8);
+    CHECK(cycle.amplitude == Approx(row.amplitude).epsilon(3e-9 + row.amplitude_accuracy));
+    REQUIRE(cycle.multipliers.size() == 1);
+    CHECK(cycle.multipliers[0].imag() == 0.0);
+    CHECK(cycle.multipliers[0].real() == Approx(row.multiplier).epsilon(row.printed));
+    CHECK(cycle.stable == true);
+    // Digits beyond the table, by the trace formula along an independent run.
+    const Reference reference = van_der_pol_reference(row.mu, row.mu < 2.0 ? 4096 : 16384, row.mu < 0.5 ? 40 : 8);
+    CHECK(std::abs(cycle.period / reference.period - 1.0) <= cycle.error);
+    CHECK(cycle.period == Approx(reference.period).epsilon(3e-11));
+    CHECK(cycle.amplitude == Approx(reference.amplitude).epsilon(row.amplitude_accuracy));
+    CHECK(cycle.multipliers[0].real() == Approx(reference.multiplier).epsilon(row.multiplier_accuracy));
+  }
 }
 
-TEST_CASE("an unstable cycle is found by Newton from a guess, and is called unstable") {
-  // Relay with dead zone before 1/(s+1)^3: the small root of the describing function is an unstable cycle.
+TEST_CASE("between a cycle and rest: what larger and smaller motions of a relay with dead zone lead to") {
+  // Before 1/(s+1)^3; the unstable cycle in between is found by multiple shooting (multiple_shooting_test).
   const Loop loop = forward(relay(1.0, 0.0, 0.05), {1.0}, {1.0, 3.0, 3.0, 1.0});
   SettleOptions options;
   options.amplitude_floor = 1e-6;

@@ -32,7 +32,7 @@ const ParameterMargin& named(const MarginReport& report, const std::string& path
 
 }  // namespace
 
-TEST_CASE("margin: a loop that oscillates, to where its cycle folds; only the ratio of dead zone and level counts") {
+TEST_CASE("margin: a loop that oscillates, to where its cycle folds (only the ratio of dead zone and level counts)") {
   const auto report = margin(relay_loop(1.0, 0.05), relay_parameters(1.0, 0.05), {});
   CHECK(report.status == Status::converged);
   CHECK(report.hunts);

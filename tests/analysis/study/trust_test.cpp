@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/study/loop_balance.hpp"
 #include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/tests/analysis/predictions.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -24,9 +25,7 @@ Trust trust_of(const Loop& loop, double amplitude, double frequency) {
 
 /// Every prediction with a cycle has it in its band, which is not absurdly wide.
 void check_bands(const Loop& loop, std::size_t expected, std::optional<SearchBox> box = {}) {
-  PredictOptions options;
-  options.search = box;
-  const auto report = predict(loop, options);
+  const auto report = predict(loop, df_only(box));
   std::size_t checked = 0;
   for (const auto& p : report.predictions) {
     REQUIRE(p.trust);
@@ -102,9 +101,7 @@ TEST_CASE("saturation behind a PI controller: proved, and the band is that of y 
   parts.plant = TransferFunction{{1.0}, three_lags, 0.0};
   parts.controller = pid(12.0, 1.0, 0.0);
   parts.element = saturation(1.0);
-  PredictOptions options;
-  options.search = SearchBox{0.1, 100.0, 0.05, 100.0};
-  const auto report = predict(build_loop(parts), options);
+  const auto report = predict(build_loop(parts), df_only(SearchBox{0.1, 100.0, 0.05, 100.0}));
   REQUIRE(report.predictions.size() == 1);
   REQUIRE(report.cycles.size() == 1);
   const Prediction& p = report.predictions[0];
@@ -143,7 +140,7 @@ TEST_CASE("where the theorem does not decide, the band is heuristic and says why
   LoopParts delayed;
   delayed.plant = TransferFunction{{20.0}, {1.0, 1.0}, 0.5};
   delayed.element = saturation(1.0);
-  const auto report = predict(build_loop(delayed));
+  const auto report = predict(build_loop(delayed), roots_only());
   REQUIRE_FALSE(report.predictions.empty());
   for (const auto& p : report.predictions) {
     REQUIRE(p.trust);
@@ -154,10 +151,7 @@ TEST_CASE("where the theorem does not decide, the band is heuristic and says why
 
 TEST_CASE("belt with LuGre: even harmonics count, sticking is that of the sinusoid, and the sentence warns") {
   const Loop loop = belt(lugre(1.5, 1.0, 0.0));
-  PredictOptions options;
-  options.search = SearchBox{1e-3, 10.0, 0.1, 10.0};
-  options.starts = 0;
-  const auto report = predict(loop, options);
+  const auto report = predict(loop, roots_only(SearchBox{1e-3, 10.0, 0.1, 10.0}));
   REQUIRE(report.predictions.size() == 1);
   const Prediction& p = report.predictions[0];
   CHECK(p.trust->worst_harmonic == 2);
@@ -173,7 +167,8 @@ TEST_CASE("belt with LuGre: even harmonics count, sticking is that of the sinuso
   CHECK_THAT(p.trust->sentence, Contains("sensitive") && Contains("far off") && Contains("sticks for"));
 }
 
-TEST_CASE("sticking: of a symmetric sinusoid (2/pi) asin(vs/(100 A w)); 0 by construction for set-valued friction") {
+TEST_CASE(
+    "sticking: of a symmetric sinusoid (2/pi) asin(vs/(100 A w)), and 0 by construction for set-valued friction") {
   const double A = 1e-5, w = 2.0;
   const Trust t = trust_of(servo(lugre()), A, w);
   CHECK(t.sticking_fraction == Approx(2.0 / std::numbers::pi * std::asin(1e-5 / (A * w))).epsilon(1e-12));

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "limcycle/analysis/motion/march.hpp"
+
+/// @file
+/// Location of events within a step: switches of elements and crossings of the section.
+
+namespace limcycle {
+namespace {
+
+constexpr std::size_t section_guard = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
+
+double March::event_value(std::size_t guard, const State& x, double t) {
+  if (guard == section_guard) return -section_->value(x);
+  field_.guards(x, t, guards_mid_);
+  return guards_mid_[guard];
+}
+
+/// Looks at quarters of the step for the first guard that has turned negative, and brackets it by fractions of the
+/// step.
+bool March::negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard) {
+  const bool watch_section = section_ && (armed_ || section_->before(step_.x0));
+  if (at_start.empty() && !(watch_section && section_->value(step_.x1) >= 0.0)) return false;
+  for (int quarter = 1; quarter <= 4; ++quarter) {
+    to = 0.25 * quarter;
+    if (quarter == 4)
+      work_ = step_.x1;
+    else
+      step_.interpolate(to, work_);
+    if (!at_start.empty()) field_.guards(work_, step_.t0 + to * (step_.t1 - step_.t0), guards_end_);
+    candidates_.clear();
+    for (std::size_t k = 0; k < at_start.size(); ++k)
+      if (guards_end_[k] < 0.0) candidates_.push_back(k);
+    if (watch_section && section_->value(work_) >= 0.0) candidates_.push_back(section_guard);
+    if (!candidates_.empty()) {
+      guard = first_of_candidates(at_start, from, to);
+      return true;
+    }
+    from = to;
+  }
+  return false;
+}
+
+/// Fraction of the step at which the interpolant has the event, up to 1e-9 of the bracket: just before and just after.
+std::pair<double, double> March::crossing(std::size_t guard, double from, double to) {
+  const double h = step_.t1 - step_.t0;
+  for (int i = 0; i < 30; ++i) {
+    const double mid = 0.5 * (from + to);
+    step_.interpolate(mid, work_);
+    (event_value(guard, work_, step_.t0 + mid * h) >= 0.0 ? from : to) = mid;
+  }
+  return {from, to};
+}
+
+/// Of several events in one bracket, the one that the interpolant has first.
+std::size_t March::first_of_candidates(const std::vector<double>& at_start, double from, double to) {
+  if (candidates_.size() == 1) return candidates_.front();
+  std::size_t first = candidates_.front();
+  double earliest = infinite;
+  for (const std::size_t k : candidates_) {
+    const bool at_once = from == 0.0 && k != section_guard && at_start[k] <= 0.0;
+    const double when = at_once ? 0.0 : crossing(k, from, to).second;
+    if (when >= earliest) continue;
+    earliest = when;
+    first = k;
+  }
+  return first;
+}
+
+/// Length of the step after which the guard is zero: bisection and secant on whole steps.
+double March::locate(std::size_t guard, double from, double to) {
+  const double h = step_.t1 - step_.t0;
+  if (from == 0.0 && guard != section_guard && guards_start_[guard] <= 0.0) return 0.0;
+  // A rough bracket from the interpolant costs no steps.
+  const auto [a, b] = crossing(guard, from, to);
+  double low = from * h, high = to * h, at = 0.5 * (a + b) * h;
+  double previous = 0.0, previous_value = 0.0, best = at, best_value = infinite;
+  for (int i = 0; i < 60; ++i) {
+    repeat(at, work_);
+    const double value = event_value(guard, work_, step_.t0 + at);
+    if (std::abs(value) < best_value) {
+      best = at;
+      best_value = std::abs(value);
+    }
+    (value >= 0.0 ? low : high) = at;
+    double next =
+        i == 0 ? at * (1.0 + (value >= 0.0 ? 1e-6 : -1e-6)) : at - value * (at - previous) / (value - previous_value);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    previous = at;
+    previous_value = value;
+    if (value == 0.0 || std::abs(next - at) <= 2e-16 * std::max(h, std::abs(step_.t0)) || high - low < 1e-16 * h) break;
+    at = next;
+  }
+  return best;
+}
+
+Status March::land(std::size_t guard, double h) {
+  if (h > 0.0) {
+    repeat(h, step_.x1);
+  } else {
+    step_.x1 = step_.x0;
+  }
+  step_.t1 = step_.t0 + h;
+  field_.rate(step_.x1, step_.dx1, step_.t1);
+  if (!is_finite(step_.x1) || !is_finite(step_.dx1)) return Status::not_finite;
+  if (tracks_) step_.transition = smooth_transition();
+  x_ = step_.x1;
+  t_ = step_.t1;
+  fresh_ = true;
+  if (guard == section_guard) {
+    step_.on_section = true;
+    armed_ = false;
+    return Status::converged;
+  }
+  step_.switched = field_.owner(guard);
+  if (tracks_) {
+    Eigen::MatrixXd saltation;
+    if (field_.fire(x_, t_, guard, saltation))
+      step_.transition = saltation * step_.transition;
+    else
+      step_.transition.resize(0, 0);
+  } else {
+    field_.fire(x_, t_, guard);
+  }
+  ++events_;
+  event_times_.push_back(t_);
+  if (event_times_.size() > 50) event_times_.pop_front();
+  const bool accumulate = event_times_.size() == 50 && t_ - event_times_.front() < 1e-10 * std::max(1.0, std::abs(t_));
+  return accumulate ? Status::chattering : Status::converged;
+}
+
+}  // namespace limcycle

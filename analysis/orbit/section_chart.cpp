@@ -1,0 +1,47 @@
+#include "limcycle/analysis/orbit/section_chart.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+
+namespace limcycle {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd as_vector(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
+
+}  // namespace
+
+SectionChart::SectionChart(const Section& section, const State& largest, const State& typical)
+    : scale(as_vector(largest)) {
+  for (Index i = 0; i < scale.size(); ++i)
+    scale(i) = std::max({scale(i), 1e-6 * typical[static_cast<std::size_t>(i)], 1e-300});
+  VectorXd normal = VectorXd::Zero(scale.size());
+  normal.head(section.C.size()) = section.C.transpose();
+  normal.array() *= scale.array();
+  const MatrixXd q = normal.householderQr().householderQ();
+  basis = q.rightCols(scale.size() - 1);
+}
+
+State SectionChart::lift(const State& origin, const VectorXd& u) const {
+  State x = origin;
+  const VectorXd step = scale.cwiseProduct(basis * u);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += step(static_cast<Index>(i));
+  return x;
+}
+
+VectorXd SectionChart::coordinates(const State& x, const State& origin) const {
+  return basis.transpose() * (as_vector(x) - as_vector(origin)).cwiseQuotient(scale);
+}
+
+MatrixXd SectionChart::scaled(const MatrixXd& derivative) const {
+  return scale.cwiseInverse().asDiagonal() * derivative * scale.asDiagonal();
+}
+
+MatrixXd SectionChart::restricted(const MatrixXd& derivative) const {
+  return basis.transpose() * scaled(derivative) * basis;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,40 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limcycle/reports/provenance.hpp"
+#include "limcycle/reports/table.hpp"
+
+namespace limcycle {
+
+/// Text as it may stand between tags or in a quoted attribute: & < > " ' escaped, control characters and bytes that are
+/// not UTF-8 replaced.
+std::string html_escaped(std::string_view text);
+
+/// <name>text</name>, the text escaped.
+std::string html_tag(const std::string& name, const std::string& text);
+
+/// A table with its caption. Cells of a column "verdict" carry their text as a class too.
+std::string html_table(const Table& table, const std::string& caption);
+
+/// Heading and list; nothing without notes.
+std::string html_notes(const std::vector<std::string>& notes);
+
+/// What a page is made of.
+struct HtmlPage {
+  const Provenance& provenance;
+  std::string answer;                ///< stands first
+  std::vector<std::string> worth{};  ///< sentences under it
+  std::string body;                  ///< markup
+  std::string command;               ///< that makes it again: "predict"; its case and overrides are added
+  std::string flags{};               ///< of that command, as they are typed
+  std::string case_text;             ///< the case file as read; empty: left out
+  std::vector<std::string> scripts{};
+};
+
+/// A self-contained page: it asks nothing of the network (its own policy forbids it; without scripts it forbids those
+/// too) and tells where it comes from.
+std::string html_page(const HtmlPage& page);
+
+}  // namespace limcycle

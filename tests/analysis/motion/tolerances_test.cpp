@@ -1,0 +1,23 @@
+#include "limcycle/analysis/motion/tolerances.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+
+TEST_CASE("moduli of the poles: sorted, complex ones by their natural frequency, those at the origin left out") {
+  // s^2 (s + 7) (s^2 + 2 s + 25): 0, 0, -7, -1 +- j sqrt(24).
+  const auto moduli = pole_moduli(test::forward(test::relay(1.0), {1.0}, {1.0, 9.0, 39.0, 175.0, 0.0, 0.0}));
+  REQUIRE(moduli.size() == 3);
+  CHECK(moduli[0] == Approx(5.0).epsilon(1e-12));
+  CHECK(moduli[1] == Approx(5.0).epsilon(1e-12));
+  CHECK(moduli[2] == Approx(7.0).epsilon(1e-12));
+  CHECK(pole_moduli(test::forward(test::relay(1.0), {1.0}, {1.0, 0.0})).empty());
+}
+
+TEST_CASE("rtol out of range is refused with its value") {
+  const Loop loop = test::servo(test::coulomb(1.5, 1.0));
+  CHECK_THROWS_WITH(loop_weights(loop, 0.2), Catch::Matchers::Contains("0.2"));
+  CHECK_THROWS_AS(loop_weights(loop, 0.0), std::invalid_argument);
+}
