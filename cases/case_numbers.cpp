@@ -53,6 +53,7 @@ CaseNumber number_at(const Case& from, const std::string& flag, const std::strin
   const auto found = std::ranges::find(list, path, &CaseNumber::path);
   if (found != list.end()) return *found;
   std::vector<std::string> paths;
+  paths.reserve(list.size());
   for (const auto& one : list) paths.push_back(one.path);
   throw InputError({.file = {},
                     .line = 0,

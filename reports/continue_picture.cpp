@@ -28,7 +28,12 @@ struct Axis {
   }
   void settle() {
     logarithmic = low > 0.0 && high > 10.0 * low;
-    if (!(high > low)) high = low + (low != 0.0 ? std::abs(low) : 1.0);
+    // What hardly changes is drawn as hardly changing, not as a picture of its own rounding.
+    const double middle = 0.5 * (low + high), least = middle != 0.0 ? 0.02 * std::abs(middle) : 1.0;
+    if (high - low < least) {
+      low = middle - 0.5 * least;
+      high = middle + 0.5 * least;
+    }
   }
   double share(double value) const {
     const double at = logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);

@@ -63,7 +63,7 @@ class BalanceEquations {
   BalancePoint unpack(const Eigen::VectorXd& unknowns) const;
   Eigen::VectorXd residual(const BalancePoint& point, const BalanceOutputs& outputs) const;
   /// Derivative of the residual by the unknowns, from that of each element's response. False: an element has no answer.
-  bool jacobian(const BalancePoint& point, const BalanceOutputs& outputs, Eigen::MatrixXd& derivative);
+  bool jacobian(const BalancePoint& point, const BalanceOutputs& outputs, Eigen::MatrixXd& J);
 
   /// Linear response to the outputs at order n >= 1.
   Eigen::MatrixXcd response(int order, double frequency) const { return loop_.element_response(order * frequency); }
@@ -78,8 +78,8 @@ class BalanceEquations {
   Eigen::Index unknowns() const {
     return 2 * elements() * per_element() + (half_wave_ ? 0 : elements() + null_.cols());
   }
-  PrescribedHarmonics motion(const BalancePoint& point, const BalanceMeans& means, Eigen::Index element) const;
-  Eigen::MatrixXd by_unknowns(const Eigen::MatrixXd& response, Eigen::Index element, double frequency) const;
+  PrescribedHarmonics motion(const BalancePoint& point, const BalanceMeans& means, Eigen::Index k) const;
+  Eigen::MatrixXd by_unknowns(const Eigen::MatrixXd& own, Eigen::Index l, double frequency) const;
   Eigen::Index elements() const { return std::ssize(loop_.elements); }
   Eigen::Index main() const { return elements() - 1; }
   int stride() const { return half_wave_ ? 2 : 1; }

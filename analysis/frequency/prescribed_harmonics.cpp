@@ -150,6 +150,7 @@ void PrescribedHarmonics::place_anchors() {
     bool reversal;
   };
   std::vector<Stop> stops;
+  stops.reserve(reversals.size() + slowest.size() + 1);
   for (const double phase : reversals) stops.push_back({phase, true});
   for (const double phase : slowest) stops.push_back({phase, false});
   if (stops.empty()) stops.push_back({0.0, false});  // not met: a rate that oscillates has an extremum
@@ -171,8 +172,8 @@ void PrescribedHarmonics::place_anchors() {
   anchors_.back().phase += 2.0 * pi;
 }
 
-MotionNode PrescribedHarmonics::at(int index, double local) const {
-  const Anchor& a = of(index);
+MotionNode PrescribedHarmonics::at(int anchor, double local) const {
+  const Anchor& a = of(anchor);
   const double half_sine = std::sin(0.5 * local), half_cosine = std::cos(0.5 * local);
   const double sine = 2.0 * half_sine * half_cosine, versine = 2.0 * half_sine * half_sine;
   // Sine and versine (1 - cosine) of the step from one order to the next.
@@ -195,8 +196,8 @@ MotionNode PrescribedHarmonics::at(int index, double local) const {
   return node;
 }
 
-double PrescribedHarmonics::layer(int index, const Scales& scales) const {
-  const Anchor& a = of(index);
+double PrescribedHarmonics::layer(int anchor, const Scales& scales) const {
+  const Anchor& a = of(anchor);
   double slope = 0.0;
   for (std::size_t i = 0; i < order_.size(); ++i) slope += order_[i] * order_[i] * a.im[i];
   slope = frequency_ * std::abs(slope);

@@ -129,7 +129,7 @@ double March::first_dt() {
 /// given time its length is a power of two, whose exponential is kept.
 bool March::try_exact(double& dt) {
   auto& exact = std::get<ExactStepper>(stepper_->any);
-  const int k = static_cast<int>(std::floor(std::log2(dt)));
+  const int k = std::min(60, static_cast<int>(std::floor(std::log2(dt))));  // at rest steps grow for ever
   const double h = truncated_ ? dt : std::ldexp(1.0, k);
   exact.last = truncated_ ? exact.flow.over(h) : exact.flow.over_power(k);
   AffineFlow::apply(exact.last, x_, step_.x1);

@@ -145,13 +145,13 @@ EndDiagnosis diagnose_end(BranchMap& map, const BranchSpot& spot, const EndEvide
   end.understood = true;
   if (evidence.on_purpose) {
     const double largest = spot.multipliers.empty() ? 0.0 : std::abs(spot.multipliers.front());
-    end.why = largest > 1e3 ? "the cycle is so unstable (multiplier " + short_number(largest, 6) +
-                                  ") that its branch could only be followed in ever smaller steps"
-                            : "the orbit has become too small, too large or too slow to be followed";
+    end.why = largest > 100.0 ? "the cycle is so unstable (multiplier " + short_number(largest, 6) +
+                                    ") that its branch could only be followed in ever smaller steps"
+                              : "the orbit has become too small, too large or too slow to be followed";
     return end;
   }
   if (evidence.invalid) {
-    const bool structure = map.loop(spot.s() + evidence.direction * 1e-6 * ParameterScale::length).get() != nullptr;
+    const bool structure = map.loop(spot.s() + evidence.direction * 1e-6 * ParameterScale::length) != nullptr;
     end.why = structure ? "beyond it the loop has another number of states, or is no longer symmetric"
                         : "beyond it the case is not valid";
     return end;

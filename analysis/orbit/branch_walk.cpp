@@ -15,13 +15,13 @@ constexpr double smallest_share = 1e-5;  ///< of the largest amplitude: below, t
 constexpr double longest_share = 1e5;    ///< of the shortest period: above, the period is going to infinity
 constexpr double largest_share = 1e5;    ///< of the first amplitude: above, the amplitude is going to infinity
 constexpr double sharpest_turn = 0.96;   ///< cosine of the angle that the tangent may turn by in a step
-constexpr int longest_crawl = 25;        ///< points in tiny steps along a very unstable cycle
+constexpr int longest_crawl = 10;        ///< points in tiny steps along a very unstable cycle
 
 /// One direction of a branch, from a solved first spot.
 class Walk {
  public:
   Walk(BranchMap& map, BranchSolver& solver, const ContinuationOptions& options, BranchSpot first, double direction)
-      : map_(map), solver_(solver), options_(options), now_(std::move(first)), s0_(now_.s()), direction_(direction) {
+      : map_(map), solver_(solver), options_(options), now_(std::move(first)), s0_(now_.s()) {
     if (now_.tangent(now_.tangent.size() - 1) * direction < 0.0) now_.tangent = -now_.tangent;
     start_ = now_.cycle;
     take(now_);
@@ -115,11 +115,11 @@ class Walk {
     return true;
   }
 
-  /// A cycle with a multiplier of thousands is left at once by what does not lie on it: Newton then converges from a
+  /// A cycle with a multiplier of hundreds is left at once by what does not lie on it: Newton then converges from a
   /// neighbourhood so small that the branch cannot be followed in reasonable time.
   bool crawls(const BranchSpot& before) {
     const double moved = std::abs(now_.s() - before.s());
-    const bool unstable = !now_.multipliers.empty() && std::abs(now_.multipliers.front()) > 1e3;
+    const bool unstable = !now_.multipliers.empty() && std::abs(now_.multipliers.front()) > 100.0;
     crawl_ = unstable && moved < 1e-2 ? crawl_ + 1 : 0;
     return crawl_ > longest_crawl;
   }
@@ -295,7 +295,7 @@ class Walk {
   const ContinuationOptions& options_;
   BranchSpot now_;
   Cycle start_;
-  double s0_, direction_;
+  double s0_;
   Branch branch_;
   double largest_ = 0.0, shortest_ = infinite;
   int crawl_ = 0;

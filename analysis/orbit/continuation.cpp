@@ -15,9 +15,10 @@ Branch joined(Branch down, Branch up) {
   Branch whole;
   const std::size_t n = down.points.size();
   whole.points.assign(std::make_move_iterator(down.points.rbegin()), std::make_move_iterator(down.points.rend()));
-  for (auto it = down.events.rbegin(); it != down.events.rend(); ++it) {
-    whole.events.push_back(*it);
-    whole.events.back().point = n - 1 - it->point;
+  std::ranges::reverse(down.events);
+  for (auto& event : down.events) {
+    event.point = n - 1 - event.point;
+    whole.events.push_back(std::move(event));
   }
   // The start stands in both.
   const std::size_t shift = n > 0 && !up.points.empty() ? n - 1 : n;

@@ -123,7 +123,8 @@ class MultipleShooter {
     const auto kept_segments = segments_;
     const VectorXd kept_residual = residual_;
     const double kept_span = span_;
-    for (double damping = 1.0; damping > 0.02; damping *= 0.5) {
+    double damping = 1.0;
+    for (int halvings = 0; halvings < 6; ++halvings, damping *= 0.5) {
       move(kept, kept_segments, damping * change);
       span_ = kept_span * std::max(0.2, 1.0 + damping * change(K * n));
       if (evaluate(nodes_, span_) == Status::converged && residual_.norm() < (1.0 - 0.1 * damping) * before)

@@ -45,7 +45,7 @@ class Following {
       return {};
     }
     if (loop->delay > 0.0) {
-      report_.notes.push_back("continuation does not treat a delay yet: no cycle can be followed");
+      report_.notes.emplace_back("continuation does not treat a delay yet: no cycle can be followed");
       report_.status = Status::incomplete;
       return {};
     }

@@ -49,8 +49,9 @@ struct Quantizer : Memoryless<S> {
     const double first = std::ceil((bias - A) / step - 0.5), last = std::floor((bias + A) / step - 0.5);
     if (!(last - first < 1e6)) return std::nullopt;
     double sum = 0.0;
-    for (double k = first; k <= last; k += 1.0) {
-      const double ratio = ((k + 0.5) * step - bias) / A;
+    const auto count = static_cast<long>(last - first);
+    for (long i = 0; i <= count; ++i) {
+      const double ratio = ((first + static_cast<double>(i) + 0.5) * step - bias) / A;
       sum += std::sqrt(std::max((1.0 - ratio) * (1.0 + ratio), 0.0));
     }
     return std::complex<double>(2.0 * step / (std::numbers::pi * A) * sum);

@@ -11,7 +11,7 @@ std::string_view page_style() {
   --fair: #e3b341; --bad: #ff8a80; --focus: #6cb6f5; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink); font: 1rem/1.5 system-ui, "DejaVu Sans", sans-serif; }
-main, header, footer { max-width: 62rem; margin: 0 auto; padding: 0 1rem; }
+main, header, footer { max-width: 70rem; margin: 0 auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; line-height: 1.25; margin: 1.5rem 0 0.5rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.15rem; margin: 2rem 0 0.5rem; }
 .answer { font-size: 1.15rem; margin: 0.5rem 0; }
@@ -19,9 +19,9 @@ h2 { font-size: 1.15rem; margin: 2rem 0 0.5rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 caption { text-align: left; color: var(--soft); padding-bottom: 0.25rem; }
-th, td { padding: 0.25rem 0.7rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
+th, td { padding: 0.25rem 0.55rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
 th.left, td.left { text-align: left; }
-td.wide { white-space: normal; min-width: 16rem; text-align: left; }
+td.wide { white-space: normal; min-width: 13rem; text-align: left; }
 th { color: var(--soft); font-weight: 600; }
 .confirmed { color: var(--good); font-weight: 600; } .biased { color: var(--fair); font-weight: 600; }
 .false { color: var(--bad); font-weight: 600; }

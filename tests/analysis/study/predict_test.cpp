@@ -191,8 +191,7 @@ TEST_CASE("a saturation with dead time: the Pade approximation is owned up to, a
   options.starts = 1;
   const auto report = predict(delayed(saturation(1.0), 20.0, 0.5), options);
   REQUIRE_FALSE(report.notes.empty());
-  CHECK_THAT(report.notes[0],
-             Contains("Pade approximation of order") && Contains("of the delayed signal up to "));
+  CHECK_THAT(report.notes[0], Contains("Pade approximation of order") && Contains("of the delayed signal up to "));
   REQUIRE(report.cycles.size() == 1);
   // Its harmonics beyond 12 rad/s come at the wrong time; an approximation of order 60 is off by 5e-7.
   const auto [period, amplitude] = delayed_saturation(20.0, 0.5, 2000);
