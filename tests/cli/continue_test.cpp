@@ -71,7 +71,8 @@ TEST_CASE("continue: the coefficient of the cubic of van der Pol only scales its
       run({"continue", shipped("van-der-pol.toml"), "--parameter", "loop.element.coefficient=0.1:10", "--json", "-"});
   REQUIRE(ran.code == 0);
   // x'' - x' + x + (c x^3)' = 0 is x -> x/sqrt(3 c) of mu = 1: the period does not change.
-  for (const auto& point : Json::parse(ran.out)["branch"]) {
+  const auto document = Json::parse(ran.out);
+  for (const auto& point : document["branch"]) {
     CHECK(point["period"].get<double>() == Approx(6.66328686).epsilon(2e-8));
     const double c = point["parameter"];
     CHECK(point["amplitude"].get<double>() * std::sqrt(3.0 * c) == Approx(2.00861986).epsilon(2e-7));
