@@ -25,7 +25,10 @@ enum class Status {
   /// Finished, but a check says that something may be missing (e.g. a region stayed undecided).
   incomplete,
   /// The caller asked to stop; what was computed until then is kept.
-  interrupted
+  interrupted,
+  /// The question has no answer here: the law needs the applied force, which a prescribed motion does not have (see
+  /// analysis/frequency/drive_dependence.hpp).
+  undefined
 };
 
 /// Name of the status, spelled as the enumerator.
@@ -47,6 +50,8 @@ constexpr std::string_view to_string(Status status) {
       return "incomplete";
     case Status::interrupted:
       return "interrupted";
+    case Status::undefined:
+      return "undefined";
   }
   return "unknown";
 }

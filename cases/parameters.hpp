@@ -75,10 +75,10 @@ std::string value_by_default(const std::string& key, const Owner& owner) {
 /// Reads a law, element, plant or controller from its section by its parameter table, and applies its own rules.
 /// `extra`: keys that belong to the section but not to the table. Throws InputError.
 template <class Owner>
-Owner read_owner(const Section& section, std::vector<std::string> extra, const std::vector<std::string>& later) {
+Owner read_owner(const Section& section, std::vector<std::string> extra) {
   const auto table = Owner::parameters();
   for (const auto& parameter : table) extra.emplace_back(parameter.key);
-  section.allow(extra, later);
+  section.allow(extra);
 
   Owner owner{};
   for (const auto& parameter : table) {
@@ -98,13 +98,11 @@ Owner read_owner(const Section& section, std::vector<std::string> extra, const s
   return owner;
 }
 
-/// What the case format knows by name, whether or not this version has it.
+/// What the case format calls by name.
 struct KindNames {
-  std::string what;                     ///< "friction law", for messages
-  std::vector<std::string> later;       ///< kinds of later versions
-  std::vector<std::string> elsewhere;   ///< kinds that belong to another section...
-  std::string elsewhere_hint;           ///< ...and to which
-  std::vector<std::string> later_keys;  ///< keys of any kind that later versions have
+  std::string what;                    ///< "friction law", for messages
+  std::vector<std::string> elsewhere;  ///< kinds that belong to another section...
+  std::string elsewhere_hint;          ///< ...and to which
 };
 
 /// Kinds of a variant, in its order.
@@ -117,7 +115,7 @@ std::vector<std::string> kinds_of() {
   return kinds_of<Variant>(std::make_index_sequence<std::variant_size_v<Variant>>{});
 }
 
-/// The error for a kind that this version does not have.
+/// The error for a kind that there is not, or not here.
 InputError unknown_kind(const Place& kind, const std::vector<std::string>& available, const KindNames& names);
 
 /// Reads whichever alternative of `Variant` the section's `kind` names, as a `Result`.
@@ -129,7 +127,7 @@ Result read_any(const Section& section, const KindNames& names) {
   std::optional<Result> result;
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     const auto try_one = [&]<class Owner>(std::type_identity<Owner>) {
-      if (Owner::kind == kind) result = read_owner<Owner>(section, {"kind"}, names.later_keys);
+      if (Owner::kind == kind) result = read_owner<Owner>(section, {"kind"});
     };
     (try_one(std::type_identity<std::variant_alternative_t<I, Variant>>{}), ...);
   }

@@ -4,13 +4,6 @@
 namespace limcycle::case_file {
 namespace {
 
-// Kinds and keys that the case format fixes and later versions bring. A kind that has arrived is found first, so that
-// nothing here needs to change when a law is added.
-const std::vector<std::string> later_laws = {
-    "karnopp", "quinn",   "awrejcewicz",  "wojewoda", "kikuuwe", "bouc-wen", "lugre-spline", "elasto-plastic",
-    "leuven",  "jenkins", "maxwell-slip", "iwan",     "gms",     "xiong",    "two-state",    "non-drift"};
-const std::vector<std::string> later_plants = {"froude-pendulum"};
-
 using AnyElement = Element<double>;
 using FrictionLaw = FrictionLaws::On<double>;
 using ForwardElement = ForwardElements::On<double>;
@@ -20,39 +13,31 @@ using ErrorElement = ErrorElements::On<double>;
 AnyElement read_friction(const Section& section) {
   return read_any<FrictionLaw, AnyElement>(section,
                                            {.what = "friction law",
-                                            .later = later_laws,
                                             .elsewhere = kinds_of<ForwardElement>(),
-                                            .elsewhere_hint = "is an element in series: it belongs in [loop.element]",
-                                            .later_keys = {}});
+                                            .elsewhere_hint = "is an element in series: it belongs in [loop.element]"});
 }
 
 AnyElement read_element(const Section& section) {
   return read_any<SeriesElement, AnyElement>(section,
                                              {.what = "element",
-                                              .later = later_laws,
                                               .elsewhere = kinds_of<ErrorElement>(),
-                                              .elsewhere_hint = "acts on the error: it belongs in [loop.error]",
-                                              .later_keys = {}});
+                                              .elsewhere_hint = "acts on the error: it belongs in [loop.error]"});
 }
 
 AnyElement read_error(const Section& section) {
   return read_any<ErrorElement, AnyElement>(
       section, {.what = "element on the error",
-                .later = later_laws,
                 .elsewhere = kinds_of<SeriesElement>(),
-                .elsewhere_hint = "does not act on the error (" + joined(kinds_of<ErrorElement>()) + " may)",
-                .later_keys = {}});
+                .elsewhere_hint = "does not act on the error (" + joined(kinds_of<ErrorElement>()) + " may)"});
 }
 
 Plant read_plant(const Section& section) {
-  return read_any<Plant>(
-      section, {.what = "plant", .later = later_plants, .elsewhere = {}, .elsewhere_hint = {}, .later_keys = {}});
+  return read_any<Plant>(section, {.what = "plant", .elsewhere = {}, .elsewhere_hint = {}});
 }
 
 Controller read_controller(const std::optional<Section>& section) {
   if (!section) return NoController{};
-  return read_any<Controller>(
-      *section, {.what = "controller", .later = {}, .elsewhere = {}, .elsewhere_hint = {}, .later_keys = {}});
+  return read_any<Controller>(*section, {.what = "controller", .elsewhere = {}, .elsewhere_hint = {}});
 }
 
 void read_reference(const Place& place, LoopParts& parts) {
@@ -95,13 +80,8 @@ void check_together(const Section& section, const LoopParts& parts) {
 
 InputError unknown_kind(const Place& kind, const std::vector<std::string>& available, const KindNames& names) {
   const std::string name = *kind.value.as<std::string>();
-  const auto among = [&](const std::vector<std::string>& list) { return std::ranges::find(list, name) != list.end(); };
-  if (among(names.elsewhere)) return kind.error(names.elsewhere_hint);
-  if (among(names.later))
-    return kind.error("known to the case format, not available in this version", "available: " + joined(available));
-  std::vector<std::string> all = available;
-  all.insert(all.end(), names.later.begin(), names.later.end());
-  const auto near = nearest_name(name, all);
+  if (std::ranges::find(names.elsewhere, name) != names.elsewhere.end()) return kind.error(names.elsewhere_hint);
+  const auto near = nearest_name(name, available);
   return kind.error("unknown " + names.what,
                     near.empty() ? "known: " + joined(available) : "did you mean \"" + near + "\"?");
 }

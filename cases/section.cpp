@@ -125,11 +125,9 @@ Section::Section(const Document& document, const Value& value, std::string path)
   if (value.as<Value::Table>() == nullptr) throw Place{document, value, path_}.wrong_type("a table");
 }
 
-void Section::allow(const std::vector<std::string>& known, const std::vector<std::string>& later) const {
+void Section::allow(const std::vector<std::string>& known) const {
   for (const auto& [key, value] : *value_.as<Value::Table>()) {
     if (std::ranges::find(known, key) != known.end()) continue;
-    if (std::ranges::find(later, key) != later.end())
-      throw document_.error(value, path_of(key), "known to the case format, not available in this version");
     throw document_.error(value, path_of(key), "unknown key", suggest(key, known));
   }
 }

@@ -47,9 +47,8 @@ class Section {
   /// Throws InputError if `value` is not a table.
   Section(const Document& document, const Value& value, std::string path);
 
-  /// Throws InputError for the first key that is not in `known`. Keys in `later` exist in the case format but not in
-  /// this version: they are refused by name.
-  void allow(const std::vector<std::string>& known, const std::vector<std::string>& later = {}) const;
+  /// Throws InputError for the first key that is not in `known`.
+  void allow(const std::vector<std::string>& known) const;
 
   /// Value of a key, or nothing.
   std::optional<Place> find(std::string_view key) const;

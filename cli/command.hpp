@@ -52,6 +52,7 @@ Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 void add_check(CLI::App& program, Action& action);
 void add_continue(CLI::App& program, Action& action);
 void add_df(CLI::App& program, Action& action);
+void add_experiment(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
 void add_margin(CLI::App& program, Action& action);
 void add_predict(CLI::App& program, Action& action);

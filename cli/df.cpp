@@ -34,8 +34,7 @@ int run(const CommonFlags& flags) {
   output.finish();
   if (results.size() < points.size() && !flags.quiet)
     std::cerr << "limcycle: interrupted; the points computed until then are written\n";
-  const bool answered = std::any_of(results.begin(), results.end(),
-                                    [](const auto& result) { return result.status != Status::not_finite; });
+  const bool answered = std::ranges::any_of(results, [](const auto& result) { return result.answered(); });
   return answered ? exit_done : exit_no_answer;
 }
 

@@ -9,7 +9,7 @@
 namespace limcycle {
 namespace {
 
-int laws(const CommonFlags& flags, const std::string& kind) {
+int laws(const CommonFlags& flags, const std::string& kind, bool markdown) {
   auto entries = catalogue();
   if (!kind.empty()) {
     std::vector<std::string> kinds;
@@ -26,7 +26,7 @@ int laws(const CommonFlags& flags, const std::string& kind) {
                         .suggestion = suggest(kind, kinds)});
   }
   Output output(flags);
-  output.text(kind.empty() ? laws_text(entries) : law_text(entries));
+  output.text(markdown ? laws_markdown(entries) : kind.empty() ? laws_text(entries) : law_text(entries));
   if (output.wants_json()) output.json(laws_json(provenance(flags), entries));
   if (output.wants_csv()) output.csv(laws_csv(entries));
   output.finish();
@@ -38,10 +38,12 @@ int laws(const CommonFlags& flags, const std::string& kind) {
 void add_laws(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
   const auto kind = std::make_shared<std::string>();
+  const auto markdown = std::make_shared<bool>(false);
   auto* command =
       add_command(program, action, "laws", "Laws, elements, plants and controllers: parameters, units, equations",
-                  false, flags, [flags, kind] { return laws(*flags, *kind); });
+                  false, flags, [flags, kind, markdown] { return laws(*flags, *kind, *markdown); });
   command->add_option("KIND", *kind, "One of them, in full")->type_name("NAME");
+  command->add_flag("--markdown", *markdown, "The friction laws as a page of documentation");
 }
 
 }  // namespace limcycle

@@ -54,6 +54,7 @@ class Assembly {
     loop_.C_y = Row::Zero(s_.n);
     loop_.C_y.head(np_) = plant_.C_y;
     loop_.delay = plant_.delay;
+    if (plant_.gravity) weight_ = add(*plant_.gravity, "loop.plant.gravity", s_.state(plant_.C_gravity, 0));
     const Row command = actuator(controller());
     plant(forward(command));
     split();
@@ -64,8 +65,8 @@ class Assembly {
   Index count_elements() const {
     const bool rate = parts_.error && controller_.D_rate != 0.0;
     const bool saturation = std::isfinite(actuator_.saturation), compensation = actuator_.friction_compensation > 0.0;
-    const bool present[] = {parts_.error.has_value(),   rate, compensation, saturation, parts_.element.has_value(),
-                            parts_.friction.has_value()};
+    const bool present[] = {plant_.gravity.has_value(), parts_.error.has_value(),   rate, compensation, saturation,
+                            parts_.element.has_value(), parts_.friction.has_value()};
     return std::ranges::count(present, true);
   }
 
@@ -114,8 +115,10 @@ class Assembly {
     const Row force = u + s_.external(external_force);
     Row friction = s_.zero();
     if (parts_.friction) friction = add(*parts_.friction, "loop.friction", rub_position_, true);
-    for (Index i = 0; i < np_; ++i)
+    for (Index i = 0; i < np_; ++i) {
       rates_.row(i) = s_.state(plant_.A.row(i), 0) + plant_.B_u(i) * force - plant_.B_F(i) * friction;
+      if (plant_.gravity) rates_.row(i) -= plant_.B_gravity(i) * weight_;
+    }
   }
 
   Row add(const Element<double>& element, const char* path, const Row& input, bool rubs = false) {
@@ -165,7 +168,7 @@ class Assembly {
   SignalSpace s_{};
   Eigen::MatrixXd rates_;
   std::vector<Row> inputs_;
-  Row rub_position_, rub_velocity_;
+  Row rub_position_, rub_velocity_, weight_;
   Loop loop_;
 };
 

@@ -1,6 +1,7 @@
 #include "limcycle/models/loop.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "limcycle/models/assemble.hpp"
@@ -68,6 +69,11 @@ std::optional<BrokenRule> move_along(Loop& loop, double rate) {
   return std::nullopt;
 }
 
+/// Whether an element is told the force that holds its input: only friction on a body has one.
+bool needs_applied_force(const Element<double>& element) {
+  return std::visit([]<class E>(const E& e) { return NeedsDrive<E> || drive_band(e) > 0.0; }, element);
+}
+
 /// What passes straight into an input that must have a rate.
 std::string straight_into(const Loop& loop, const Port& port) {
   std::string names;
@@ -107,8 +113,13 @@ std::optional<BrokenRule> validate_error(const LoopParts& parts, double D_rate) 
 std::optional<BrokenRule> validate(const LoopParts& parts) {
   const PlantModel plant = model_of(parts.plant);
   const ControllerModel controller = model_of(parts.controller);
+  if (const auto* froude = std::get_if<FroudePendulum>(&parts.plant); froude && froude->clearance > 0.0)
+    return BrokenRule{"loop.plant.clearance",
+                      "must be 0 in a loop: clearance needs `limcycle experiment froude-pendulum`"};
   if (!parts.element && !parts.friction && !parts.error)
     return BrokenRule{"loop", "needs a nonlinear element: add [loop.friction], [loop.element] or [loop.error]"};
+  if (parts.element && needs_applied_force(*parts.element))
+    return BrokenRule{"loop.element", "needs the applied force: it can only stand as [loop.friction]"};
   if (parts.friction && (!vanishes(plant.C_x, plant.B_F) || !vanishes(plant.C_y, plant.B_F)))
     return BrokenRule{"loop.plant", "needs relative degree 2 or more from force to position when there is friction"};
   if (actuator_of(parts.controller).friction_compensation > 0.0 && !parts.friction)
@@ -116,7 +127,7 @@ std::optional<BrokenRule> validate(const LoopParts& parts) {
   if (controller.D_rate != 0.0 && !vanishes(plant.C_y, plant.B_u))
     return BrokenRule{"loop.controller.tf",
                       "must be > 0: the plant has relative degree 1 and kd differentiates its output"};
-  if (auto broken = validate_error(parts, controller.D_rate)) return broken;
+  if (const auto broken = validate_error(parts, controller.D_rate)) return broken;
   if (parts.reference_rate != 0.0 && plant.delay > 0.0)
     return BrokenRule{"loop.reference", "a ramp and a delay cannot stand in one loop"};
   Loop loop = assemble(parts);
@@ -166,12 +177,74 @@ Eigen::RowVectorXcd Loop::output_response(double w) const {
   return C_y.cast<std::complex<double>>() * respond(*this, {0.0, w}).X;
 }
 
+namespace {
+
+/// Mean output and slope of an element that pulls back; nothing of another.
+std::optional<std::pair<double, double>> pull_of(const Element<double>& element, double mean, double swing) {
+  return std::visit(
+      [&]<class E>(const E& e) -> std::optional<std::pair<double, double>> {
+        if constexpr (PullsBack<E>) return std::pair(e.mean_output(mean, swing), e.mean_slope(mean, swing));
+        return std::nullopt;
+      },
+      element);
+}
+
+/// What the elements that pull back add to the rates at X, and to the matrix.
+struct Pull {
+  Eigen::VectorXd force;
+  Eigen::MatrixXd slope;
+  bool any = false;
+};
+Pull pull_at(const Loop& loop, const Eigen::VectorXd& X, const Eigen::VectorXd& swings) {
+  Pull sum{Eigen::VectorXd::Zero(X.size()), Eigen::MatrixXd::Zero(X.size(), X.size()), false};
+  for (std::size_t i = 0; i < loop.elements.size(); ++i) {
+    const Port& port = loop.ports[i];
+    const auto k = static_cast<Index>(i);
+    const double input = ((port.C + port.C_delayed) * X + port.c * loop.external).value();
+    const auto pull = pull_of(loop.elements[i], input, swings(k));
+    if (!pull) continue;
+    sum.any = true;
+    sum.force += loop.B.col(k) * pull->first;
+    sum.slope += loop.B.col(k) * pull->second * (port.C + port.C_delayed);
+  }
+  return sum;
+}
+
+}  // namespace
+
 Eigen::VectorXd Loop::rest_point(bool& exact) const {
-  const Eigen::VectorXd pull = E * external;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(std::ssize(elements));
+  return mean_point(none, none, exact);
+}
+
+/// Newton's method, from the rest point of the tangents at 0. Under a constant torque it comes from below, and the sine
+/// bends away from its tangent: every step falls short, so that none leaves the branch near hanging.
+Eigen::VectorXd Loop::mean_point(const Eigen::VectorXd& mean_outputs, const Eigen::VectorXd& swings,
+                                 bool& exact) const {
+  Eigen::VectorXd given = E * external;
+  for (Index i = 0; i < mean_outputs.size(); ++i)
+    if (!pull_of(elements[static_cast<std::size_t>(i)], 0.0, 0.0)) given += B.col(i) * mean_outputs(i);
   const Eigen::MatrixXd still = A + A_delayed;
-  Eigen::VectorXd X = still.completeOrthogonalDecomposition().solve(-pull);
-  exact = (still * X + pull).norm() <= 1e-12 * (1.0 + pull.norm());
-  return X;
+  Eigen::VectorXd X = Eigen::VectorXd::Zero(states()), first;
+  for (int i = 0; i < 60 && X.allFinite(); ++i) {
+    const Pull pull = pull_at(*this, X, swings);
+    const Eigen::VectorXd rate = still * X + given + pull.force;
+    const Eigen::VectorXd step = (still + pull.slope).completeOrthogonalDecomposition().solve(-rate);
+    X += step;
+    if (i == 0) first = X;
+    if (!pull.any || step.norm() <= 1e-15 * X.norm()) break;
+  }
+  const Eigen::VectorXd force = pull_at(*this, X, swings).force;
+  exact = (still * X + given + force).norm() <= 1e-12 * (1.0 + given.norm() + force.norm());
+  return exact ? X : first;
+}
+
+Eigen::MatrixXd Loop::tangent() const {
+  const auto pulls = [](const Element<double>& element) { return pull_of(element, 0.0, 0.0).has_value(); };
+  if (std::ranges::none_of(elements, pulls)) return A;
+  bool exact = false;
+  const Eigen::VectorXd X = rest_point(exact);
+  return A + pull_at(*this, X, Eigen::VectorXd::Zero(std::ssize(elements))).slope;
 }
 
 }  // namespace limcycle

@@ -36,8 +36,9 @@ struct Port {
   /// The set-valued friction law whose choice of sign at v = 0 this element shares (friction compensation).
   std::optional<std::size_t> selection_of;
   bool rubs = false;  ///< x and v are rubbing displacement and velocity: what matters is v, x may move along
-  std::string path;   ///< "loop.error", "loop.error.rate", "loop.controller.friction_compensation",
-                      ///< "loop.controller.saturation", "loop.element", "loop.friction": in this order, if there
+  std::string path;   ///< "loop.plant.gravity", "loop.error", "loop.error.rate",
+                      ///< "loop.controller.friction_compensation", "loop.controller.saturation", "loop.element",
+                      ///< "loop.friction": in this order, if there
 };
 
 /// Lur'e form: linear part  dX/dt = A X + A_delayed X(t - delay) + B w + E ext,  y = C_y X,  with nonlinear elements
@@ -67,9 +68,17 @@ struct Loop {
   /// Response of y to the outputs of the elements, 1 x n_e.
   Eigen::RowVectorXcd output_response(double w) const;
 
-  /// Rest point of the linear part without elements: A X + E ext = 0 in the least-squares sense; `exact` tells whether
-  /// it solves the equation.
+  /// Rest point of the linear part without elements, but with those that pull back (gravity): A X + E ext + B w = 0 in
+  /// the least-squares sense; `exact` tells whether it solves the equation. Of several the one near hanging; where a
+  /// torque is more than gravity can hold, that of the tangent.
   Eigen::VectorXd rest_point(bool& exact) const;
+  /// The same of the means of an oscillation: with the mean outputs of the elements given, but for those that pull
+  /// back, whose mean outputs are found for a sinusoid of amplitude swings(i) on their input. A X + E ext + B w = 0.
+  Eigen::VectorXd mean_point(const Eigen::VectorXd& mean_outputs, const Eigen::VectorXd& swings, bool& exact) const;
+
+  /// A (without delay) with the elements that pull back replaced by their tangents at the rest point; A itself where
+  /// there are none.
+  Eigen::MatrixXd tangent() const;
 };
 
 /// First rule that the combination of parts breaks (relative degree, algebraic loop, ...), or nothing.

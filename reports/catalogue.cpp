@@ -59,6 +59,28 @@ std::optional<int> states_with(bool optional_too) {
   return states;
 }
 
+/// Number of states of an element whose lists hold so many entries each.
+template <class Owner>
+int states_with_entries(std::size_t entries) {
+  Owner owner{};
+  for (const auto& parameter : Owner::parameters())
+    if (const auto* list = std::get_if<std::vector<double> Owner::*>(&parameter.member))
+      (owner.*(*list)).assign(entries, 1.0);
+  return owner.states();
+}
+
+/// An element has a fixed number of states, or so many for each of its parallel elements and some beside them.
+template <class Owner>
+void count_states(CatalogueEntry& entry) {
+  const int one = states_with_entries<Owner>(1), each = states_with_entries<Owner>(2) - one;
+  if (each == 0) {
+    entry.states = entry.most_states = one;
+  } else {
+    entry.states_per_entry = each;
+    entry.states_beside = one - each;
+  }
+}
+
 template <class Owner>
 CatalogueEntry entry_of(const std::string& group) {
   CatalogueEntry entry{.group = group,
@@ -67,10 +89,14 @@ CatalogueEntry entry_of(const std::string& group) {
                        .source = {},
                        .states = {},
                        .most_states = {},
+                       .states_per_entry = {},
+                       .states_beside = 0,
+                       .features = {},
                        .parameters = {}};
   if constexpr (requires { Owner::source; }) entry.source = Owner::source;
+  if constexpr (requires { Owner::features; }) entry.features = Owner::features;
   if constexpr (requires { Owner{}.states(); }) {
-    entry.states = entry.most_states = Owner{}.states();
+    count_states<Owner>(entry);
   } else {
     entry.states = states_with<Owner>(false);
     entry.most_states = states_with<Owner>(true);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/models/friction/features.hpp"
 #include "limcycle/models/parameter.hpp"
 
 namespace limcycle {
@@ -23,7 +24,10 @@ struct ParameterEntry {
 struct CatalogueEntry {
   std::string group;  ///< "friction", "element", "error element", "plant" or "controller"
   std::string kind, equation, source;
-  std::optional<int> states, most_states;  ///< continuous states, least and most; empty: as many as the parameters say
+  std::optional<int> states, most_states;  ///< continuous states, least and most; empty: the lists decide
+  std::optional<int> states_per_entry;     ///< of a law of parallel elements: states per entry of its lists ...
+  int states_beside = 0;                   ///< ... and those beside them
+  std::optional<Features> features;        ///< of a friction law
   std::vector<ParameterEntry> parameters;
 };
 

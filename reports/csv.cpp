@@ -83,7 +83,7 @@ std::string df_csv(const std::vector<DfPoint>& points, const std::vector<Describ
   out += csv_line(names);
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto& r = results[i];
-    const bool answered = r.status != Status::not_finite;
+    const bool answered = r.answered();
     const auto known = [&](double value) { return answered ? shortest(value) : std::string(); };
     std::vector<std::string> row = {shortest(points[i].amplitude), shortest(points[i].frequency),
                                     shortest(points[i].bias),      known(r.gain.real()),

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/text.hpp"
 
@@ -31,7 +32,7 @@ Table df_table(const std::vector<DfPoint>& points, const std::vector<DescribingF
   table.columns.insert(table.columns.end(), {{"work", "J"}, {"error", ""}});
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto& result = results[i];
-    const bool known = result.status != Status::not_finite;
+    const bool known = result.answered();
     // The error is a share of |N|: the parts of N, and the work pi A^2 Im N, have it in absolute terms.
     const double error = result.error * std::abs(result.gain);
     const double area = std::numbers::pi * points[i].amplitude * points[i].amplitude;
@@ -59,7 +60,7 @@ std::string summary(const std::vector<DfPoint>& points, const std::vector<Descri
   };
   double least = INFINITY, most = 0.0;
   for (const auto& result : results) {
-    if (result.status == Status::not_finite) continue;
+    if (!result.answered()) continue;
     least = std::min(least, std::abs(result.gain));
     most = std::max(most, std::abs(result.gain));
   }
@@ -80,19 +81,21 @@ std::string df_text(const std::string& title, const std::vector<DfPoint>& points
          : results.size() > longest_table ? summary(points, results)
                                           : df_table(points, results).text();
   std::map<std::string_view, std::size_t> methods, problems;
-  double worst = 0.0;
+  double worst = -1.0;
   for (const auto& result : results) {
     if (result.status == Status::converged) ++methods[result.method];
     if (result.status != Status::converged) ++problems[to_string(result.status)];
-    if (result.status != Status::not_finite) worst = std::max(worst, result.error);
+    if (result.answered()) worst = std::max(worst, result.error);
   }
-  out += fmt::format("\n{} of {} points; worst estimated relative error of N {}", results.size(), points.size(),
-                     as_error(worst));
+  out += fmt::format("\n{} of {} points", results.size(), points.size());
+  if (worst >= 0.0) out += fmt::format("; worst estimated relative error of N {}", as_error(worst));
   for (const auto& [method, n] : methods) out += fmt::format("; {} by {}", n, method);
   out += ".\n";
   for (const auto& [status, n] : problems)
     out += fmt::format("{} {}: {}.\n", n, n == 1 ? "point" : "points",
-                       status == "incomplete" ? "the wanted accuracy was not reached (see the error)" : status);
+                       status == "incomplete"  ? "the wanted accuracy was not reached (see the error)"
+                       : status == "undefined" ? undefined_text
+                                               : status);
   return out;
 }
 

@@ -92,11 +92,11 @@ Json labels(const Units& units) {
   const auto with_unit = [](const char* name, const std::string& unit) {
     return unit.empty() ? std::string(name) : fmt::format("{} ({})", name, unit);
   };
-  const std::string rate = units.y.empty() ? "1/s" : units.y + "/s";
+  const auto per_second = [](const std::string& unit) { return unit.empty() ? "1/s" : unit + "/s"; };
   return {{"y", with_unit("y", units.y)},
-          {"rate", with_unit("dy/dt", rate)},
-          {"input", with_unit("element's input", units.y)},
-          {"velocity", with_unit("its rate", rate)},
+          {"rate", with_unit("dy/dt", per_second(units.y))},
+          {"input", with_unit("element's input", units.input)},
+          {"velocity", with_unit("its rate", per_second(units.input))},
           {"output", with_unit(units.force.empty() ? "element's output" : "force", units.force)}};
 }
 
@@ -260,8 +260,8 @@ Figure loop_figure(const Shown& what, const Units& units) {
   const std::string output = units.force.empty() ? "output" : "force";
   return {"loop", "Hysteresis: " + output + " against displacement and rate",
           fmt::format("The element's {} lies {}, while its input moves {} and its rate {}{}.", output,
-                      between(what.trace->output, units.force), between(what.trace->input, units.y),
-                      between(what.trace->velocity, units.y.empty() ? "1/s" : units.y + "/s"),
+                      between(what.trace->output, units.force), between(what.trace->input, units.input),
+                      between(what.trace->velocity, units.input.empty() ? "1/s" : units.input + "/s"),
                       whole ? "" : " (only the first part is drawn)"),
           text_of({{"run", run}, {"labels", labels(units)}, {"name", what.name}})};
 }

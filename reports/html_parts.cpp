@@ -38,7 +38,8 @@ std::string shell_word(const std::string& word) {
 
 std::string origin(const HtmlPage& page) {
   const Provenance& from = page.provenance;
-  std::string command = "limcycle " + page.command + " " + shell_word(from.file);
+  std::string command = "limcycle " + page.command;
+  if (!from.file.empty()) command += " " + shell_word(from.file);
   if (!page.flags.empty()) command += " " + page.flags;
   for (const auto& override : from.overrides) command += " --set " + shell_word(override);
   const auto entry = [](const std::string& name, const std::string& value) {
@@ -50,7 +51,8 @@ std::string origin(const HtmlPage& page) {
   out += entry("built with", fmt::format("{}, {}", from.compiler, from.build_type));
   out += entry("run with", fmt::format("seed {}, {} thread{}, instruction set {}", from.seed, from.threads,
                                        from.threads == 1 ? "" : "s", from.isa));
-  out += entry("case file", from.file) + entry("its SHA-256", from.sha256) + "</dl>\n";
+  if (!from.file.empty()) out += entry("case file", from.file) + entry("its SHA-256", from.sha256);
+  out += "</dl>\n";
   if (page.case_text.empty()) return out;
   return out + "<details open><summary>Case file</summary>\n<pre>" + html_escaped(page.case_text) +
          "</pre></details>\n";

@@ -87,7 +87,7 @@ Json prediction_json(const Prediction& prediction) {
 
 Json point_json(const DfPoint& point, const DescribingFunction& result) {
   // A result without an answer holds zeros, which are not numbers that exist.
-  const bool answered = result.status != Status::not_finite;
+  const bool answered = result.answered();
   const auto known = [&](double value) { return answered ? number(value) : Json(nullptr); };
   Json harmonics = Json::array();
   for (const auto& harmonic : result.harmonics)

@@ -24,9 +24,14 @@ std::vector<VectorXcd> turned_inputs(const HarmonicGuess& guess, bool half_wave)
   return inputs;
 }
 
-/// Input of an element that was not given: what the main element causes there, the others being silent.
+/// Input of an element that was not given: that of the main element times a factor if the two read the same signal
+/// (gravity and friction on a pendulum), else what the main element causes there, the others being silent.
 VectorXcd filled_input(const Loop& loop, const BalancePoint& point, Index k, double mean_rate, bool half_wave) {
   const VectorXcd& main = point.inputs.back();
+  const Port &own = loop.ports[static_cast<std::size_t>(k)], &from = loop.ports.back();
+  const double factor = from.C.squaredNorm() > 0.0 ? from.C.dot(own.C) / from.C.squaredNorm() : 0.0;
+  const bool direct = own.D.isZero() && from.D.isZero() && own.C_delayed.isZero() && from.C_delayed.isZero();
+  if (direct && factor != 0.0 && (own.C - factor * from.C).norm() <= 1e-12 * own.C.norm()) return factor * main;
   const auto last = std::ssize(loop.elements) - 1;
   const int orders = static_cast<int>(main.size()) - 1;
   const PrescribedHarmonics motion(main, point.frequency, mean_rate, half_wave);

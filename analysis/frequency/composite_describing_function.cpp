@@ -4,7 +4,9 @@
 #include <stdexcept>
 #include <variant>
 
+#include "limcycle/analysis/erased_element.hpp"
 #include "limcycle/analysis/frequency/composite_period.hpp"
+#include "limcycle/analysis/frequency/drive_dependence.hpp"
 
 namespace limcycle {
 
@@ -28,15 +30,10 @@ namespace {
   throw std::invalid_argument(text.str());
 }
 
-template <class E, class List>
-inline constexpr bool is_in = false;
-template <class E, class... Kinds>
-inline constexpr bool is_in<E, std::variant<Kinds...>> = (std::is_same_v<E, Kinds> || ...);
-
-template <template <class> class Kind, int D>
+template <int D>
 class SolverOf : public CompositeDescribingFunction::Solver {
  public:
-  SolverOf(const Kind<double>& law, double mass) : period_(law, mass) {}
+  SolverOf(const ErasedElement<double>& law, double mass) : period_(law, mass) {}
   CompositeResponse solve(const CompositePoint& point, double relative, int orders,
                           const CompositeResponse* near) override {
     return period_.solve(point, relative, orders, near);
@@ -49,23 +46,23 @@ class SolverOf : public CompositeDescribingFunction::Solver {
   double level() const override { return period_.level(); }
 
  private:
-  CompositePeriod<Kind, D> period_;
+  CompositePeriod<ErasedElement, D> period_;
 };
 
 std::unique_ptr<CompositeDescribingFunction::Solver> solver_of(const Element<double>& friction, double mass) {
-  using Made = std::unique_ptr<CompositeDescribingFunction::Solver>;
-  return std::visit(
-      [&]<template <class> class Kind>(const Kind<double>& law) -> Made {
-        if constexpr (is_in<Kind<double>, FrictionLaws::On<double>>) {
-          if (law.states() == 0) return std::make_unique<SolverOf<Kind, 1>>(law, mass);
-          if (law.states() == 1) return std::make_unique<SolverOf<Kind, 2>>(law, mass);
-          return std::make_unique<SolverOf<Kind, 0>>(law, mass);
-        } else {
-          throw std::invalid_argument("composite describing function: " + std::string(Kind<double>::kind) +
+  std::visit(
+      []<class E>(const E&) {
+        if constexpr (!FrictionLaws::contains<E>)
+          throw std::invalid_argument("composite describing function: " + std::string(E::kind) +
                                       " is not a friction law");
-        }
       },
       friction);
+  if (undefined_under(friction, infinite, 1.0))
+    throw std::invalid_argument("composite describing function: a law with a spring of its own is refused");
+  const ErasedElement<double> law(friction);
+  if (law.states() == 0) return std::make_unique<SolverOf<1>>(law, mass);
+  if (law.states() == 1) return std::make_unique<SolverOf<2>>(law, mass);
+  return std::make_unique<SolverOf<0>>(law, mass);
 }
 
 void check(const CompositePoint& p, const CompositeOptions& o) {

@@ -19,12 +19,13 @@ class CompositeMarch : public CompositeStep<Kind, D> {
   using Base = CompositeStep<Kind, D>;
   using typename Base::State;
   using typename Base::Vector;
-  static constexpr bool has_modes = HasModes<Kind<double>, double>;
 
-  CompositeMarch(const Kind<double>& law, double mass) : Base(law, mass) {
+  CompositeMarch(const Kind<double>& law, double mass) : Base(law, mass), has_modes_(law.has_modes()) {
     const double scale = law.scales().velocity;
-    slow_ = std::isfinite(scale) && !has_modes ? 0.01 * scale : 0.0;
+    slow_ = std::isfinite(scale) && !has_modes_ ? 0.01 * scale : 0.0;
   }
+
+  bool has_modes() const { return has_modes_; }
 
   State rest() const {
     State s;
@@ -34,7 +35,7 @@ class CompositeMarch : public CompositeStep<Kind, D> {
 
   /// Mode (and states) of a body without history with velocity y[0] at this phase; laws without modes: nothing to do.
   void start(State& s, const CompositeForce& force, double phase) {
-    if constexpr (has_modes) {
+    if (has_modes_) {
       const Input<double> in{0.0, s.y[0], force.bias + force.amplitude * std::sin(phase)};
       s.mode = law_.start(in, std::span<double>(s.y.data() + 1, d_ - 1));
     }
@@ -44,7 +45,7 @@ class CompositeMarch : public CompositeStep<Kind, D> {
   /// that was not one, so that differences of the two are smooth (laws without modes; others choose their steps anew).
   Status run(State& s, const CompositeForce& force, int from_quarter, int to_quarter,
              const CompositeTolerance& tolerance, CompositeSums& sums, bool replay = false) {
-    replay_ = replay && !has_modes;
+    replay_ = replay && !has_modes_;
     next_ = 0;
     if (!replay_) taken_.clear();
     this->prepare(force, tolerance, sums.orders);
@@ -90,7 +91,7 @@ class CompositeMarch : public CompositeStep<Kind, D> {
     h_ = shortened ? std::max(h_, grown) : grown;
     if (h_ > half_pi) h_ = half_pi;
     int fired = -1;
-    if constexpr (has_modes) {
+    if (has_modes_) {
       double low = 0.0, high = h;
       if (switches_within(s, h, low, high, fired)) h = locate(s, fired, low, high);
     }
@@ -201,13 +202,15 @@ class CompositeMarch : public CompositeStep<Kind, D> {
   }
 
   void fire(State& s, int fired) {
-    if constexpr (has_modes) {
+    if (has_modes_) {
+      if (arrests(law_, s.mode, fired)) s.y[0] = 0.0;
       s.mode = law_.next(input_at(s.y, phase_), s.mode, std::span<double>(s.y.data() + 1, d_ - 1), fired);
       if (held(s.mode)) s.y[0] = 0.0;
       h_ = std::min(h_, 0.05);
     }
   }
 
+  bool has_modes_;
   double slow_ = 0.0, h_ = 0.0;
   int events_ = 0;
   bool replay_ = false;

@@ -68,7 +68,7 @@ class CompositePeriod {
     }
     return false;
   }
-  bool has_front() const { return March::has_modes || std::isfinite(march_.law().scales().velocity); }
+  bool has_front() const { return march_.has_modes() || std::isfinite(march_.law().scales().velocity); }
   double level() const { return march_.law().scales().output; }
 
  private:
@@ -89,7 +89,8 @@ class CompositePeriod {
     trip.status =
         march_.run(trip.end, {bias, point_.force, point_.frequency}, 0, half_ ? 2 : 4, tolerance_, trip.sums, replay);
     if (half_) {
-      for (double& value : trip.end.y) value = -value;
+      for (std::size_t i = 0; i < march_.size(); ++i)
+        if (i == 0 || !is_even_state(march_.law(), static_cast<int>(i) - 1)) trip.end.y[i] = -trip.end.y[i];
       trip.end.mode = march_.law().mirror(trip.end.mode);
     }
     return trip;
@@ -212,7 +213,7 @@ class CompositePeriod {
   bool differentiate() {
     const std::size_t n = unknowns();
     jacobian_.assign(n * n, 0.0);
-    const double delta = March::has_modes ? std::clamp(0.3 * std::sqrt(tolerance_.relative), 1e-6, 1e-3) : 1e-6;
+    const double delta = march_.has_modes() ? std::clamp(0.3 * std::sqrt(tolerance_.relative), 1e-6, 1e-3) : 1e-6;
     std::vector<double> r;
     for (std::size_t j = 0; j < n; ++j) {
       State moved = state_;

@@ -58,7 +58,7 @@ class CompositeStep {
     if constexpr (D == 0) v.assign(d_, 0.0);
   }
   bool held(Mode mode) const {
-    if constexpr (CanHold<Kind<double>>) return law_.held(mode) != Held::nothing;
+    if constexpr (requires { law_.held(mode); }) return law_.held(mode) != Held::nothing;
     return false;
   }
   std::span<const double> states(const Vector& y) const { return {y.data() + 1, d_ - 1}; }
@@ -77,16 +77,19 @@ class CompositeStep {
     for (auto& rate : dy) rate /= force_.frequency;
   }
 
-  /// d(dy/dphase)/dy by dual numbers, two seeds at a time; dF/dy beside it.
+  /// d(dy/dphase)/dy by dual numbers, two seeds at a time; dF/dy beside it, and dF/du where the law may need the force.
   void differentiate(const Vector& y, Mode mode, double sine) {
     const double u = force_.bias + force_.amplitude * sine;
     const bool stuck = held(mode);
     friction_gradient_.assign(d_, 0.0);
-    for (std::size_t first = 0; first < d_; first += 2) {
-      const auto seeded = [&](std::size_t k) {
-        return k >= first && k < first + 2 ? DualS::variable(y[k], static_cast<int>(k - first)) : DualS(y[k]);
+    friction_by_force_ = stuck ? 1.0 : 0.0;
+    const std::size_t seeds = d_ + (!stuck && drive_is_of_rate(law_) ? 1 : 0);
+    for (std::size_t first = 0; first < seeds; first += 2) {
+      const auto seeded_as = [&](double value, std::size_t k) {
+        return k >= first && k < first + 2 ? DualS::variable(value, static_cast<int>(k - first)) : DualS(value);
       };
-      const Input<DualS> in{DualS(0.0), seeded(0), DualS(u)};
+      const auto seeded = [&](std::size_t k) { return seeded_as(y[k], k); };
+      const Input<DualS> in{DualS(0.0), seeded(0), stuck ? DualS(u) : seeded_as(u, d_)};
       for (std::size_t k = 1; k < d_; ++k) dual_z_[k - 1] = seeded(k);
       const DualS out = stuck ? DualS(u) : dual_.output(in, mode, dual_z_);
       if (d_ > 1) dual_.rate(in, mode, dual_z_, dual_dz_);
@@ -96,6 +99,7 @@ class CompositeStep {
         for (std::size_t k = 1; k < d_; ++k)
           jacobian_[k * d_ + column] = dual_dz_[k - 1].d[column - first] / force_.frequency;
       }
+      if (!stuck && d_ >= first && d_ < first + 2) friction_by_force_ = out.d[d_ - first];
     }
   }
 
@@ -109,7 +113,7 @@ class CompositeStep {
     friction0_ = friction_;
     differentiate(s.y, mode_, sine0_);
     std::fill(dfdt_.begin(), dfdt_.end(), 0.0);
-    if (!held(mode_)) dfdt_[0] = force_.amplitude * cosine0_ / (mass_ * force_.frequency);
+    dfdt_[0] = (1.0 - friction_by_force_) * force_.amplitude * cosine0_ / (mass_ * force_.frequency);
   }
 
   /// Integrands over phase of displacement, work, and v sin k, v cos k.
@@ -179,7 +183,7 @@ class CompositeStep {
     own[0] += kv;
     own[1] += friction0_ * kv;
     for (std::size_t i = 0; i < d_; ++i) own[1] += v0 * friction_gradient_[i] * k_[s][i];
-    if (held(mode_)) own[1] += v0 * h * time_weight[s] * force_.amplitude * cosine0_;
+    own[1] += friction_by_force_ * v0 * h * time_weight[s] * force_.amplitude * cosine0_;
     double sk = sine0_, ck = cosine0_;
     for (std::size_t k = 0; k < orders_; ++k) {
       const double turn = static_cast<double>(k + 1) * v0 * h * time_weight[s];
@@ -273,6 +277,7 @@ class CompositeStep {
 
  private:
   double sine0_ = 0.0, cosine0_ = 1.0, sine_ = 0.0, cosine_ = 1.0, friction0_ = 0.0, friction_ = 0.0;
+  double friction_by_force_ = 0.0;
   const Vector* y0_ = nullptr;
   Vector error_{}, dfdt_{}, reach_{};
   std::array<Vector, rodas5p::stages> k_{};

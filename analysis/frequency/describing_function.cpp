@@ -1,9 +1,12 @@
 #include "limcycle/analysis/frequency/describing_function.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
 
+#include "limcycle/analysis/erased_element.hpp"
+#include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/frequency/fft_route.hpp"
 #include "limcycle/analysis/frequency/quadrature_route.hpp"
 
@@ -18,10 +21,9 @@ namespace {
   throw std::invalid_argument(text.str());
 }
 
-template <class E, class List>
-inline constexpr bool is_in = false;
-template <class E, class... Kinds>
-inline constexpr bool is_in<E, std::variant<Kinds...>> = (std::is_same_v<E, Kinds> || ...);
+bool is_friction(const Element<double>& element) {
+  return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
+}
 
 bool finite(const DescribingFunction& df) {
   bool all = std::isfinite(df.gain.real()) && std::isfinite(df.gain.imag()) && std::isfinite(df.mean) &&
@@ -44,31 +46,56 @@ DescribingFunction clean(DescribingFunction df, const DfOptions& options) {
   return empty;
 }
 
-template <template <class> class Kind>
-DescribingFunction compute(const Kind<double>& element, const DfPoint& point, const DfOptions& options) {
-  constexpr bool friction = is_in<Kind<double>, FrictionLaws::On<double>>;
-  const PrescribedMotion motion(point.amplitude, point.frequency, point.bias, friction);
-  const bool try_symmetric = element.odd() && point.bias == 0.0;
-  if (options.method == DfMethod::fft) {
-    DfOptions tighter = options;
-    tighter.accuracy = std::max(0.3 * options.accuracy, 1e-13);
-    const DescribingFunction other = QuadratureRoute<Kind>(element, motion, try_symmetric, tighter).refine();
-    if (other.status != Status::converged && other.status != Status::incomplete) return clean(other, options);
-    return clean(FftRoute<Kind>(element, motion, try_symmetric, friction ? point.bias : 0.0, options).refine(other),
-                 options);
-  }
-  DescribingFunction result = QuadratureRoute<Kind>(element, motion, try_symmetric, options).refine();
-  if constexpr (HasExactDescribingFunction<Kind<double>>) {
-    const auto exact = element.exact_describing_function(point.amplitude, point.frequency, point.bias);
-    if (options.method == DfMethod::automatic && exact && !result.harmonics.empty()) {
-      result.gain = *exact;
-      result.harmonics[0] = *exact * point.amplitude;
-      result.error = *exact == 0.0 ? 0.0 : 4e-15;
-      result.method = "closed-form";
+/// One element, ready for any point.
+class Table {
+ public:
+  explicit Table(const Element<double>& element)
+      : element_(element), erased_(element), friction_(is_friction(element)), odd_(erased_.odd()) {}
+
+  DescribingFunction at(const DfPoint& point, const DfOptions& options) const {
+    const PrescribedMotion motion(point.amplitude, point.frequency, point.bias, friction_);
+    const bool try_symmetric = odd_ && point.bias == 0.0;
+    if (undefined_under(element_, motion.least_speed(), motion.mean_rate())) {
+      DescribingFunction none;
+      none.status = Status::undefined;
+      return clean(std::move(none), options);
     }
+    if (options.method == DfMethod::fft) {
+      DfOptions tighter = options;
+      tighter.accuracy = std::max(0.3 * options.accuracy, 1e-13);
+      const DescribingFunction other = QuadratureRoute<ErasedElement>(erased_, motion, try_symmetric, tighter).refine();
+      if (other.status != Status::converged && other.status != Status::incomplete) return clean(other, options);
+      const double mean_rate = friction_ ? point.bias : 0.0;
+      return clean(FftRoute<ErasedElement>(erased_, motion, try_symmetric, mean_rate, options).refine(other), options);
+    }
+    DescribingFunction result = QuadratureRoute<ErasedElement>(erased_, motion, try_symmetric, options).refine();
+    if (options.method == DfMethod::automatic) take_closed_form(point, result);
+    return clean(std::move(result), options);
   }
-  return clean(std::move(result), options);
-}
+
+ private:
+  /// The exact gain where there is one; the other harmonics stay those of the quadrature.
+  void take_closed_form(const DfPoint& point, DescribingFunction& result) const {
+    const auto exact = std::visit(
+        [&]<class E>(const E& element) -> std::optional<std::complex<double>> {
+          if constexpr (HasExactDescribingFunction<E>)
+            return element.exact_describing_function(point.amplitude, point.frequency, point.bias);
+          return std::nullopt;
+        },
+        element_);
+    if (!exact || result.harmonics.empty()) return;
+    result.gain = *exact;
+    result.harmonics[0] = *exact * point.amplitude;
+    if (point.bias == 0.0)
+      result.dissipation = std::numbers::pi * point.amplitude * point.amplitude * exact->imag() + 0.0;
+    result.error = *exact == 0.0 ? 0.0 : 4e-15;
+    result.method = "closed-form";
+  }
+
+  const Element<double>& element_;
+  ErasedElement<double> erased_;
+  bool friction_, odd_;
+};
 
 }  // namespace
 
@@ -98,15 +125,12 @@ std::vector<DescribingFunction> describing_function_table(const Element<double>&
   for (const DfPoint& point : points) validate(point);
   std::vector<DescribingFunction> table;
   table.reserve(points.size());
-  std::visit(
-      [&](const auto& law) {
-        for (const DfPoint& point : points) {
-          if (stop && stop()) return;
-          table.push_back(compute(law, point, options));
-          if (progress) progress(table.size());
-        }
-      },
-      element);
+  const Table law(element);
+  for (const DfPoint& point : points) {
+    if (stop && stop()) break;
+    table.push_back(law.at(point, options));
+    if (progress) progress(table.size());
+  }
   return table;
 }
 

@@ -43,6 +43,9 @@ struct DescribingFunction {
   std::string_view method;            ///< "closed-form", "fft" or "quadrature"
   Status status = Status::converged;  ///< incomplete: the wanted accuracy was not reached, see error
   long evaluations = 0;               ///< of the element's equations
+
+  /// Whether the numbers above are numbers: any other status comes with zeros.
+  bool answered() const { return status == Status::converged || status == Status::incomplete; }
 };
 
 /// Throws std::invalid_argument quoting the option or coordinate that is out of range.

@@ -43,6 +43,10 @@ class ElementMarch {
   ElementState virgin() const {
     ElementState state{{}, std::vector<double>(n_, 0.0), std::vector<double>(n_ * n_, 0.0)};
     if constexpr (switches) state.mode = element_.start(motion_.at(0, 0.0).in, state.z);
+    // A slow drift would take its periods to carry every slider to its limit.
+    if constexpr (KnowsSliding<Kind<double>>)
+      if (const double V = motion_.mean_rate(); V != 0.0 && knows_sliding())
+        state.mode = element_.after_sliding({0.0, V, V < 0.0 ? -infinite : infinite}, state.z);
     return state;
   }
 
@@ -70,6 +74,10 @@ class ElementMarch {
   }
 
  private:
+  bool knows_sliding() const {
+    if constexpr (requires { element_.knows_sliding(); }) return element_.knows_sliding();
+    return true;
+  }
   static constexpr bool switches = HasModes<Kind<double>, double>;
   static constexpr std::size_t most_halvings = 24;
   static constexpr int most_events = 200;
@@ -86,10 +94,10 @@ class ElementMarch {
     double position, before;
   };
 
-  /// Slope of the rate by the phase.
-  double acceleration(int anchor, double at) const {
+  /// Slope by the phase of the slope of the rate.
+  double bend(int anchor, double at) const {
     const double small = 1e-6;
-    return (motion_.at(anchor, at + small).in.v - motion_.at(anchor, at - small).in.v) / (2.0 * small);
+    return (motion_.at(anchor, at + small).slope - motion_.at(anchor, at - small).slope) / (2.0 * small);
   }
 
   /// Output at the end of the last panel, before a jump that happens there.
@@ -131,14 +139,18 @@ class ElementMarch {
           bool arrived = false;
           if (!solve_to_switch(panel.anchor, from, at, event->guard, state, arrived)) return Status::stalled;
           accept(panel.anchor, from, at, state, visitor);
+          // A guard that is crossed slowly stays on a plateau of roundings.
+          arrived = arrived || at - from <= 1e-10 * (panel.to - panel.from);
           from = at;
-          if (!arrived) continue;
+          if (!arrived) {  // the longer panel was too rough to tell
+            if (!smallest) targets_.push_back(0.5 * (from + to));
+            continue;
+          }
         }
         if constexpr (wants_panels<Visitor>) {
           const ElementState before = state;
           change_mode(panel.anchor, from, event->guard, state);
-          visitor.switched(panel_.node_at(panel.anchor, from), acceleration(panel.anchor, from), event->guard, before,
-                           state);
+          visitor.switched(panel_.node_at(panel.anchor, from), bend(panel.anchor, from), event->guard, before, state);
         } else {
           change_mode(panel.anchor, from, event->guard, state);
         }
@@ -159,7 +171,9 @@ class ElementMarch {
       at = sooner;
     }
     const auto k = static_cast<std::size_t>(guard);
-    arrived = guard_at(anchor, from, at, state, k, 1.0) <= 1e-12 * std::abs(guard_at(anchor, from, at, state, k, 0.0));
+    // Within a rounding of the switch a guard may stay at its last positive value: that has arrived too.
+    arrived = at - from <= 1e-13 * std::abs(at) ||
+              guard_at(anchor, from, at, state, k, 1.0) <= 1e-12 * std::abs(guard_at(anchor, from, at, state, k, 0.0));
     return true;
   }
 
@@ -188,6 +202,7 @@ class ElementMarch {
   std::optional<Event> first_event(int anchor, double from, double to, const ElementState& state) {
     std::optional<Event> first;
     const auto count = static_cast<std::size_t>(element_.guards(state.mode));
+    if (count == 0) return first;
     guards_.resize(count);
     double before = 0.0;
     for (std::size_t i = 0; i < panel_.stages() && !first; ++i) {
@@ -238,8 +253,8 @@ class ElementMarch {
     return high;
   }
 
-  /// Enters the next mode. The sensitivity passes through a reset by differences of the reset itself, and through a
-  /// switch whose time depends on the state by the saltation term (rate after - rate before) dt/dz.
+  /// Enters the next mode. The sensitivity passes through a reset by the derivative R of the reset itself, and through
+  /// a switch whose time depends on the state by the saltation term (rate after - R rate before) dt/dz.
   void change_mode(int anchor, double at, int guard, ElementState& state) {
     const MotionNode node = panel_.node_at(anchor, at);
     if (!pending_) {
@@ -251,23 +266,27 @@ class ElementMarch {
     state.mode = element_.next(node.in, old, state.z, guard);
     if (n_ == 0) return;
     for (double& s : state.sensitivity) s = 0.0;
+    std::vector<double> rate_before(n_), carried(n_, 0.0);  // rate before the switch, and what the reset makes of it
+    element_.rate(node.in, old, z_before, rate_before);
+    const Input<Dual<1>> input{node.in.x, node.in.v, node.in.drive};
     for (std::size_t q = 0; q < n_; ++q) {
-      reset_ = z_before;
-      const double shift = element_.state_scale(static_cast<int>(q)) * 0x1p-20;
-      reset_[q] += shift;
-      element_.next(node.in, old, reset_, guard);
+      for (std::size_t p = 0; p < n_; ++p) reset_[p] = z_before[p];
+      reset_[q].d[0] = 1.0;
+      dual_.next(input, old, reset_, guard);
       for (std::size_t p = 0; p < n_; ++p) {
-        const double slope = (reset_[p] - state.z[p]) / shift;
+        const double slope = reset_[p].d[0];
         for (std::size_t r = 0; r < n_; ++r) state.sensitivity[p * n_ + r] += slope * s_before[q * n_ + r];
+        carried[p] += slope * rate_before[q];
       }
     }
-    add_saltation(anchor, at, guard, old, z_before, s_before, state);
+    add_saltation(anchor, at, guard, old, z_before, s_before, rate_before, carried, state);
   }
 
   void add_saltation(int anchor, double at, int guard, Mode old, const std::vector<double>& z_before,
-                     const std::vector<double>& s_before, ElementState& state) {
+                     const std::vector<double>& s_before, const std::vector<double>& rate_before,
+                     const std::vector<double>& carried, ElementState& state) {
     const MotionNode node = panel_.node_at(anchor, at);
-    std::vector<double> slope(n_), rate_before(n_), rate_after(n_);
+    std::vector<double> slope(n_), rate_after(n_);
     std::vector<Dual<1>> z(n_), g(static_cast<std::size_t>(element_.guards(old)));
     bool depends = false;
     for (std::size_t q = 0; q < n_; ++q) {
@@ -278,7 +297,6 @@ class ElementMarch {
       depends = depends || slope[q] != 0.0;
     }
     if (!depends) return;
-    element_.rate(node.in, old, z_before, rate_before);
     element_.rate(node.in, state.mode, state.z, rate_after);
     // Rate of the guard: by its own motion (a difference over a small phase) and by the state.
     const double small = 1e-7;
@@ -292,7 +310,7 @@ class ElementMarch {
     for (std::size_t r = 0; r < n_; ++r) {
       double advance = 0.0;
       for (std::size_t q = 0; q < n_; ++q) advance += slope[q] * s_before[q * n_ + r] / speed;
-      for (std::size_t p = 0; p < n_; ++p) state.sensitivity[p * n_ + r] += (rate_after[p] - rate_before[p]) * advance;
+      for (std::size_t p = 0; p < n_; ++p) state.sensitivity[p * n_ + r] += (rate_after[p] - carried[p]) * advance;
     }
   }
 
@@ -303,7 +321,9 @@ class ElementMarch {
   std::size_t n_;
   long evaluations_ = 0, failures_ = 0;
   std::optional<Pending> pending_;
-  std::vector<double> targets_, guards_, work_, reset_, peak_;
+  std::vector<double> targets_, guards_, work_;
+  std::vector<Dual<1>> reset_;
+  std::vector<double> peak_;
 };
 
 }  // namespace limcycle

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/frequency/quadrature_route.hpp"
 #include "limcycle/analysis/frequency/response_derivative.hpp"
 
@@ -41,14 +42,19 @@ HarmonicResponse collect(const HarmonicSums& sums, int orders, const PeriodicSta
 
 }  // namespace
 
-template <template <class> class Kind>
-HarmonicResponse ElementHarmonics::on_mesh(const Kind<double>& element, const PrescribedHarmonics& motion, int orders,
-                                           int level, double tolerance, Eigen::MatrixXd* derivative) {
+HarmonicResponse ElementHarmonics::on_mesh(const PrescribedHarmonics& motion, int orders, int level, double tolerance,
+                                           Eigen::MatrixXd* derivative) {
   MeshSettings settings = quadrature_meshes[static_cast<std::size_t>(level)];
   settings.harmonics = orders;
-  const PeriodMesh mesh = graded_mesh(motion, element.scales(), settings);
-  ElementMarch<Kind, PrescribedHarmonics> march(element, motion, settings.stages);
-  PeriodicStateSearch<Kind, PrescribedHarmonics> search(march, mesh, motion.half_wave() && element.odd(), tolerance);
+  if (undefined_under(element_.element(), motion.least_speed(), motion.mean_rate())) {
+    HarmonicResponse none;
+    none.status = Status::undefined;
+    return none;
+  }
+  const PeriodMesh mesh = graded_mesh(motion, element_.scales(), settings);
+  ElementMarch<ErasedElement, PrescribedHarmonics> march(element_, motion, settings.stages);
+  PeriodicStateSearch<ErasedElement, PrescribedHarmonics> search(march, mesh, motion.half_wave() && element_.odd(),
+                                                                 tolerance);
   RecordedSums recorded(orders);
   HarmonicSums plain(orders);
   const auto find = [&](const PeriodicState* guess) {
@@ -66,7 +72,8 @@ HarmonicResponse ElementHarmonics::on_mesh(const Kind<double>& element, const Pr
     for (int n = 1; n <= orders; n += motion.half_wave() ? 2 : 1) input_orders.push_back(n);
     if (!motion.half_wave()) output_orders.push_back(0);
     output_orders.insert(output_orders.end(), input_orders.begin(), input_orders.end());
-    ResponseDerivative<Kind> response(element, motion.frequency(), motion.mean_rate(), settings.stages, input_orders);
+    ResponseDerivative<ErasedElement> response(element_, motion.frequency(), motion.mean_rate(), settings.stages,
+                                               input_orders);
     *derivative = response.of(recorded.steps(), periodic.symmetric, output_orders);
   }
   guess_ = std::move(periodic);
@@ -75,14 +82,12 @@ HarmonicResponse ElementHarmonics::on_mesh(const Kind<double>& element, const Pr
 
 HarmonicResponse ElementHarmonics::operator()(const PrescribedHarmonics& motion, int orders, int level,
                                               double tolerance) {
-  return std::visit([&](const auto& element) { return on_mesh(element, motion, orders, level, tolerance, nullptr); },
-                    *element_);
+  return on_mesh(motion, orders, level, tolerance, nullptr);
 }
 
 HarmonicResponse ElementHarmonics::with_derivative(const PrescribedHarmonics& motion, int orders, int level,
                                                    double tolerance, Eigen::MatrixXd& derivative) {
-  return std::visit(
-      [&](const auto& element) { return on_mesh(element, motion, orders, level, tolerance, &derivative); }, *element_);
+  return on_mesh(motion, orders, level, tolerance, &derivative);
 }
 
 HarmonicResponse harmonic_response(const Element<double>& element, const Eigen::VectorXcd& input, double frequency,

@@ -1,9 +1,9 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "limcycle/analysis/erased_element.hpp"
 #include "limcycle/analysis/frequency/periodic_state.hpp"
 #include "limcycle/analysis/frequency/prescribed_harmonics.hpp"
-#include "limcycle/models/elements.hpp"
 
 namespace limcycle {
 
@@ -39,7 +39,7 @@ class ElementHarmonics {
  public:
   static constexpr int finest = 6;  ///< of the levels of quadrature_meshes
 
-  explicit ElementHarmonics(const Element<double>& element) : element_(&element) {}
+  explicit ElementHarmonics(const Element<double>& element) : element_(element) {}
 
   /// Orders 0..orders on mesh `level`, 0..finest, the periodic state to `tolerance` of its scale. Not half-wave
   /// symmetric although the motion is so: status no_cycle.
@@ -51,11 +51,10 @@ class ElementHarmonics {
                                    Eigen::MatrixXd& derivative);
 
  private:
-  template <template <class> class Kind>
-  HarmonicResponse on_mesh(const Kind<double>& element, const PrescribedHarmonics& motion, int orders, int level,
-                           double tolerance, Eigen::MatrixXd* derivative);
+  HarmonicResponse on_mesh(const PrescribedHarmonics& motion, int orders, int level, double tolerance,
+                           Eigen::MatrixXd* derivative);
 
-  const Element<double>* element_;
+  ErasedElement<double> element_;
   PeriodicState guess_;
   bool has_guess_ = false;
 };

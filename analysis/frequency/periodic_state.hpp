@@ -65,8 +65,11 @@ class PeriodicStateSearch {
     Status status = march_.march(mesh_.first, state, visitor);
     if (half) {
       state.mode = march_.element().mirror(state.mode);
-      for (double& z : state.z) z = -z;
-      for (double& s : state.sensitivity) s = -s;
+      for (std::size_t p = 0; p < n_; ++p) {
+        if (is_even_state(march_.element(), static_cast<int>(p))) continue;
+        state.z[p] = -state.z[p];
+        for (std::size_t q = 0; q < n_; ++q) state.sensitivity[p * n_ + q] = -state.sensitivity[p * n_ + q];
+      }
     } else if (status == Status::converged) {
       status = march_.march(mesh_.second, state, visitor);
     }

@@ -179,10 +179,11 @@ MotionNode PrescribedHarmonics::at(int anchor, double local) const {
   // Sine and versine (1 - cosine) of the step from one order to the next.
   const double step_sine = stride_ == 1 ? sine : 2.0 * sine * (1.0 - versine);
   const double step_versine = stride_ == 1 ? versine : 2.0 * sine * sine;
-  double s = sine, v = versine, x = 0.0, rate = 0.0;
+  double s = sine, v = versine, x = 0.0, rate = 0.0, slope = 0.0;
   for (std::size_t i = 0; i < order_.size(); ++i) {
     x += s * a.re[i] - v * a.im[i];
     rate -= order_[i] * (s * a.im[i] + v * a.re[i]);
+    slope -= order_[i] * order_[i] * (a.im[i] + s * a.re[i] - v * a.im[i]);
     const double next = s - s * step_versine + step_sine - v * step_sine;
     v = v + step_versine - v * step_versine + s * step_sine;
     s = next;
@@ -193,7 +194,14 @@ MotionNode PrescribedHarmonics::at(int anchor, double local) const {
   node.in.x = a.level + x + (drift_ == 0.0 ? 0.0 : drift_ * (a.phase + local) / frequency_);
   node.in.v = a.rate + frequency_ * rate;
   node.in.drive = std::copysign(infinite, node.in.v);
+  node.slope = frequency_ * slope;
   return node;
+}
+
+double PrescribedHarmonics::least_speed() const {
+  double least = infinite;
+  for (int i = 1; i <= stops(); ++i) least = std::min(least, std::abs(rate(i)));
+  return least;
 }
 
 double PrescribedHarmonics::layer(int anchor, const Scales& scales) const {

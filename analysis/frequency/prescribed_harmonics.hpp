@@ -34,6 +34,7 @@ class PrescribedHarmonics {
   int stops() const { return static_cast<int>(anchors_.size()) - 2; }
   double phase(int anchor) const { return of(anchor).phase; }
   double rate(int anchor) const { return of(anchor).rate; }  ///< exactly 0 at a reversal
+  double least_speed() const;                                ///< 0 if the motion reverses
   double origin() const { return anchors_[1].phase; }
   double position(int anchor, double local) const { return of(anchor).phase + local - origin(); }
   /// Phase over which the motion leaves the neighbourhood of the anchor in which an element with these scales changes.

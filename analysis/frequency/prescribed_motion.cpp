@@ -81,6 +81,7 @@ MotionNode PrescribedMotion::at(int anchor, double local) const {
   node.in.v = a.rate - 2.0 * amplitude_ * frequency_ * half_sine * (a.sine * half_cosine + a.cosine * half_sine);
   node.in.x = offset_ + amplitude_ * node.sine + (drift_ == 0.0 ? 0.0 : drift_ * (a.phase + local) / frequency_);
   node.in.drive = std::copysign(infinite, node.in.v);
+  node.slope = -amplitude_ * frequency_ * node.sine;
   return node;
 }
 

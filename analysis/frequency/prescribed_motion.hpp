@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <vector>
 
@@ -14,10 +16,12 @@ struct Panel {
   bool sample_at_end = false;   ///< a uniform sample is taken at `to`
 };
 
-/// What moves at one phase: signal and rate, sine and cosine of the phase.
+/// What moves at one phase: signal and rate, sine and cosine of the phase. The drive in `in` is infinite with the sign
+/// of the rate (see drive_on).
 struct MotionNode {
   Input<double> in;
   double sine = 0.0, cosine = 0.0;
+  double slope = 0.0;  ///< of the rate, by the phase: has the sign of the acceleration
 };
 
 /// A periodic motion as the march through it needs it: what moves at a phase given by its distance from an anchor
@@ -44,7 +48,9 @@ class PrescribedMotion {
 
   bool reverses() const { return reverses_; }
   double amplitude() const { return amplitude_; }
+  double least_speed() const { return std::max(0.0, std::abs(drift_) - amplitude_ * frequency_); }
   double frequency() const { return frequency_; }
+  double mean_rate() const { return drift_; }
   double origin() const { return anchors_[1].phase; }      ///< phase at which a period begins
   double first_length() const { return first_length_; }    ///< from anchor 1 to 2; a whole period without reversals
   double second_length() const { return second_length_; }  ///< from anchor 2 to 3; 0 without reversals

@@ -19,7 +19,7 @@ class RecordedSums : public HarmonicSums {
     std::vector<MotionNode> nodes;  ///< stages of the panel; the instant of the switch
     std::vector<double> z;          ///< at the stages, one after the other; before the switch
     int guard = 0;
-    double acceleration = 0.0;  ///< slope of the input's rate by the phase, at the switch
+    double bend = 0.0;  ///< second derivative of the input's rate by the phase, at the switch
     Mode mode_after;
     std::vector<double> z_after;
   };
@@ -41,9 +41,8 @@ class RecordedSums : public HarmonicSums {
     }
     steps_.push_back(std::move(step));
   }
-  void switched(const MotionNode& node, double acceleration, int guard, const ElementState& before,
-                const ElementState& after) {
-    steps_.push_back({true, before.mode, 0.0, {node}, before.z, guard, acceleration, after.mode, after.z});
+  void switched(const MotionNode& node, double bend, int guard, const ElementState& before, const ElementState& after) {
+    steps_.push_back({true, before.mode, 0.0, {node}, before.z, guard, bend, after.mode, after.z});
   }
 
   const std::vector<Step>& steps() const { return steps_; }

@@ -79,6 +79,19 @@ class ResponseDerivative {
     dv(columns_ - 1) = 1.0;
   }
 
+  /// Derivative of the slope of the rate by the phase.
+  void bend(const MotionNode& node, Row& da) const {
+    Row dx, dv;
+    move(node, dx, dv);
+    da.setZero(columns_ + n_);
+    for (std::size_t i = 0; i < orders_.size(); ++i) {
+      const auto at = 2 * static_cast<Index>(i);
+      da(at) = orders_[i] * dv(at + 1);
+      da(at + 1) = -orders_[i] * dv(at);
+    }
+    da(columns_ - 3) = node.slope / frequency_;
+  }
+
   /// Values times `weight` in the next column of trigonometry_.
   void weigh(const MotionNode& node, double weight, const std::vector<int>& output_orders) {
     double s = 0.0, c = 1.0;
@@ -179,6 +192,14 @@ class ResponseDerivative {
     }
   }
 
+  bool depends_on_drive(const RecordedSums::Step& step, std::vector<Dual<1>>& guards) const {
+    const Input<double>& in = step.nodes.front().in;
+    Input<Dual<1>> moved{in.x, in.v, in.drive};
+    moved.drive.d[0] = 1.0;
+    dual_.guard(moved, step.mode, std::vector<Dual<1>>(step.z.begin(), step.z.end()), guards);
+    return guards[static_cast<std::size_t>(step.guard)].d[0] != 0.0;
+  }
+
   /// Over a switch: it moves in phase, and with it the jump of the output and of the state's course.
   void cross(const RecordedSums::Step& step, const std::vector<int>& output_orders) {
     if constexpr (HasModes<Kind<double>, double>) {
@@ -194,11 +215,16 @@ class ResponseDerivative {
       std::vector<double> before(n), after(n);
       element_.rate(node.in, step.mode, step.z, before);
       element_.rate(node.in, step.mode_after, step.z_after, after);
-      const double by_x = node.in.v / frequency_, by_v = step.acceleration;
+      const double by_x = node.in.v / frequency_, by_v = node.slope;
       double speed = slope.x * by_x + slope.v * by_v;
       Row shift = -(slope.x * dx + slope.v * dv);
       for (Index p = 0; p < n_; ++p) speed += slope.z(p) * before[static_cast<std::size_t>(p)] / frequency_;
       if (n_ > 0) shift -= slope.z * states_;
+      if (depends_on_drive(step, guards)) {  // on its sign: the switch is where the acceleration is zero
+        bend(node, shift);
+        shift = -shift;
+        speed = step.bend;
+      }
       if (std::isfinite(speed) && speed != 0.0)
         shift /= speed;
       else

@@ -16,7 +16,10 @@ struct SteadySliding {
   SteadySliding(const Kind<double>& law, double V) : z(static_cast<std::size_t>(law.states()), 0.0) {
     const Input<double> in{0.0, V, V < 0.0 ? -infinite : infinite};
     Mode mode{};
-    if constexpr (HasModes<Kind<double>, double>) mode = law.start(in, z);
+    if constexpr (KnowsSliding<Kind<double>>)
+      mode = law.after_sliding(in, z);
+    else if constexpr (HasModes<Kind<double>, double>)
+      mode = law.start(in, z);
     std::vector<double> rate(z.size()), up(z.size()), shifted(z.size());
     for (int i = 0; i < 60 && !z.empty(); ++i) {
       law.rate(in, mode, z, rate);

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace limcycle {
 namespace {
@@ -54,6 +56,16 @@ LoopField::LoopField(const Loop& loop)
                       Sparse(port.c_v), Sparse(loop.B.col(static_cast<Index>(i)).transpose()).entries});
     if (port.selection_of) has_follower_[*port.selection_of] = true;
   }
+  for (std::size_t i = 0; i < ne_; ++i) {
+    if (!std::visit([]<class E>(const E&) { return NeedsDrive<E>; }, loop.elements[i])) continue;
+    if (i + 1 != ne_)
+      throw std::invalid_argument(loop.ports[i].path + " needs the applied force: it can only be friction");
+    asks_drive_ = i;
+    const auto column = loop.B.col(static_cast<Index>(i));
+    const double reach = (loop.ports[i].C_v * column).value();
+    const double size = (loop.ports[i].C_v.cwiseAbs() * column.cwiseAbs()).value();
+    drive_reach_ = reach < -1e-12 * size ? reach : 0.0;
+  }
   dual_z_.resize(most);
   dual_dz_.resize(most);
   dX_.resize(n_);
@@ -96,6 +108,13 @@ double LoopField::drive_of(std::size_t i) const {
   const double size = (row.cwiseAbs() * column.cwiseAbs()).value();
   if (!(reach < -1e-12 * size)) return without >= 0.0 ? infinite : -infinite;
   return -without / reach;
+}
+
+/// The same at the turn of element i, when dX_ holds everything else.
+double LoopField::drive_at_turn(std::size_t i) const {
+  const double without = ports_[i].C_v.dot(dX_.data()) + ports_[i].c_v.dot(ext_rate_.data());
+  if (drive_reach_ == 0.0) return without >= 0.0 ? infinite : -infinite;
+  return -without / drive_reach_;
 }
 
 /// The same for a friction law whose selection a compensation shares: what holds the body is both together. Friction
@@ -169,6 +188,7 @@ void LoopField::sweep(const State& x) {
       w_[i] = follow(i);
     } else if (std::ranges::find(holding_, i) == holding_.end()) {
       const std::span<const double> z(x.data() + first_state_[i], x.data() + x.size());
+      if (i == asks_drive_ && !coupled_) in.drive = drive_at_turn(i);
       w_[i] = std::visit([&](const auto& e) { return e.output(in, modes_[i], z); }, loop_->elements[i]);
     }
     if (w_[i] != 0.0) add_output(i, w_[i]);
@@ -252,6 +272,8 @@ void LoopField::evaluate(const State& x, double t) {
     followed_ = followed_ || has_follower_[i];
     w_[i] = 0.0;
   }
+  coupled_ = asks_drive_ && drive_reach_ != 0.0 && !holding_.empty() && held(*asks_drive_) == Held::nothing;
+  if (coupled_) return solve_with_drive(x);
   if (!followed_) sweep(x);
   if (!holding_.empty()) solve_held(x);
 }
@@ -263,9 +285,30 @@ void LoopField::find_inputs(const State& x) {
     inputs_[i].v = port.C_v.dot(x.data()) + port.D_v.dot(w_.data()) + port.c_v.dot(ext_.data());
     if (has_follower_[i])  // friction that is more than compensated holds nothing, even where the forces would balance
       inputs_[i].drive = drive_with_follower(i, x);
-    else if (held(i) == Held::nothing)
+    else if (held(i) == Held::nothing && i != asks_drive_)  // which has it from its turn
       inputs_[i].drive = drive_of(i);
   }
+}
+
+/// Rates of the held signals, and what the drive is found to be less what it was taken for, for given holding outputs
+/// and drive: affine in both.
+Eigen::VectorXd LoopField::held_and_drive(const State& x, const Eigen::VectorXd& unknowns) {
+  const Index m = std::ssize(holding_);
+  for (Index k = 0; k < m; ++k) w_[holding_[static_cast<std::size_t>(k)]] = unknowns(k);
+  inputs_[*asks_drive_].drive = unknowns(m);
+  sweep(x);
+  Eigen::VectorXd residual(m + 1);
+  residual << hold_residual(), drive_of(*asks_drive_) - unknowns(m);
+  return residual;
+}
+
+/// Holding outputs and drive together, by superposition.
+void LoopField::solve_with_drive(const State& x) {
+  const Index m = std::ssize(holding_) + 1;
+  const Eigen::VectorXd base = held_and_drive(x, Eigen::VectorXd::Zero(m));
+  reach_.resize(m, m);
+  for (Index k = 0; k < m; ++k) reach_.col(k) = held_and_drive(x, Eigen::VectorXd::Unit(m, k)) - base;
+  held_and_drive(x, reach_.fullPivLu().solve(-base));
 }
 
 void LoopField::rate(const State& x, State& dx, double t) {

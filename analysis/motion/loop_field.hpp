@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,8 +22,13 @@ using ExternalSignals = std::function<void(double t, External& value, External& 
 /// holding elements are solved for together, so that the held signals have zero rate. A friction compensation that
 /// shares the selection of a stuck law (Port::selection_of) puts out its level times the same element of Sgn(0), so it
 /// takes part in that solution.
+///
+/// A law that needs the drive while it holds nothing (NeedsDrive: it comes last) gets it at its turn, when the rates
+/// hold everything else. Beside a holding element both are solved for together: the loop is affine in holding outputs
+/// and drive.
 class LoopField {
  public:
+  /// Throws std::invalid_argument if an element needs the drive and is not the last.
   explicit LoopField(const Loop& loop);
 
   const Loop& loop() const { return *loop_; }
@@ -40,7 +46,8 @@ class LoopField {
   /// Number of guards in the present modes, and their values.
   std::size_t guard_count() const;
   void guards(const State& x, double t, std::vector<double>& g);
-  /// Performs the switch of the guard that fired: new mode, reset states, a held signal put to exactly zero.
+  /// Performs the switch of the guard that fired: new mode, reset states, a held signal put to exactly zero. A law that
+  /// arrests the body (see arrests) has its velocity taken out along the direction of the force first.
   void fire(State& x, double t, std::size_t guard);
   /// The same, and the saltation matrix S = dh + (f+ - dh f-) n/(n f-) that carries a small deviation of the state over
   /// the switch: n the gradient of the guard, f- and f+ the rates before and after, dh the derivative of the reset (di
@@ -67,6 +74,11 @@ class LoopField {
   void evaluate(const State& x, double t);
   void sweep(const State& x);
   void solve_held(const State& x);
+  void solve_with_drive(const State& x);
+  Eigen::VectorXd held_and_drive(const State& x, const Eigen::VectorXd& unknowns);
+  double drive_at_turn(std::size_t i) const;
+  void arrest(State& x, std::size_t i);
+  bool arrests_at(std::size_t i, std::size_t guard) const;
   Eigen::VectorXd hold_residual() const;
   Eigen::VectorXd outputs_by_superposition(const State& x);
   double follow(std::size_t i) const;
@@ -81,7 +93,9 @@ class LoopField {
   bool has_own_guards(std::size_t i) const { return !loop_->ports[i].selection_of; }
   void input_gradients(std::size_t i);
   void element_gradient(std::size_t i, const State& x);
+  void drive_gradient();
   void held_gradient(const State& x);
+  void held_and_drive_gradient(const State& x);
   void output_gradients(const State& x);
   Eigen::RowVectorXd guard_gradient(const State& x, std::size_t i, std::size_t guard);
   Eigen::MatrixXd reset_gradient(const State& x, std::size_t i, std::size_t guard);
@@ -117,11 +131,15 @@ class LoopField {
   External ext_, ext_rate_;
   std::vector<double> w_, dX_, E_ext_;
   std::vector<std::size_t> holding_;
-  bool followed_ = false;  ///< one of the holding elements has a follower
+  bool followed_ = false;                  ///< one of the holding elements has a follower
+  std::optional<std::size_t> asks_drive_;  ///< the element that needs the drive
+  double drive_reach_ = 0.0;               ///< of its output on the rate of its velocity; < 0, or 0 if it has none
+  bool coupled_ = false;                   ///< its drive is solved for together with the holding outputs
+  Eigen::RowVectorXd drive_gradient_;
   std::vector<DualS> dual_z_, dual_dz_, dual_g_;
   Eigen::RowVectorXd input_gradient_, rate_gradient_;
   std::vector<Input<double>> inputs_;
-  Eigen::MatrixXd reach_;  ///< rates of the held signals per unit of the holding outputs
+  Eigen::MatrixXd reach_;  ///< rates of the held signals per unit of the holding outputs; of held_and_drive()
   /// Gradients over the state, and over time in the last column: of the outputs, and of the element states' rates.
   Eigen::MatrixXd w_gradient_, z_gradient_;
 };

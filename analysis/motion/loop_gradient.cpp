@@ -28,34 +28,48 @@ void LoopField::input_gradients(std::size_t i) {
   rate_gradient_(last) += port.c_v.dot(ext_rate_.transpose());
 }
 
-/// Gradients of output and state rates of element i, by dual numbers in (x, v, z).
+/// Gradient of the drive at its element's turn: w_gradient_ holds everything else.
+void LoopField::drive_gradient() {
+  const auto i = static_cast<Index>(*asks_drive_), n = static_cast<Index>(n_), last = static_cast<Index>(size_);
+  const Port& port = loop_->ports[*asks_drive_];
+  drive_gradient_.setZero(last + 1);
+  if (drive_reach_ == 0.0) return;
+  for (Index k = 0; k < i; ++k) drive_gradient_ += (port.C_v * loop_->B.col(k)).value() * w_gradient_.row(k);
+  drive_gradient_.head(n) += port.C_v * loop_->A;
+  drive_gradient_(last) += (port.C_v * loop_->E * ext_rate_).value();
+  drive_gradient_ /= -drive_reach_;
+}
+
+/// Gradients of output and state rates of element i, by dual numbers in (x, v, z) and the drive where it needs that.
 void LoopField::element_gradient(std::size_t i, const State& x) {
   input_gradients(i);
   const auto row = static_cast<Index>(i), n = static_cast<Index>(n_), own = static_cast<Index>(first_state_[i]);
-  const bool solved = held(i) != Held::nothing || loop_->ports[i].selection_of;
-  const auto spread = [&](auto&& target, int seed, double factor) {
+  const bool solved = held(i) != Held::nothing || loop_->ports[i].selection_of, driven = i == asks_drive_ && !solved;
+  const auto spread = [&](auto&& target, int seed, int nz, double factor) {
     if (seed == 0) target += factor * input_gradient_;
     if (seed == 1) target += factor * rate_gradient_;
-    if (seed >= 2) target(own + seed - 2) += factor;
+    if (seed >= 2 && seed < 2 + nz) target(own + seed - 2) += factor;
+    if (seed == 2 + nz && factor != 0.0) target += factor * drive_gradient_;
   };
   if (!solved) w_gradient_.row(row).setZero();
   std::visit(
       [&](const auto& e) {
         const int nz = e.states();
         const std::span<DualS> z(dual_z_.data(), static_cast<std::size_t>(nz)), dz(dual_dz_.data(), z.size());
+        const int seeds = 2 + nz + (driven ? 1 : 0);
         if (nz > 0) z_gradient_.middleRows(own - n, nz).setZero();
-        for (int first = 0; first < 2 + nz; first += 4) {  // four seeds at a time
+        for (int first = 0; first < seeds; first += 4) {  // four seeds at a time
           const Input<DualS> in{seeded<DualS>(inputs_[i].x, 0, first), seeded<DualS>(inputs_[i].v, 1, first),
-                                DualS(inputs_[i].drive)};
+                                driven ? seeded<DualS>(inputs_[i].drive, 2 + nz, first) : DualS(inputs_[i].drive)};
           for (std::size_t k = 0; k < z.size(); ++k)
             z[k] = seeded<DualS>(x[first_state_[i] + k], 2 + static_cast<int>(k), first);
           const DualS out = solved ? DualS(0.0) : e.output(in, modes_[i], z);
           if (nz > 0) e.rate(in, modes_[i], z, dz);
-          for (int k = first; k < std::min(2 + nz, first + 4); ++k) {
+          for (int k = first; k < std::min(seeds, first + 4); ++k) {
             const auto s = static_cast<std::size_t>(k - first);
-            if (!solved) spread(w_gradient_.row(row), k, out.d[s]);
+            if (!solved) spread(w_gradient_.row(row), k, nz, out.d[s]);
             for (std::size_t j = 0; j < z.size(); ++j)
-              spread(z_gradient_.row(own - n + static_cast<Index>(j)), k, dz[j].d[s]);
+              spread(z_gradient_.row(own - n + static_cast<Index>(j)), k, nz, dz[j].d[s]);
           }
         }
       },
@@ -88,12 +102,38 @@ void LoopField::held_gradient(const State& x) {
   }
 }
 
+/// The same linear system as solve_with_drive(). On entry the holding outputs and the drive count as constant.
+void LoopField::held_and_drive_gradient(const State& x) {
+  const Index m = std::ssize(holding_), n = static_cast<Index>(n_);
+  Eigen::MatrixXd rhs(m + 1, static_cast<Index>(size_) + 1);
+  Eigen::MatrixXd free = loop_->B * w_gradient_;
+  free.leftCols(n) += loop_->A;
+  free.rightCols(1) += loop_->E * ext_rate_;
+  Eigen::RowVectorXd row;
+  for (Index k = 0; k < m; ++k) {
+    hold_row(holding_[static_cast<std::size_t>(k)], row);
+    rhs.row(k) = -row * free;
+  }
+  drive_gradient();
+  rhs.row(m) = -drive_gradient_;
+  const Eigen::MatrixXd unknowns = reach_.fullPivLu().solve(rhs);
+  for (Index k = 0; k < m; ++k)
+    w_gradient_.row(static_cast<Index>(holding_[static_cast<std::size_t>(k)])) = unknowns.row(k);
+  drive_gradient_ = unknowns.row(m);
+  element_gradient(*asks_drive_, x);
+}
+
 /// Gradients of all outputs and of the element states' rates at the last evaluated point.
 void LoopField::output_gradients(const State& x) {
   const auto size = static_cast<Index>(size_), n = static_cast<Index>(n_);
   w_gradient_.setZero(static_cast<Index>(ne_), size + 1);
   z_gradient_.setZero(size - n, size + 1);
-  for (std::size_t i = 0; i < ne_; ++i) element_gradient(i, x);
+  drive_gradient_.setZero(size + 1);
+  for (std::size_t i = 0; i < ne_; ++i) {
+    if (i == asks_drive_ && !coupled_) drive_gradient();
+    element_gradient(i, x);
+  }
+  if (coupled_) return held_and_drive_gradient(x);
   held_gradient(x);
 }
 
@@ -115,8 +155,8 @@ void LoopField::jacobian(const State& x, Eigen::MatrixXd& J, double t, State& df
   time.tail(size - n) = z_gradient_.col(size);
 }
 
-/// Gradient of guard `guard` of element i over the state, after output_gradients(). A guard may ask for the drive only
-/// while the element holds (then the drive is the output).
+/// Gradient of guard `guard` of element i over the state, after output_gradients(). A guard may ask for the drive
+/// while the element holds (then the drive is the output), and where the element needs it anyway.
 Eigen::RowVectorXd LoopField::guard_gradient(const State& x, std::size_t i, std::size_t guard) {
   input_gradients(i);
   const auto own = static_cast<Index>(first_state_[i]);
@@ -137,7 +177,12 @@ Eigen::RowVectorXd LoopField::guard_gradient(const State& x, std::size_t i, std:
               const double slope = dual_g_[guard].d[static_cast<std::size_t>(k - first)];
               if (k == 0) gradient += slope * input_gradient_;
               if (k == 1) gradient += slope * rate_gradient_;
-              if (k == 2 && slope != 0.0) gradient += slope * w_gradient_.row(static_cast<Index>(i));
+              if (k == 2 && slope != 0.0) {
+                if (i == asks_drive_ && held(i) == Held::nothing)
+                  gradient += slope * drive_gradient_;
+                else
+                  gradient += slope * w_gradient_.row(static_cast<Index>(i));
+              }
               if (k >= 3) gradient(own + k - 3) += slope;
             }
           }

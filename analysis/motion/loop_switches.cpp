@@ -63,10 +63,26 @@ std::size_t LoopField::first_guard_of(std::size_t i, std::size_t guard) const {
   return guard - first;
 }
 
+bool LoopField::arrests_at(std::size_t i, std::size_t guard) const {
+  return std::visit([&](const auto& e) { return arrests(e, modes_[i], static_cast<int>(guard)); }, loop_->elements[i]);
+}
+
+/// Takes the velocity of element i out of the state, along the direction in which its force acts.
+void LoopField::arrest(State& x, std::size_t i) {
+  const Port& port = loop_->ports[i];
+  const Eigen::VectorXd column = loop_->B.col(static_cast<Index>(i));
+  Eigen::Map<Eigen::VectorXd>(x.data(), column.size()) -= column * (inputs_[i].v / (port.C_v * column).value());
+}
+
 void LoopField::fire(State& x, double t, std::size_t guard) {
   const std::size_t i = owner(guard), k = first_guard_of(i, guard);
   evaluate(x, t);
   find_inputs(x);
+  if (arrests_at(i, k)) {
+    arrest(x, i);
+    evaluate(x, t);
+    find_inputs(x);
+  }
   std::visit(
       [&]<class E>(const E& e) {
         if constexpr (HasModes<E, double>) {
@@ -75,11 +91,8 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
         }
       },
       loop_->elements[i]);
-  if (held(i) != Held::rate) return;
-  // The located v is zero to the accuracy of the location; take what is left out along the direction the force acts in.
-  const Port& port = loop_->ports[i];
-  const Eigen::VectorXd column = loop_->B.col(static_cast<Index>(i));
-  Eigen::Map<Eigen::VectorXd>(x.data(), column.size()) -= column * (inputs_[i].v / (port.C_v * column).value());
+  // The located v is zero to the accuracy of the location: take what is left out.
+  if (held(i) == Held::rate) arrest(x, i);
 }
 
 bool LoopField::fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation) {
@@ -90,19 +103,21 @@ bool LoopField::fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& sal
   output_gradients(x);
   find_inputs(x);
   const Eigen::RowVectorXd n = guard_gradient(x, i, k);
-  const Eigen::MatrixXd reset = reset_gradient(x, i, k);
+  Eigen::MatrixXd reset = reset_gradient(x, i, k);
+  const Port& port = loop_->ports[i];
+  const Eigen::VectorXd column = loop_->B.col(static_cast<Index>(i));
+  const auto stop = [&](Eigen::MatrixXd& gradient) {  // derivative of arrest()
+    const Eigen::MatrixXd velocity = port.C_v * gradient.topRows(column.size());
+    gradient.topRows(column.size()) -= column * velocity / (port.C_v * column).value();
+  };
+  if (arrests_at(i, k)) stop(reset);
   fire(x, t, guard);
   rate(x, after, t);
   const Eigen::Map<const Eigen::VectorXd> f_minus(before.data(), size), f_plus(after.data(), size);
   const double crossing = n * f_minus, speed = n.cwiseAbs() * f_minus.cwiseAbs();
   if (!(std::abs(crossing) > 1e-12 * speed)) return false;
   saltation = reset + (f_plus - reset * f_minus) * n / crossing;
-  if (held(i) == Held::rate) {  // deviations of the held velocity end here, to the last bit
-    const Port& port = loop_->ports[i];
-    const Eigen::VectorXd column = loop_->B.col(static_cast<Index>(i));
-    const Eigen::MatrixXd velocity = port.C_v * saltation.topRows(column.size());
-    saltation.topRows(column.size()) -= column * velocity / (port.C_v * column).value();
-  }
+  if (held(i) == Held::rate) stop(saltation);  // deviations of the held velocity end here, to the last bit
   return true;
 }
 

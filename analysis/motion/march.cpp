@@ -71,7 +71,12 @@ std::string_view to_string(StepperKind kind) { return names[static_cast<std::siz
 StepperKind choose_stepper(const Loop& loop, double rtol, bool driven) {
   if (!driven && AffineFlow::applies(loop)) return StepperKind::exact;
   const bool bristle = std::ranges::any_of(loop.elements, [](const auto& element) {
-    return std::visit([](const auto& e) { return e.states() > 0 && std::isfinite(e.scales().displacement); }, element);
+    return std::visit(
+        [](const auto& e) {
+          const bool band = drive_band(e) > 0.0 && NeedsDrive<std::decay_t<decltype(e)>>;  // a stiff layer at rest
+          return band || (e.states() > 0 && std::isfinite(e.scales().displacement));
+        },
+        element);
   });
   const auto moduli = pole_moduli(loop);
   if (bristle || (!moduli.empty() && moduli.back() > 200.0 * moduli.front())) return StepperKind::rodas5p;

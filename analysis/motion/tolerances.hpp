@@ -6,8 +6,8 @@
 
 namespace limcycle {
 
-/// Moduli of the poles of the linear part without the elements, rad/s, slowest first; without those at the origin (less
-/// than 1e-9 of the largest). Without its delay, if there is one. Cost O(n^3).
+/// Moduli of the poles of the linear part without the elements (but with the tangent of gravity), rad/s, slowest first;
+/// without those at the origin (less than 1e-9 of the largest). Without its delay, if there is one. Cost O(n^3).
 std::vector<double> pole_moduli(const Loop& loop);
 
 /// Typical size of every state of the loop (linear states, then element states): the largest response of the linear

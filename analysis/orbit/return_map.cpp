@@ -23,9 +23,8 @@ Eigen::VectorXd Reflection::signs(const Loop& loop) {
   std::vector<double> sign(static_cast<std::size_t>(loop.states()), -1.0);
   for (const auto& element : loop.elements)
     std::visit(
-        [&]<class E>(const E& e) {
-          constexpr bool even = requires { requires E::even_states; };
-          sign.insert(sign.end(), static_cast<std::size_t>(e.states()), even ? 1.0 : -1.0);
+        [&](const auto& e) {
+          for (int i = 0; i < e.states(); ++i) sign.push_back(is_even_state(e, i) ? 1.0 : -1.0);
         },
         element);
   return Eigen::Map<const Eigen::VectorXd>(sign.data(), std::ssize(sign));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
 
 namespace limcycle {
@@ -31,6 +32,8 @@ std::optional<std::string> CompositeBalance::not_applicable(const Loop& loop) {
   if (loop.elements.size() > 1)
     return "the composite describing function takes mass and friction as the one nonlinear element; this loop has " +
            loop.ports.front().path + " as well";
+  if (undefined_under(loop.elements.back(), infinite, 1.0))
+    return "the composite describing function knows no place of rest; this friction law holds a spring to one";
   const double mass = mass_of(loop, loop.elements.size() - 1);
   if (!(mass > 0.0 && std::isfinite(mass)))
     return "the friction force does not act on a mass of its own (C_v B is not negative)";

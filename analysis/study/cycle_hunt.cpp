@@ -3,13 +3,15 @@
 #include <algorithm>
 
 #include "limcycle/analysis/orbit/edge.hpp"
+#include "limcycle/analysis/study/output_per_input.hpp"
 #include "limcycle/analysis/study/verdicts.hpp"
 
 namespace limcycle {
 
 CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box) : loop_(loop) {
-  settle_.amplitude_floor = box.amplitude_min;
-  settle_.amplitude_ceiling = 1e4 * box.amplitude_max;
+  const double unit = output_per_input(loop);
+  settle_.amplitude_floor = unit * box.amplitude_min;
+  settle_.amplitude_ceiling = 1e4 * unit * box.amplitude_max;
   settle_.shooting.rtol = std::clamp(3e-4 * options.accuracy, 1e-13, 1e-9);
   settle_.shooting.tolerance = 30.0 * settle_.shooting.rtol;
   settle_.stop = settle_.shooting.stop = options.stop;

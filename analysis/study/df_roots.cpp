@@ -54,8 +54,9 @@ class Search {
   RootSearch search(SearchBox box) {
     RootSearchOptions options;
     options.interrupted = stop_;
-    if (balance_.main_element() > 0) options.max_evaluations = 20000;  // the other element's kink crosses the whole box
-    for (const auto& pole : loop_.A.eigenvalues())
+    // The other element's kink crosses the whole box; of gravity it is a ridge of the free swing, on which f is small.
+    if (balance_.main_element() > 0) options.max_evaluations = 20000;
+    for (const auto& pole : loop_.tangent().eigenvalues())
       if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)
         options.frequency_hints.push_back(std::abs(pole));
     // The phase of a delay must not turn by more than about 0.7 between two samples.

@@ -35,6 +35,10 @@ std::optional<Complex> exact_gain(const Element<double>& element, double A, doub
 
 bool is_friction(const Loop& loop, std::size_t i) { return loop.ports[i].rubs; }
 
+bool pulls_back(const Loop& loop, std::size_t i) {
+  return std::visit([]<class E>(const E&) { return PullsBack<E>; }, loop.elements[i]);
+}
+
 }  // namespace
 
 /// Sorts all elements but the last into those beside it and the rest.
@@ -66,7 +70,7 @@ std::optional<std::string> LoopBalance::not_applicable(const Loop& loop) {
     return "the plain describing function is for one nonlinear element; this loop has others with inputs of their own";
   if (symmetry(loop)) return std::nullopt;
   for (const auto& [index, factor] : sorted.beside)
-    if (loop.ports[index].path != "loop.controller.friction_compensation")
+    if (loop.ports[index].path != "loop.controller.friction_compensation" && !pulls_back(loop, index))
       return "the loop is biased (load, reference, belt) and has an element on the error";
   if (is_friction(loop, n - 1)) return std::nullopt;
   if (loop.A.fullPivLu().rank() < loop.A.rows())
@@ -112,6 +116,35 @@ double LoopBalance::bias(double amplitude, double frequency, double accuracy) co
     (balance(mid) > 0.0 ? low : high) = mid;
   }
   return 0.5 * (low + high);
+}
+
+bool LoopBalance::has_gravity() const {
+  for (std::size_t i = 0; i < loop_->elements.size(); ++i)
+    if (pulls_back(*loop_, i)) return true;
+  return false;
+}
+
+/// Mean of the linear states: that under the mean output of the main element, gravity giving way to the swing.
+Eigen::VectorXd LoopBalance::mean_state(double amplitude, double frequency, double accuracy, bool& exact) const {
+  const auto ne = std::ssize(loop_->elements);
+  Eigen::VectorXd outputs = Eigen::VectorXd::Zero(ne), swings = Eigen::VectorXd::Zero(ne);
+  const double b = bias(amplitude, frequency, accuracy);
+  outputs(static_cast<Index>(main_)) = df(loop_->elements[main_], amplitude, frequency, b, accuracy).mean;
+  for (const auto& [index, factor] : beside_) swings(static_cast<Index>(index)) = std::abs(factor) * amplitude;
+  return loop_->mean_point(outputs, swings, exact);
+}
+
+Eigen::VectorXd LoopBalance::mean_inputs(double amplitude, double frequency, double accuracy) const {
+  const auto ne = std::ssize(loop_->elements);
+  Eigen::VectorXd means = Eigen::VectorXd::Zero(ne);
+  if (symmetric_) return means;
+  bool exact = false;
+  const Eigen::VectorXd X = mean_state(amplitude, frequency, accuracy, exact);
+  for (Index i = 0; i < ne; ++i) {
+    const Port& port = loop_->ports[static_cast<std::size_t>(i)];
+    means(i) = ((port.C + port.C_delayed) * X + port.c * loop_->external).value();
+  }
+  return exact ? means : Eigen::VectorXd::Constant(ne, undefined.real());
 }
 
 Complex LoopBalance::gain(double amplitude, double frequency, double accuracy) const {
@@ -167,24 +200,37 @@ Complex LoopBalance::response(double amplitude, double frequency, int order) con
   const auto m = static_cast<Index>(main_);
   if (loop_->elements.size() == 1) return H(m, m);
   Eigen::VectorXcd W = outputs(amplitude, frequency, 1e-9);
-  if (!other_) return (H.row(m) * W).value() / W(m);
-  const auto o = static_cast<Index>(*other_);
-  const Complex input = loop_->element_response(frequency).row(o) * W;
-  const Complex N = input == 0.0 ? 0.0 : W(o) / input;
-  W(o) = 0.0;
-  const Complex others = H.row(o) * W;
-  return ((H.row(m) * W).value() + H(m, o) * N * others / (1.0 - H(o, o) * N)) / W(m);
+  const Eigen::VectorXcd inputs = loop_->element_response(frequency) * W;
+  Eigen::VectorXcd N = Eigen::VectorXcd::Zero(W.size());  // of those that answer the harmonic that comes back to them
+  const auto answers = [&](Index k) {
+    N(k) = inputs(k) == 0.0 ? 0.0 : W(k) / inputs(k);
+    W(k) = 0.0;
+  };
+  if (other_) answers(static_cast<Index>(*other_));
+  for (const auto& [index, factor] : beside_)
+    if (pulls_back(*loop_, index)) answers(static_cast<Index>(index));
+  const Index ne = W.size();
+  const Eigen::MatrixXcd back = Eigen::MatrixXcd::Identity(ne, ne) - H * N.asDiagonal();
+  return back.partialPivLu().solve(H * W)(m) / W(m);
+}
+
+Complex LoopBalance::beside_gain(const Beside& beside, double amplitude, double frequency, double mean,
+                                 double accuracy) const {
+  if (!std::isfinite(mean)) return undefined;
+  const double A = std::abs(beside.factor) * amplitude;
+  const auto exact = exact_gain(loop_->elements[beside.index], A, frequency, mean);
+  return exact ? *exact : df(loop_->elements[beside.index], A, frequency, mean, accuracy).gain;
 }
 
 /// Phasors (sine reference) of all element outputs on the predicted oscillation.
 Eigen::VectorXcd LoopBalance::outputs(double amplitude, double frequency, double accuracy) const {
   Eigen::VectorXcd W = Eigen::VectorXcd::Zero(std::ssize(loop_->elements));
   W(static_cast<Index>(main_)) = gain(amplitude, frequency, accuracy) * amplitude;
+  const Eigen::VectorXd means = has_gravity() ? mean_inputs(amplitude, frequency, accuracy) : Eigen::VectorXd();
   for (const auto& [index, factor] : beside_) {
-    const double A = std::abs(factor) * amplitude;
-    const auto exact = exact_gain(loop_->elements[index], A, frequency, mean_velocity_);
-    const Complex N = exact ? *exact : df(loop_->elements[index], A, frequency, mean_velocity_, accuracy).gain;
-    W(static_cast<Index>(index)) = N * factor * amplitude;
+    const auto k = static_cast<Index>(index);
+    const double mean = is_friction(*loop_, index) || means.size() == 0 ? mean_velocity_ : means(k);
+    W(k) = beside_gain({index, factor}, amplitude, frequency, mean, accuracy) * factor * amplitude;
   }
   if (other_) W(static_cast<Index>(*other_)) = other_output(loop_->element_response(frequency), W, frequency, accuracy);
   return W;
@@ -219,11 +265,8 @@ Eigen::VectorXd LoopBalance::linear_state(double amplitude, double frequency, do
   Eigen::MatrixXcd M = Complex(0.0, frequency) * Eigen::MatrixXcd::Identity(n, n) - loop_->A.cast<Complex>();
   if (loop_->delay > 0.0) M -= std::exp(Complex(0.0, -frequency * loop_->delay)) * loop_->A_delayed.cast<Complex>();
   const Eigen::VectorXcd X = M.partialPivLu().solve(loop_->B.cast<Complex>() * W) * std::polar(1.0, phase);
-  const double b = bias(amplitude, frequency, 1e-9);
-  const double mean = df(loop_->elements[main_], amplitude, frequency, b, 1e-9).mean;
-  const Eigen::VectorXd pull = loop_->E * loop_->external + loop_->B.col(static_cast<Index>(main_)) * mean;
-  const Eigen::MatrixXd still = loop_->A + loop_->A_delayed;
-  return scale * X.imag() + still.completeOrthogonalDecomposition().solve(-pull);
+  bool exact = false;
+  return scale * X.imag() + mean_state(amplitude, frequency, 1e-9, exact);
 }
 
 LoopState LoopBalance::state(double amplitude, double frequency, double scale) const {

@@ -11,8 +11,9 @@ namespace limcycle {
 
 /// First-harmonic balance of a loop: the describing function of its main element (the friction if there is one, else
 /// the forward element) against everything else. Elements that see the same input but for a factor (a friction
-/// compensation; a dead zone on the error of a rigid servo) act beside it. One more memoryless element (a saturated
-/// command, an element on the error) is eliminated by its own describing function at the amplitude that they cause.
+/// compensation; a dead zone on the error of a rigid servo; gravity on a pendulum) act beside it. One more memoryless
+/// element (a saturated command, an element on the error) is eliminated by its own describing function at the amplitude
+/// that they cause.
 class LoopBalance {
  public:
   /// Why the plain describing function does not apply to this loop, or nothing.
@@ -40,6 +41,9 @@ class LoopBalance {
   std::complex<double> response(double amplitude, double frequency, int order) const;
   /// Mean of the main element's input (friction: mean rubbing velocity) during the oscillation.
   double bias(double amplitude, double frequency, double accuracy) const;
+  /// Means of all elements' inputs on the oscillation, where gravity takes part in their static balance; 0 in a
+  /// symmetric loop. NaN where there is no such balance.
+  Eigen::VectorXd mean_inputs(double amplitude, double frequency, double accuracy) const;
   /// Mean rubbing velocity (belt, ramp); 0 if the main element is not a friction law.
   double mean_velocity() const;
 
@@ -57,6 +61,10 @@ class LoopBalance {
   std::complex<double> other_gain(double input_amplitude, double frequency, double accuracy) const;
   std::complex<double> other_output(const Eigen::MatrixXcd& H, const Eigen::VectorXcd& W, double frequency,
                                     double accuracy) const;
+  std::complex<double> beside_gain(const Beside& beside, double amplitude, double frequency, double mean,
+                                   double accuracy) const;
+  bool has_gravity() const;
+  Eigen::VectorXd mean_state(double amplitude, double frequency, double accuracy, bool& exact) const;
   Eigen::VectorXcd outputs(double amplitude, double frequency, double accuracy) const;
 
   const Loop* loop_;

@@ -11,9 +11,11 @@ NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box) {
   const auto logarithmic = [](double from, double to, int i, int n) {
     return from * std::pow(to / from, double(i) / n);
   };
+  Loop straight = loop;
+  straight.A = loop.tangent();  // gravity as a spring
   for (int i = 0; i <= 400; ++i) {
     const double w = logarithmic(box.frequency_min, box.frequency_max, i, 400);
-    const std::complex<double> G = -loop.element_response(w)(main, main);
+    const std::complex<double> G = -straight.element_response(w)(main, main);
     if (!std::isfinite(std::abs(G))) continue;
     picture.frequency.push_back(w);
     picture.G.push_back(G);

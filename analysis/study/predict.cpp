@@ -14,6 +14,7 @@
 #include "limcycle/analysis/study/cycle_hunt.hpp"
 #include "limcycle/analysis/study/df_roots.hpp"
 #include "limcycle/analysis/study/orbit_guess.hpp"
+#include "limcycle/analysis/study/output_per_input.hpp"
 #include "limcycle/analysis/study/verdicts.hpp"
 #include "limcycle/models/delay.hpp"
 
@@ -131,10 +132,11 @@ class Study {
 
   /// Initial displacements of y: the largest amplitude of interest and smaller ones, two and then one decade apart.
   void run_starts() {
-    double displacement = box_.amplitude_max;
+    const double unit = output_per_input(time_);
+    double displacement = unit * box_.amplitude_max;
     for (int i = 0; i < options_.starts && !stopped(); ++i, displacement *= i == 1 ? 0.1 : 0.01) {
       tell(0.2 + 0.4 * i / std::max(1, options_.starts), "simulation");
-      if (displacement < box_.amplitude_min) break;
+      if (displacement < unit * box_.amplitude_min) break;
       hunt_->settle_from(displaced(time_, displacement), "y displaced by " + short_number(displacement));
     }
   }
@@ -209,6 +211,7 @@ class Study {
       if (p.method != df_name) continue;
       HarmonicGuess guess{p.frequency, Eigen::VectorXcd::Zero(ne), {}, {}};
       guess.first(ne - 1) = p.input_amplitude;
+      if (ne > 1) guess.mean = balance_->mean_inputs(p.input_amplitude, p.frequency, 1e-9);
       guesses.push_back(std::move(guess));
     }
     for (std::size_t i = 0; i < hunt_->cycles().size(); ++i) {

@@ -2,9 +2,21 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/study/output_per_input.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 
 namespace limcycle {
+namespace {
+
+/// rad; at 2.4 the mean of gravity over a sinusoidal swing vanishes (J0), and with it the balance of the means.
+double widest_swing(const Loop& loop) {
+  const bool gravity = std::ranges::any_of(loop.elements, [](const auto& element) {
+    return std::visit([]<class E>(const E&) { return PullsBack<E>; }, element);
+  });
+  return gravity ? 2.0 / output_per_input(loop) : infinite;
+}
+
+}  // namespace
 
 /// Two decades around the loop's poles; amplitudes up to three times the largest response to the element's level there
 /// (at s = (0.1 + j) w, so that an undamped resonance does not count as infinite), six decades down.
@@ -23,7 +35,7 @@ SearchBox default_search_box(const Loop& loop) {
     if (std::isfinite(level)) largest = std::max(largest, level);
   }
   if (!(largest > 0.0)) largest = 1.0;
-  box.amplitude_max = 3.0 * largest;
+  box.amplitude_max = std::min(3.0 * largest, widest_swing(loop));
   box.amplitude_min = 1e-6 * box.amplitude_max;
   return box;
 }

@@ -20,7 +20,7 @@ struct DelayedRelay {
   static constexpr std::string_view kind = "delayed-relay";
   static constexpr bool piecewise_affine = true;
   /// The states are times: reflecting the motion leaves them as they are.
-  static constexpr bool even_states = true;
+  static constexpr bool even_state(int) { return true; }
   static constexpr std::string_view equation = "y(t) = relay(x)(t - delay)";
   static constexpr std::string_view source = "exact: a relay commutes with a dead time behind it";
 

@@ -18,7 +18,8 @@ struct Input {
   S x{};      ///< input signal (friction: relative displacement, m)
   S v{};      ///< its rate (friction: relative velocity, m/s)
   S drive{};  ///< the output that would hold the signal named by `Held` at its present value; +-infinity where the
-              ///< surroundings cannot be held (prescribed motion), with the sign of the coming motion
+              ///< surroundings cannot be held (prescribed motion), with the sign in which that signal is about to
+              ///< change (for friction: the sign of dv/dt, at v = 0 that of the coming motion)
 };
 
 /// Discrete part of an element's state; its meaning is the element's own. Changed only at located events.
@@ -83,6 +84,42 @@ concept HasSelection = requires(const E e, Mode mode, const S output) {
   { e.selection(mode, output) } -> std::same_as<S>;
 };
 
+/// Optional: an element whose output needs the drive, not only while it holds (a friction law that knows the applied
+/// force or the sign of the acceleration). In each mode the output is affine in the drive, with a slope from 0 to 1,
+/// and the rate of the state does not depend on it. In a loop it stands last: its drive holds everything else.
+template <class E>
+concept NeedsDrive = requires {
+  requires E::needs_drive;
+};
+
+/// Whether the drive of an element is what would hold the rate of its input (friction), or the input itself.
+template <class E>
+bool drive_is_of_rate(const E& element) {
+  if constexpr (requires { element.drive_is_of_rate(); })
+    return element.drive_is_of_rate();
+  else if constexpr (CanHold<E>)
+    return E::holds == Held::rate;
+  else
+    return NeedsDrive<E>;
+}
+
+/// Speed within which the output depends on the size of the drive, not only on its sign: 0 for nearly every element.
+/// One that has such a band offers `drive_band()`; under prescribed motion, where the drive has no size, it has no
+/// value within the band.
+template <class E>
+double drive_band(const E& element) {
+  if constexpr (requires { element.drive_band(); }) return element.drive_band();
+  return 0.0;
+}
+
+/// Whether the switch of guard `fired` first brings the rate of the input to zero, by an impulse of the element's
+/// output (a body that is stopped); `next` then sees that rate. An element that does so offers `arrests(mode, fired)`.
+template <class E>
+bool arrests(const E& element, Mode mode, int fired) {
+  if constexpr (requires { element.arrests(mode, fired); }) return element.arrests(mode, fired);
+  return false;
+}
+
 /// Optional: an output that depends on the input rate (so the rate must be known before the output).
 template <class E>
 concept NeedsRate = requires {
@@ -103,6 +140,21 @@ template <class E>
 concept SlopeBounded = requires(const E e) {
   { e.slope_bounds() } -> std::same_as<std::pair<double, double>>;
 };
+
+/// Optional: an element that tells its state after sliding at in.v for long. A steady drift, however slow, leads there;
+/// a state that nothing but sliding moves (a slider that sticks) would otherwise take the periods that the drift takes.
+template <class E>
+concept KnowsSliding = requires(const E e, const Input<double> in, std::span<double> z) {
+  { e.after_sliding(in, z) } -> std::same_as<Mode>;
+};
+
+/// Whether reflecting the motion leaves state i as it is (a lagged level, a time) instead of changing its sign. An
+/// element that has such states offers `even_state(i)`.
+template <class E>
+bool is_even_state(const E& element, int i) {
+  if constexpr (requires { element.even_state(i); }) return element.even_state(i);
+  return false;
+}
 
 /// Optional: closed-form describing function N(A, w) for the input bias + A sin wt (friction: bias t + A sin wt);
 /// empty where the closed form does not hold.

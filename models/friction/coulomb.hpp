@@ -1,6 +1,7 @@
 #pragma once
 #include <numbers>
 
+#include "limcycle/models/friction/features.hpp"
 #include "limcycle/models/friction/stick_slip.hpp"
 
 namespace limcycle {
@@ -16,6 +17,15 @@ struct Coulomb : StickSlip<S, Levels<S>> {
   static constexpr std::string_view equation =
       "F = Fc sgn(v) + sigma2 v, v != 0;  |F| <= Fs, balancing the drive, v = 0";
   static constexpr std::string_view source = "Coulomb (1785); stiction as in the source thesis eq. 2.3-2.4";
+  static constexpr Features features{
+      .memory = Memory::none,
+      .drifts = false,
+      .drift = "none: the body truly sticks while the force on it stays below Fs",
+      .rate = "none but the viscous term sigma2 v",
+      .passivity = "yes, for sigma2 >= 0: F v = Fc |v| + sigma2 v^2",
+      .evidence =
+          "read in the source thesis (eq. 2.3, 2.4); the viscous term stands in public code of the 1995 LuGre "
+          "example; Coulomb (1785) is quoted from knowledge"};
 
   static std::vector<Parameter<Coulomb, S>> parameters() {
     auto table = Levels<S>::template levels_table<Coulomb>(false);

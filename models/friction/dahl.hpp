@@ -1,4 +1,5 @@
 #pragma once
+#include "limcycle/models/friction/features.hpp"
 #include "limcycle/models/friction/levels.hpp"
 
 namespace limcycle {
@@ -15,6 +16,17 @@ struct Dahl {
       "dz/dt = v |1 - s sigma0 z/Fc|^exponent sgn(1 - s sigma0 z/Fc), s = sgn(v);  F = sigma0 z";
   static constexpr std::string_view source =
       "Dahl (1968), Aerospace Corp. TOR-0158(3107-18)-1; Dahl (1976), AIAA J. 14(12)";
+  static constexpr Features features{
+      .memory = Memory::local,
+      .drifts = true,
+      .drift =
+          "ratchets under a biased periodic force of any size: for exponent 1, (Fc/sigma0) "
+          "ln[(1 - (F1/Fc)^2)/(1 - (F2/Fc)^2)] per cycle between the forces F1 and F2",
+      .rate = "none: the force is a function of the path alone",
+      .passivity = "yes, with the storage F^2/(2 sigma0); for exponent 1, F v - d(storage)/dt = |v| F^2/Fc",
+      .evidence =
+          "equation, exponents and papers are quoted from knowledge, not confirmed; the closed forms for "
+          "exponent 1 were derived and checked numerically"};
 
   static std::vector<Parameter<Dahl, S>> parameters() {
     return {{"Fc", "N", "sliding (Coulomb) level", &Dahl::Fc, positive},

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 
+#include "limcycle/models/friction/features.hpp"
 #include "limcycle/models/friction/levels.hpp"
 
 namespace limcycle {
@@ -23,6 +24,20 @@ struct LuGre : StribeckCurve<S> {
       "g = Fc + (Fs - Fc) exp(-|v/vs|^delta)";
   static constexpr std::string_view source =
       "Canudas de Wit, Olsson, Astrom, Lischinsky (1995), IEEE TAC 40(3), 419-425";
+  static constexpr Features features{
+      .memory = Memory::local,
+      .drifts = true,
+      .drift = "ratchets under a biased periodic force of any size; slowly as dahl with exponent 1 and the level Fs",
+      .rate =
+          "sigma1 in pre-sliding, g(v) and sigma2 v in sliding; the level is followed with a lag over the distance "
+          "g/sigma0, and break-away falls as the force rises faster",
+      .passivity =
+          "at unbounded speed if and only if sigma2/sigma1 >= (Fs - Fc)/Fc (constant sigma1); the published "
+          "values have sigma2/sigma1 = 0 or 0.0013 against 0.5 and are not passive",
+      .evidence =
+          "equation read in the source documents and in public code, as are the values of 1995; the passivity "
+          "condition was derived again and checked numerically (its paper is quoted from knowledge); "
+          "sigma1 fading with speed (vd) is quoted from knowledge, not confirmed"};
 
   static std::vector<Parameter<LuGre, S>> parameters() {
     auto table = StribeckCurve<S>::template stribeck_table<LuGre>();

@@ -1,4 +1,5 @@
 #pragma once
+#include "limcycle/models/friction/features.hpp"
 #include "limcycle/models/friction/stick_slip.hpp"
 
 namespace limcycle {
@@ -15,6 +16,15 @@ struct Stribeck : StickSlip<S, StribeckCurve<S>> {
       "exp(-|v/vs|^delta)";
   static constexpr std::string_view source =
       "Stribeck (1902); exponential curve after Bo and Pavelescu (1982), not confirmed";
+  static constexpr Features features{
+      .memory = Memory::none,
+      .drifts = false,
+      .drift = "none: the body truly sticks while the force on it stays below Fs",
+      .rate = "the sliding level g(v) and sigma2 v; nothing at rest",
+      .passivity = "yes, for sigma2 >= 0: F v = g(v) |v| + sigma2 v^2 with g > 0",
+      .evidence =
+          "exponential curve with delta = 2 read in the source documents, the Lorentzian one in public code; "
+          "Tustin's curve and other exponents (0.5 to 2 are used) are quoted from knowledge, not confirmed"};
 
   static std::vector<Parameter<Stribeck, S>> parameters() {
     auto table = StribeckCurve<S>::template stribeck_table<Stribeck>();

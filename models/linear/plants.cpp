@@ -51,6 +51,22 @@ PlantModel Belt::model() const {
   return plant;
 }
 
+PlantModel FroudePendulum::model() const {
+  PlantModel plant = oscillator(inertia, damping, 0.0);
+  plant.B_F *= shaft_radius;
+  plant.C_x *= shaft_radius;
+  plant.C_v *= shaft_radius;
+  plant.v0 = -shaft_radius * shaft_speed;
+  if (gravity == 0.0) return plant;
+  plant.gravity.emplace();
+  plant.gravity->mass = mass;
+  plant.gravity->gravity = gravity;
+  plant.gravity->arm = arm;
+  plant.B_gravity = Eigen::Vector2d(0.0, 1.0 / inertia);
+  plant.C_gravity = plant.C_y;
+  return plant;
+}
+
 PlantModel TwoMass::model() const {
   PlantModel plant;
   plant.A = Eigen::MatrixXd::Zero(4, 4);

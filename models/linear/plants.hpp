@@ -2,19 +2,24 @@
 #include <string>
 #include <variant>
 
+#include "limcycle/models/element/gravity.hpp"
 #include "limcycle/models/linear/state_space.hpp"
 #include "limcycle/models/parameter.hpp"
 
 namespace limcycle {
 
 /// Linear part of a plant: dx/dt = A x + B_u u - B_F F, y = C_y x (delayed by `delay`), rubbing velocity
-/// v = C_v x + v0, rubbing displacement C_x x. A plant without a friction port has empty B_F, C_v, C_x.
+/// v = C_v x + v0, rubbing displacement C_x x. A plant without a friction port has empty B_F, C_v, C_x. A pendulum adds
+/// - B_gravity gravity(C_gravity x) to dx/dt.
 struct PlantModel {
   Eigen::MatrixXd A;
   Eigen::VectorXd B_u, B_F;
   Eigen::RowVectorXd C_y, C_v, C_x;
   double v0 = 0.0;
   double delay = 0.0;
+  std::optional<Gravity<double>> gravity;
+  Eigen::VectorXd B_gravity;
+  Eigen::RowVectorXd C_gravity;
   std::vector<std::string> state_names;
 };
 
@@ -63,6 +68,35 @@ struct Belt {
             {"stiffness", "N/m", "spring to ground", &Belt::stiffness, positive},
             {"damping", "N s/m", "viscous damping", &Belt::damping, any_number, false},
             {"speed", "m/s", "velocity of the belt", &Belt::speed, any_number}};
+  }
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+  PlantModel model() const;
+};
+
+/// Froude pendulum: a pendulum hung by a sleeve on a shaft that turns at `shaft_speed`. y is the angle from hanging,
+/// rad; u and a load are torques about the axis, N m. The friction law is the force F(v), N, at the surface of the
+/// shaft for the velocity v = shaft_radius (dy/dt - shaft_speed) of the sleeve over it, and opposes v:
+///   inertia d2y/dt2 = u - damping dy/dt - mass gravity arm sin y - shaft_radius F(v).
+/// For a law that is odd, - shaft_radius F(v) = + shaft_radius F(shaft_radius (shaft_speed - dy/dt)): the shaft drives.
+/// `inertia` is all of it, about the axis of the shaft (that of the centre of mass is inertia - mass arm^2).
+/// A standard form (friction-driven pendulum, after W. Froude); Piatkowski and Wolski (2018), Mechanism and Machine
+/// Theory 119, 37-50, use it with a fitted friction curve. Their own equations of motion were not seen.
+struct FroudePendulum {
+  double mass{}, arm{}, inertia{}, damping{0.0}, shaft_radius{}, shaft_speed{}, gravity{9.81}, clearance{0.0};
+  static constexpr std::string_view kind = "froude-pendulum";
+  static constexpr std::string_view equation =
+      "inertia d2y/dt2 = u - damping dy/dt - mass gravity arm sin(y) - shaft_radius F(v), "
+      "v = shaft_radius (dy/dt - shaft_speed)";
+  static std::vector<Parameter<FroudePendulum, double>> parameters() {
+    return {
+        {"mass", "kg", "mass of the pendulum", &FroudePendulum::mass, positive},
+        {"arm", "m", "from the axis to the centre of mass", &FroudePendulum::arm, positive},
+        {"inertia", "kg m^2", "about the axis of the shaft", &FroudePendulum::inertia, positive},
+        {"damping", "N m s", "viscous damping", &FroudePendulum::damping, any_number, false},
+        {"shaft_radius", "m", "radius of the shaft", &FroudePendulum::shaft_radius, positive},
+        {"shaft_speed", "rad/s", "angular velocity of the shaft", &FroudePendulum::shaft_speed, any_number},
+        {"gravity", "m/s^2", "acceleration of gravity", &FroudePendulum::gravity, not_negative, false},
+        {"clearance", "m", "radial play of the sleeve; 0 in a loop", &FroudePendulum::clearance, not_negative, false}};
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
   PlantModel model() const;
@@ -119,7 +153,7 @@ struct StateSpacePlant {
   PlantModel model() const;
 };
 
-using Plant = std::variant<Mass, TwoMass, Belt, TransferFunction, ZeroPoleGain, StateSpacePlant>;
+using Plant = std::variant<Mass, TwoMass, Belt, FroudePendulum, TransferFunction, ZeroPoleGain, StateSpacePlant>;
 
 inline PlantModel model_of(const Plant& plant) {
   return std::visit([](const auto& p) { return p.model(); }, plant);

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "limcycle/cases/parameters.hpp"
 #include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;
@@ -85,11 +86,10 @@ TEST_CASE("what is missing from a loop") {
   CHECK(message("[loop]\nplant = \"mass\"\n") == "a.toml:2: loop.plant = \"mass\": must be a table, found a string");
 }
 
-TEST_CASE("what a later version brings is refused by name, what is misspelt with the nearest name") {
-  CHECK(message(with(servo, "\"lugre\"", "\"gms\"")) ==
-        "a.toml:10: loop.friction.kind = \"gms\": known to the case format, not available in this version; available: "
-        "coulomb, "
-        "stribeck, dahl, lugre");
+TEST_CASE("a kind that is misspelt is answered with the nearest name, one that is not there with all") {
+  CHECK(message(with(servo, "\"lugre\"", "\"hysteresis\"")) ==
+        "a.toml:10: loop.friction.kind = \"hysteresis\": unknown friction law; known: " +
+            case_file::joined(case_file::kinds_of<FrictionLaws::On<double>>()));
   CHECK(message(with(servo, "\"lugre\"", "\"lugr\"")) ==
         "a.toml:10: loop.friction.kind = \"lugr\": unknown friction law; did you mean \"lugre\"?");
   CHECK(message(with(servo, "\"lugre\"", "\"max-well-slip\"")) ==
@@ -101,8 +101,17 @@ TEST_CASE("what a later version brings is refused by name, what is misspelt with
   CHECK(message(with(servo, "\"pid\"", "\"fuzzy\"")) ==
         "a.toml:5: loop.controller.kind = \"fuzzy\": unknown controller; known: none, pid, transfer-function, "
         "state-space");
-  CHECK(message(with(servo, "\"mass\"", "\"froude-pendulum\"")).find("not available in this version") !=
-        std::string::npos);
+}
+
+TEST_CASE("a Froude pendulum with clearance is no loop") {
+  const std::string text =
+      "[loop.plant]\nkind = \"froude-pendulum\"\nmass = 5\narm = 0.2\ninertia = 0.25\nshaft_radius = 0.02\n"
+      "shaft_speed = 4\nclearance = 0\n[loop.friction]\nkind = \"coulomb\"\nFc = 7\n";
+  const Case from = read_case(text, "a.toml");
+  CHECK(std::get<FroudePendulum>(from.loop->plant).gravity == 9.81);
+  CHECK(message(with(text, "clearance = 0", "clearance = 1e-4")) ==
+        "a.toml:8: loop.plant.clearance = 0.0001: must be 0 in a loop: clearance needs `limcycle experiment "
+        "froude-pendulum`");
 }
 
 TEST_CASE("friction compensation is a key of every controller") {

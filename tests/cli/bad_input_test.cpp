@@ -50,10 +50,8 @@ const Bad bad_values[] = {
      "claim"},
     {"misspelt kind", "\"lugre\"", "\"lugree\"",
      ":9: loop.friction.kind = \"lugree\": unknown friction law; did you mean \"lugre\"?"},
-    {"kind of a later version", "\"lugre\"", "\"karnopp\"",
-     ":9: loop.friction.kind = \"karnopp\": known to the case format, not available in this version; available: "
-     "coulomb, stribeck, "
-     "dahl, lugre"},
+    {"a key of another kind", "\"lugre\"", "\"karnopp\"",
+     ":13: loop.friction.sigma0: unknown key; did you mean sigma2?"},
     {"wrong type", "mass = 1.0", "mass = \"abc\"", ":4: loop.plant.mass = \"abc\": must be a number, found a string"},
     {"list for a number", "mass = 1.0", "mass = [1.0]", ":4: loop.plant.mass = [1]: must be a number, found a list"},
     {"missing parameter", "vs = 0.001\n", "", ":8: loop.friction.vs: is required: Stribeck velocity, m/s"},

@@ -103,6 +103,7 @@ TEST_CASE("check names every element of a loop in the order in which they are ev
         "loop.error: dead-zone\nloop.error.rate: output-rate\nloop.controller.saturation: saturation\n"
         "loop.friction: lugre\n");
   CHECK(elements("relay-delay.toml") == "loop.element: relay\n");
+  CHECK(elements("froude-pendulum.toml") == "loop.plant.gravity: gravity\nloop.friction: lugre\n");
 }
 
 TEST_CASE("every shipped case passes check") {
@@ -124,7 +125,7 @@ TEST_CASE("laws KIND tells every parameter with unit, default, range and meaning
     const Ran ran = run({"laws", entry.kind});
     CHECK(ran.code == 0);
     for (const auto& parameter : entry.parameters) {
-      CHECK(ran.out.find("\n" + parameter.key + " ") != std::string::npos);
+      CHECK(ran.out.find(parameter.key) != std::string::npos);
       CHECK(ran.out.find(parameter.meaning) != std::string::npos);
     }
   }
@@ -159,10 +160,37 @@ TEST_CASE("laws: the JSON document holds the parameter tables") {
   }
 }
 
+TEST_CASE("laws: every friction law tells its features, in text, JSON, CSV and the page of documentation") {
+  const std::string page = run({"laws", "--markdown"}).out;
+  for (const auto& entry : limcycle::catalogue()) {
+    if (entry.group != "friction") continue;
+    INFO(entry.kind);
+    REQUIRE(entry.features);
+    const auto& features = *entry.features;
+    for (const auto words : {features.drift, features.rate, features.passivity, features.evidence})
+      CHECK_FALSE(words.empty());
+    const Json law = Json::parse(run({"laws", entry.kind, "--json", "-"}).out).at("laws").at(0);
+    CHECK(law.at("features").at("memory") == limcycle::to_string(features.memory));
+    CHECK(law.at("features").at("drifts") == features.drifts);
+    CHECK(law.at("features").at("passivity") == features.passivity);
+    CHECK(law.at("states").is_null() == law.at("states_per_entry").is_number());
+    const std::string text = run({"laws", entry.kind}).out;
+    for (const auto* label : {"\nstates     ", "\nmemory     ", "\ndrift      ", "\nrate       ", "\npassive    ",
+                              "\nconfirmed  ", "\nsource     "})
+      CHECK(text.find(label) != std::string::npos);
+    CHECK(page.find("\n| [" + entry.kind + "](#" + entry.kind + ") | ") != std::string::npos);
+    CHECK(page.find("\n## " + entry.kind + "\n") != std::string::npos);
+    for (const auto& parameter : entry.parameters)
+      CHECK(page.find("\n| `" + parameter.key + "` | ") != std::string::npos);
+  }
+  CHECK(Json::parse(run({"laws", "relay", "--json", "-"}).out).at("laws").at(0).at("features").is_null());
+}
+
 TEST_CASE("laws: the CSV document has a line a parameter") {
   const std::string csv = run({"laws", "coulomb", "--csv", "-"}).out;
   CHECK(csv.starts_with(
-      "group,kind,key,unit,type,required,default,low,high,meaning\nfriction,coulomb,Fc,N,number,true,,0,,"));
+      "group,kind,key,unit,type,required,default,low,high,meaning,states,memory,drifts,drift,rate,passivity,evidence\n"
+      "friction,coulomb,Fc,N,number,true,,0,,sliding (Coulomb) level,0,none,false,"));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 6);
 }
 

@@ -109,6 +109,8 @@ Tally tally(DfMethod method, int cases, double loosest, double tightest) {
     const auto df = describing_function(c.element, c.point, with(method, accuracy, 3));
     const auto exact = tight(c);
     REQUIRE(exact.status == Status::converged);
+    CAPTURE(c.point.amplitude, c.point.frequency, c.point.bias, accuracy, to_string(df.status));
+    std::visit([](const auto& e) { UNSCOPED_INFO(e.kind); }, c.element);
     REQUIRE((df.status == Status::converged || df.status == Status::incomplete));
     if (df.status == Status::converged) CHECK(df.error <= accuracy);
     t.incomplete += df.status == Status::incomplete;

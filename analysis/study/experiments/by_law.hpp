@@ -1,0 +1,43 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/study/experiments/experiment.hpp"
+
+namespace limcycle {
+
+/// What one law contributes to an experiment.
+struct LawPart {
+  std::vector<Measured> rows;
+  std::string finding;
+  Status status = Status::converged;
+  /// For each figure the panels of this law; their titles are put behind the law's own.
+  std::vector<std::vector<FigurePanel>> panels;
+
+  void add(std::size_t figure, Curve curve, const std::string& title = {});
+};
+
+/// Runs `one` for every law of the options that there is, several at a time, and joins the parts in the order of the
+/// laws: the result does not depend on the threads. A law that the experiment cannot treat (std::invalid_argument) gets
+/// a finding that says why. Stopped early: Status::interrupted, with what is there.
+void run_by_law(Experiment& experiment, const ExperimentOptions& options,
+                const std::function<LawPart(const LawSetting&)>& one);
+
+/// Calls work(i) for i in 0..count-1 on several threads. The first exception is thrown again here.
+void in_parallel(std::size_t count, const ExperimentOptions& options, std::string_view what,
+                 const std::function<void(std::size_t)>& work);
+
+/// A curve of at most about `most` points, evenly spaced along its drawing: corners and jumps stay, rests cost little.
+Curve thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y, std::size_t most = 300);
+
+/// Was this law measured?
+bool has_law(const Experiment& experiment, const std::string& law);
+
+/// "1.23e-06 m": a number in a sentence.
+std::string quantity(double value, const std::string& unit, int digits = 3);
+
+/// "+12 %": change from `from` to `to`.
+std::string change(double from, double to);
+
+}  // namespace limcycle

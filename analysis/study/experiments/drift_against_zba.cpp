@@ -1,0 +1,119 @@
+#include <array>
+#include <cmath>
+
+#include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/experiments/by_law.hpp"
+#include "limcycle/analysis/study/experiments/catalogue.hpp"
+#include "limcycle/analysis/study/experiments/forced_run.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr double low = 0.2, high = 0.8, half_period = 1.0;  // N, N, s
+constexpr int cycles = 20, last = 4;
+
+std::string in_words(double ratio) { return short_number(ratio, 3); }
+
+std::vector<double> ratios() {
+  std::vector<double> list;
+  for (int k = 0; k <= 13; ++k) list.push_back(0.3 + 0.05 * k);
+  return list;
+}
+
+Signal force() {
+  std::vector<double> t{0.0, 1.0}, u{0.0, high};
+  for (int k = 1; k <= 2 * cycles; ++k) {
+    t.push_back(1.0 + k * half_period);
+    u.push_back(k % 2 == 0 ? high : low);
+  }
+  return signal_through(std::move(t), std::move(u));
+}
+
+/// Drift per cycle once it has settled, m.
+double drift(const LawSetting& setting, Status& status) {
+  ForcedOptions options;
+  options.duration = 1.0 + 2.0 * cycles * half_period;
+  options.rtol = 1e-9;
+  options.stop = setting.stop;
+  const ForcedRun run = run_forced(make_law(setting), force(), options);
+  if (run.status != Status::converged) {
+    status = run.status;
+    return NAN;
+  }
+  // The mean over some cycles, with a weight that hides the ringing of laws without damping.
+  const double end = options.duration, window = 2.0 * last * half_period;
+  return (run.mean_displacement(end - window, end) - run.mean_displacement(end - 2.0 * window, end - window)) / last;
+}
+
+/// LuGre without break-away range, slow: the closed form.
+double slow_drift() {
+  return 1.5e-5 * std::log((1.0 - (low / 1.5) * (low / 1.5)) / (1.0 - (high / 1.5) * (high / 1.5)));
+}
+
+/// Below this a drift is that of the steps, m.
+constexpr double none = 1e-11;
+
+LawPart one(const LawSetting& setting) {
+  LawPart part;
+  if (setting.kind != "elasto-plastic") {
+    const double own = drift(setting, part.status);
+    part.rows.push_back({"", "", {own}});
+    part.finding = std::abs(own) < none ? "does not drift" : "drifts by " + quantity(own, "m") + " a cycle";
+    return part;
+  }
+  for (const std::string of : {"steady-state", "coulomb"}) {
+    const LawSetting kind = setting.with("zba_of", of, true);
+    std::vector<double> x, y;
+    double free = NAN;
+    for (const double ratio : ratios()) {
+      const double one = drift(kind.with("zba_ratio", ratio), part.status);
+      part.rows.push_back({"", "zba_of " + of + ", " + in_words(ratio), {one}});
+      x.push_back(ratio);
+      y.push_back(one);
+      if (std::isnan(free) && std::abs(one) < none) free = ratio;
+    }
+    part.add(0, {"z_ba of " + of, x, y});
+    part.finding += (part.finding.empty() ? "" : "; ") + std::string("z_ba as a share of the ") +
+                    (of == "coulomb" ? "Coulomb" : "steady") + " deflection: " +
+                    (std::isnan(free) ? "drifts at every ratio"
+                                      : "no drift from a ratio of " + in_words(free) + " on, at 0.3 " +
+                                            quantity(y.front(), "m") + " a cycle");
+  }
+  return part;
+}
+
+}  // namespace
+
+Experiment drift_against_zba_experiment(const ExperimentOptions& options) {
+  Experiment e;
+  e.name = "drift-against-zba";
+  e.title = "Drift of the elasto-plastic law over its break-away ratio";
+  e.document =
+      "thesis, section 3.6.1 (\"the non-drift feature of the elasto-plastic model is limited by the value of the "
+      "breakaway displacement parameter\")";
+  e.input =
+      "a mass of 1 kg under a zig-zag force between 0.2 and 0.8 N with a period of 2 s, 20 cycles; drift a cycle over "
+      "the "
+      "last four. z_ba as the ratio of the steady deflection g(v)/sigma0, and of Fc/sigma0; the other laws once, to "
+      "compare";
+  e.quantities = {{"drift", "drift a cycle", "m"}};
+  e.figures = {{"drift-ratio", "Drift a cycle over the break-away ratio", "z_ba ratio", "", "drift", "m"}};
+  run_by_law(e, options, one);
+  ExperimentClaim claim{"the elasto-plastic law's freedom from drift depends on z_ba", "thesis, section 3.6.1",
+                        ClaimOutcome::not_tested, ""};
+  if (has_law(e, "elasto-plastic")) {
+    const double least = e.value("elasto-plastic", "drift", "zba_of steady-state, 0.3");
+    const double printed = e.value("elasto-plastic", "drift", "zba_of steady-state, 0.7");
+    claim.outcome = least > none && std::abs(printed) < none ? ClaimOutcome::confirmed : ClaimOutcome::not_confirmed;
+    claim.measure =
+        quantity(least, "m") + " a cycle at 0.3, " + quantity(printed, "m") +
+        " at 0.7; it must end where sigma0 z_ba = 0.8 N, at 0.533 of the steady deflection at rest, or 0.8 of "
+        "the Coulomb one";
+  }
+  e.claims.push_back(std::move(claim));
+  e.notes.push_back("LuGre without such a range drifts by " + quantity(slow_drift(), "m", 4) +
+                    " a cycle under a slow force of these limits (closed form)");
+  return e;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,223 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "limcycle/models/element/element.hpp"
+
+namespace limcycle {
+
+/// @file
+/// Hysteresis with memory of its return points (Madelung 1905), on a bounded stack, for any scalar that moves to and
+/// fro: from rest along a virgin curve, after each reversal along a branch of its own; a branch that comes back to
+/// where the branch before it began closes that loop, which is forgotten with its two return points.
+///
+/// What is kept are ways along branches, never positions: how far the present branch has gone, and how far each branch
+/// before it had gone when it was turned back. So a long slide loses no digits, closed loops return to the same
+/// numbers, and reflecting the motion leaves all of it as it is; the direction is part of the mode.
+///
+/// A branch is given by a Shape, with
+///  - `masing`: true, the virgin curve doubled, f = f_r + d 2 f_v(way/2) (Masing 1926), the branch after the first
+///    reversal leading to the mirror point and from there on along the virgin curve; false ("two-point"), the
+///    curve `phi` stretched between the return point and its target, the first target being saturation on the other
+///    side;
+///  - `end`: way along the virgin curve at which it saturates, infinite if it never does;
+///  - `virgin(way, direction)` >= 0: force there; `level(direction)` > 0: force of saturation in that direction;
+///  - `phi(xi)`, phi(0) = 0, phi(1) = 1: only where `masing` may be false.
+
+/// What a mode holds of the stack, in its lowest six bits. Mode{} is the virgin state, about to move forwards.
+struct ReturnMode {
+  int depth = 0;           ///< return points kept
+  int direction = 1;       ///< of the present branch: +1 or -1
+  bool saturated = false;  ///< the scalar stands until it turns back
+
+  static constexpr int bits = 6;
+  static ReturnMode of(Mode mode) {
+    return {static_cast<int>(mode.value & 15), (mode.value & 16) != 0 ? -1 : 1, (mode.value & 32) != 0};
+  }
+  /// The mode with these, its other bits unchanged.
+  Mode in(Mode mode) const {
+    return {(mode.value & ~std::int64_t{63}) | depth | (direction < 0 ? 16 : 0) | (saturated ? 32 : 0)};
+  }
+  /// Direction of the virgin curve, from which branches turn to and fro.
+  int outermost() const { return depth % 2 == 0 ? direction : -direction; }
+};
+
+/// Stack of return points over `states` continuous states: the way along the present branch (m), the ways of the
+/// branches before it, outermost first (m; 0 beyond the depth), and a force (N) that only a full stack uses.
+///
+/// A stack that is full forgets its innermost loop at the next reversal: force and position stay what they are, and so
+/// does all that follows as long as the motion stays within the branch just left. Beyond that the force is off by what
+/// was forgotten (it may then exceed `level` by as much) until the innermost loop that is kept closes, where it jumps
+/// back to the exact value.
+///
+/// Equality up to rounding: a way within `slack` (a share) of its target is there; within as much of its own beginning
+/// it was none. In periodic motion every closing coincides with a reversal, and whichever is met first, mode and states
+/// must come out the same. The first branch of a Masing hysteresis meets the virgin curve with the slope of both, so
+/// that its slack may be wider, `mirror_slack`, at an error of its square.
+template <class S, class Shape>
+struct ReturnPoints {
+  static constexpr int capacity = 12, states = capacity + 2;
+  static constexpr double slack = 1e-12, mirror_slack = 1e-7;
+
+  const Shape& shape;
+
+  /// Size of a state where the scalar moves by `displacement` (m) and the force by `level` (N).
+  static double state_scale(int state, double displacement, double level) {
+    return state <= capacity ? displacement : level;
+  }
+
+  /// Hysteresis force, N.
+  S force(ReturnMode at, std::span<const S> z) const {
+    const double d = at.direction;
+    if (at.saturated) return d * shape.level(d);
+    if (at.depth == 0) return d * shape.virgin(z[0], d);
+    return at.outermost() * ((shape.masing ? masing(at, z) : two_point(at, z)) + z[offset]);
+  }
+
+  /// >= 0 until the present branch has arrived where it leads to.
+  S way_left(ReturnMode at, std::span<const S> z) const {
+    if (at.saturated || (at.depth == 0 && value_of(shape.end) == infinite)) return S(infinite);
+    return target(at, z) * (1.0 - slack_of(at)) - z[0];
+  }
+
+  /// The present branch has arrived: it saturates, or goes on along the virgin curve or the branch before the last.
+  ReturnMode arrive(ReturnMode at, std::span<S> z) const {
+    if (at.depth == 0) {
+      at.saturated = true;
+      return at;
+    }
+    const std::size_t last = length(at.depth - 1);
+    if (at.depth == 1) {
+      z[0] = z[0] - z[last];
+      z[last] = S(0.0);
+      at.depth = 0;
+      at.saturated = !shape.masing || z[0] >= shape.end;
+      return at;
+    }
+    z[0] = z[last - 1] + (z[0] - z[last]);
+    z[last] = z[last - 1] = S(0.0);
+    at.depth -= 2;
+    at.saturated = at.depth == 0 && at_end(z[0]);
+    forget_offset(at, z);
+    return at;
+  }
+
+  /// The motion turns back.
+  ReturnMode reverse(ReturnMode at, std::span<S> z) const {
+    while (!at.saturated && has_arrived(at, z)) at = arrive(at, z);
+    if (at.saturated) {
+      z[0] = shape.end;
+      at.saturated = false;
+    } else if (at.depth > 0 ? z[0] <= slack * z[length(at.depth - 1)] : !(z[0] > 0.0)) {
+      return cancel(at, z);
+    }
+    if (at.depth == capacity) return forget_innermost(at, z);
+    z[length(at.depth)] = z[0];
+    z[0] = S(0.0);
+    return {at.depth + 1, -at.direction, false};
+  }
+
+  /// The virgin state, about to move in the direction of v, at rest in that of the drive.
+  static ReturnMode start(const Input<double>& in, std::span<double> z) {
+    std::fill_n(z.begin(), states, 0.0);
+    return {0, in.v < 0.0 || (in.v == 0.0 && in.drive < 0.0) ? -1 : 1, false};
+  }
+
+  static Mode mirror(Mode mode) {
+    ReturnMode at = ReturnMode::of(mode);
+    at.direction = -at.direction;
+    return at.in(mode);
+  }
+
+ private:
+  static constexpr std::size_t offset = capacity + 1;
+  static std::size_t length(int branch) { return static_cast<std::size_t>(branch) + 1; }
+  static const S& length_of(int branch, int depth, std::span<const S> z) {
+    return branch == depth ? z[0] : z[length(branch)];
+  }
+
+  /// Forces are those of the outermost direction.
+  S masing(ReturnMode at, std::span<const S> z) const {
+    const double d0 = at.outermost();
+    S sum = shape.virgin(z[length(0)], d0);
+    double side = -2.0;
+    for (int k = 1; k <= at.depth; ++k, side = -side)
+      sum = sum + side * shape.virgin(0.5 * length_of(k, at.depth, z), d0);
+    return sum;
+  }
+
+  S two_point(ReturnMode at, std::span<const S> z) const {
+    if constexpr (requires(const S xi) { shape.phi(xi); }) return stretched(at, z);
+    return S(0.0);
+  }
+
+  S stretched(ReturnMode at, std::span<const S> z) const {
+    const double d0 = at.outermost();
+    S from = shape.virgin(z[length(0)], d0), to = -shape.level(-d0), span = z[length(0)] + shape.end;
+    for (int k = 1;; ++k) {
+      const S& gone = length_of(k, at.depth, z);
+      const S here = from + (to - from) * shape.phi(gone / span);
+      if (k == at.depth) return here;
+      to = from;
+      from = here;
+      span = gone;
+    }
+  }
+
+  S target(ReturnMode at, std::span<const S> z) const {
+    if (at.depth == 0) return shape.end;
+    const S& last = z[length(at.depth - 1)];
+    if (at.depth > 1) return last;
+    return shape.masing ? 2.0 * last : last + shape.end;
+  }
+  double slack_of(ReturnMode at) const {
+    return at.depth == 0 ? 0.0 : at.depth == 1 && shape.masing ? mirror_slack : slack;
+  }
+  bool at_end(const S& gone) const { return gone >= shape.end * (1.0 - 10.0 * slack); }
+
+  /// Within the slack before the target, or within rounding behind it; not farther behind: then derivatives are being
+  /// taken by differences, and the stack must change in the same way.
+  bool has_arrived(ReturnMode at, std::span<const S> z) const {
+    if (at.depth == 0 && value_of(shape.end) == infinite) return false;
+    const double goal = value_of(target(at, z)), missing = goal - value_of(z[0]);
+    return missing <= (slack_of(at) + 0.1 * slack) * goal && missing >= -10.0 * slack * goal;
+  }
+
+  /// Turned back where it had just been turned: the branch before goes on.
+  ReturnMode cancel(ReturnMode at, std::span<S> z) const {
+    at.direction = -at.direction;
+    if (at.depth == 0) {
+      z[0] = -z[0];
+      return at;
+    }
+    const std::size_t last = length(at.depth - 1);
+    z[0] = z[last] - z[0];
+    z[last] = S(0.0);
+    --at.depth;
+    at.saturated = at.depth == 0 && at_end(z[0]);
+    forget_offset(at, z);
+    return at;
+  }
+
+  /// Puts the last two branches and the present one together into one that ends here.
+  ReturnMode forget_innermost(ReturnMode at, std::span<S> z) const {
+    const double d0 = at.outermost();
+    const S before = force(at, z);
+    z[length(capacity - 2)] = z[length(capacity - 2)] - z[length(capacity - 1)] + z[0];
+    z[length(capacity - 1)] = S(0.0);
+    z[0] = S(0.0);
+    at.depth = capacity - 1;
+    at.direction = -at.direction;
+    z[offset] = z[offset] + d0 * (before - force(at, z));
+    return at;
+  }
+
+  /// The offset belongs to branches that begin at the innermost two return points of a full stack.
+  static void forget_offset(ReturnMode at, std::span<S> z) {
+    if (at.depth < capacity - 2) z[offset] = S(0.0);
+  }
+};
+
+}  // namespace limcycle
