@@ -31,7 +31,7 @@ void make_rates(Loop& loop) {
     port.c_v(reference_slope) += port.c(reference_value);
     const bool needs_rate = std::visit([]<class E>(const E&) { return NeedsRate<E>; }, loop.elements[i]);
     // What passes straight through the approximation also passes into the rate. What is rounding is no loop.
-    const Index own = static_cast<Index>(i);
+    const auto own = static_cast<Index>(i);
     const double size = (port.C.cwiseAbs() * loop.B.cwiseAbs()).maxCoeff();
     for (Index k = 0; k < port.D_v.size(); ++k)
       if (std::abs(port.D_v(k)) <= 1e-13 * size) port.D_v(k) = 0.0;

@@ -127,7 +127,7 @@ std::optional<BrokenRule> validate(const LoopParts& parts) {
   if (controller.D_rate != 0.0 && !vanishes(plant.C_y, plant.B_u))
     return BrokenRule{"loop.controller.tf",
                       "must be > 0: the plant has relative degree 1 and kd differentiates its output"};
-  if (const auto broken = validate_error(parts, controller.D_rate)) return broken;
+  if (auto broken = validate_error(parts, controller.D_rate)) return broken;
   if (parts.reference_rate != 0.0 && plant.delay > 0.0)
     return BrokenRule{"loop.reference", "a ramp and a delay cannot stand in one loop"};
   Loop loop = assemble(parts);

@@ -34,7 +34,7 @@ std::string experiment_picture(const std::vector<Experiment>& experiments);
 std::string experiment_figure(const ExperimentFigure& figure);
 
 /// The numbers, one row a measurement.
-Table experiment_table(const Experiment& experiment);
+Table experiment_table(const Experiment& one);
 
 /// "13 of 18 claims confirmed, 3 not, 2 depend on the definition": in a sentence.
 std::string claims_in_words(const std::vector<Experiment>& experiments);

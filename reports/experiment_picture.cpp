@@ -181,11 +181,12 @@ std::pair<std::string, double> figure_svg(const ExperimentFigure& figure, double
     y += 18.0;
   }
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-    const auto row = static_cast<double>(i / columns), column = static_cast<double>(i % columns);
-    out += panel_svg(figure, figure.panels[i], legend, column * cell_width, y + row * cell_height);
+    const std::size_t row = i / columns, column = i % columns;
+    out += panel_svg(figure, figure.panels[i], legend, static_cast<double>(column) * cell_width,
+                     y + static_cast<double>(row) * cell_height);
   }
-  const auto rows = static_cast<double>((figure.panels.size() + columns - 1) / columns);
-  return {out, y + rows * cell_height - top};
+  const std::size_t rows = (figure.panels.size() + columns - 1) / columns;
+  return {out, y + static_cast<double>(rows) * cell_height - top};
 }
 
 std::string svg(const std::string& body, double height, const std::string& label) {

@@ -17,7 +17,7 @@ constexpr double negligible = 1e-6;
 constexpr int digits = 3;
 
 std::string in_words(std::complex<double> value, bool pair) {
-  const std::string real = with_digits(value.real(), digits);
+  std::string real = with_digits(value.real(), digits);
   if (value.imag() == 0.0) return real;
   const std::string imaginary = with_digits(std::abs(value.imag()), digits) + "j";
   return real + (pair ? " ± " : value.imag() < 0.0 ? " - " : " + ") + imaginary;

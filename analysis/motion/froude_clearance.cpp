@@ -32,7 +32,7 @@ class Field {
   static constexpr int n = Model<double>::states;
   using D = Dual<n>;
 
-  explicit Field(const Model<double>& model) : model_(model), dual_{} {
+  explicit Field(const Model<double>& model) : model_(model) {
     dual_.pendulum = model.pendulum;
     dual_.law = recast<LuGre, D>(model.law);
     if constexpr (has_phases) dual_.contact = model.contact;
@@ -61,7 +61,7 @@ class Field {
   }
 
   const Model<double>& model_;
-  Model<D> dual_;
+  Model<D> dual_{};
 };
 
 /// One run of either model.

@@ -211,7 +211,7 @@ Complex LoopBalance::response(double amplitude, double frequency, int order) con
     if (pulls_back(*loop_, index)) answers(static_cast<Index>(index));
   const Index ne = W.size();
   const Eigen::MatrixXcd back = Eigen::MatrixXcd::Identity(ne, ne) - H * N.asDiagonal();
-  return back.partialPivLu().solve(H * W)(m) / W(m);
+  return back.fullPivLu().solve(H * W)(m) / W(m);
 }
 
 Complex LoopBalance::beside_gain(const Beside& beside, double amplitude, double frequency, double mean,

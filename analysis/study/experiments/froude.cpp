@@ -216,6 +216,7 @@ FroudeResult froude_experiment(const std::vector<FroudeSetting>& settings, const
     result.series.push_back(std::move(series));
   }
   std::vector<State> starts;
+  starts.reserve(settings.size());
   for (const auto& setting : settings) starts.push_back(start_of(setting, stop));
   const std::size_t columns = clearances.size() + 1, runs = settings.size() * columns;
   std::atomic<std::size_t> next{0};
