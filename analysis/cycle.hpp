@@ -32,10 +32,14 @@ struct Cycle {
   double offset = 0.0;                            ///< mean of y
   std::optional<bool> stable;                     ///< empty: could not be decided
   std::vector<std::complex<double>> multipliers;  ///< Floquet, of the full period, without the trivial 1, largest first
-  double sticking_fraction = 0.0;                 ///< share of the period that is stuck
-  std::string method;                             ///< "shooting" or "exact"
-  double error = 0.0;                             ///< estimated relative error of period and amplitude
-  double residual = 0.0;                          ///< scaled |x(T) - x(0)| of the answer
+  /// States in which an element keeps something of what was before (return points of an outer hysteresis loop) and
+  /// which the motion neither changes nor forgets: another history gives another cycle, close to this one. Their
+  /// multipliers, all 1, are not among those above, and `stable` is for a given history.
+  int remembered = 0;
+  double sticking_fraction = 0.0;  ///< share of the period that is stuck
+  std::string method;              ///< "shooting" or "exact"
+  double error = 0.0;              ///< estimated relative error of period and amplitude
+  double residual = 0.0;           ///< scaled |x(T) - x(0)| of the answer
   bool half_wave_symmetric = false;
   LoopState start;  ///< a point of the cycle
   Trace trace;      ///< one period

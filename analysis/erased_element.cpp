@@ -66,5 +66,6 @@ ErasedElement<S>::ErasedElement(const Element<double>& element)
 template class ErasedElement<double>;
 template class ErasedElement<Dual<1>>;
 template class ErasedElement<Dual<2>>;
+template class ErasedElement<Dual<4>>;
 
 }  // namespace limcycle

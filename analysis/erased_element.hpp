@@ -75,6 +75,7 @@ class ErasedElement {
 extern template class ErasedElement<double>;
 extern template class ErasedElement<Dual<1>>;
 extern template class ErasedElement<Dual<2>>;
+extern template class ErasedElement<Dual<4>>;
 
 template <>
 inline ErasedElement<Dual<1>> recast<ErasedElement, Dual<1>, double>(const ErasedElement<double>& from) {
@@ -83,6 +84,10 @@ inline ErasedElement<Dual<1>> recast<ErasedElement, Dual<1>, double>(const Erase
 template <>
 inline ErasedElement<Dual<2>> recast<ErasedElement, Dual<2>, double>(const ErasedElement<double>& from) {
   return ErasedElement<Dual<2>>(from.element());
+}
+template <>
+inline ErasedElement<Dual<4>> recast<ErasedElement, Dual<4>, double>(const ErasedElement<double>& from) {
+  return ErasedElement<Dual<4>>(from.element());
 }
 
 }  // namespace limcycle

@@ -179,6 +179,13 @@ Answer answer(const PredictReport& report, const Units& units) {
   if (!report.nyquist.frequency.empty()) add("describing-function");
   for (const auto& one : report.predictions) add(one.method);
   for (const auto& one : report.missed) add(one.method);
+  for (const auto& method : report.unfinished) {
+    std::erase(methods, method);
+    const auto found = std::ranges::count(report.predictions, method, &Prediction::method);
+    out.worth.push_back(fmt::format("{} was interrupted after {}: it may predict more.",
+                                    capital(method_in_words(method)),
+                                    counted(static_cast<std::size_t>(found), "prediction")));
+  }
   for (const auto& method : methods) out.worth.push_back(worth_of(method, report, units));
   return out;
 }

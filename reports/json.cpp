@@ -38,7 +38,8 @@ Json cycle_json(const Cycle& cycle) {
           {"method", cycle.method},
           {"error", number(cycle.error)},
           {"residual", number(cycle.residual)},
-          {"half_wave_symmetric", cycle.half_wave_symmetric}};
+          {"half_wave_symmetric", cycle.half_wave_symmetric},
+          {"remembered", cycle.remembered}};
 }
 
 Json ends(const Interval& interval) { return pair({interval.low, interval.high}); }

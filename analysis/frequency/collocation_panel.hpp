@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "limcycle/analysis/dual.hpp"
@@ -22,8 +24,8 @@ struct ElementState {
 
 /// Radau IIA collocation of one element on one panel of prescribed motion, in one mode: Newton with the exact Jacobian
 /// (one iteration if the law is linear in its state) and, from the same elimination, the derivative of the final state
-/// by the state in which the way began. Cost of a panel: (s n)^3/3 multiplications, n s^3/3 where the states do not
-/// depend on each other in a circle, and about 3 s evaluations per state.
+/// by the state in which the way began. Cost of a panel: (s m)^3/3 multiplications for the m states that move, m s^3/3
+/// where they do not depend on each other in a circle, and about 3 s evaluations per state.
 template <template <class> class Kind, Motion M = PrescribedMotion>
 class CollocationPanel {
  public:
@@ -38,10 +40,8 @@ class CollocationPanel {
     nodes_.resize(s_);
     z_.resize(s_ * n_);
     rates_.resize(s_ * n_);
-    sensitivities_.resize(s_ * n_ * n_);
     jacobians_.resize(s_ * n_ * n_);
-    dual_z_.resize(n_);
-    dual_rate_.resize(n_);
+    if (n_ > 2) wide_.emplace(recast<Kind, Dual<width>>(element));
     trial_.resize(n_);
     trial_rate_.resize(n_);
   }
@@ -57,8 +57,7 @@ class CollocationPanel {
   /// State and sensitivity at the end of the panel.
   void end(ElementState& state) const {
     std::copy(z_.end() - static_cast<std::ptrdiff_t>(n_), z_.end(), state.z.begin());
-    std::copy(sensitivities_.end() - static_cast<std::ptrdiff_t>(n_ * n_), sensitivities_.end(),
-              state.sensitivity.begin());
+    std::copy(sensitivities_.begin(), sensitivities_.end(), state.sensitivity.begin());
   }
 
   /// The collocation polynomial at the part t of the panel that began in `state`.
@@ -83,6 +82,7 @@ class CollocationPanel {
   bool solve(int anchor, double from, double to, const ElementState& state) {
     place_nodes(anchor, from, to);
     if (n_ == 0) return true;
+    sensitivities_ = state.sensitivity;
     const double step = (to - from) / motion_.frequency();
     for (std::size_t i = 0; i < s_; ++i)
       for (std::size_t p = 0; p < n_; ++p) z_[i * n_ + p] = state.z[p];
@@ -91,10 +91,11 @@ class CollocationPanel {
       double stiffness = 0.0;
       for (std::size_t i = 0; i < s_; ++i) linearise(i, state.mode);
       for (const double slope : jacobians_) stiffness = std::max(stiffness, std::abs(step * slope));
+      find_moving();
       if (!(find_order() ? correct_in_order(step, state) : correct_together(step, state))) return false;
       evaluate_rates(state.mode);
       double worst = 0.0;
-      for (std::size_t p = 0; p < n_; ++p) {
+      for (const std::size_t p : moving_) {
         double size = std::numeric_limits<double>::min(), defect = 0.0;
         for (std::size_t i = 0; i < s_; ++i) {
           size = std::max({size, std::abs(z_[i * n_ + p]), std::abs(step * rates_[i * n_ + p])});
@@ -148,20 +149,31 @@ class CollocationPanel {
       nodes_[i] = node_at(anchor, i + 1 == s_ ? to : from + table_.c[i] * (to - from));
   }
 
-  /// Rates and their derivatives with respect to the state at stage i.
+  /// Rates and their derivatives with respect to the state at stage i, several states at a time where there are many.
   void linearise(std::size_t i, Mode mode) {
+    if (wide_)
+      linearise_with<width>(*wide_, i, mode);
+    else
+      linearise_with<1>(dual_, i, mode);
+  }
+  template <int Columns>
+  void linearise_with(const Kind<Dual<Columns>>& element, std::size_t i, Mode mode) {
     const Input<double>& in = nodes_[i].in;
-    const Input<Dual<1>> input{in.x, in.v, in.drive};
-    for (std::size_t column = 0; column < n_; ++column) {
-      for (std::size_t p = 0; p < n_; ++p) dual_z_[p] = z_[i * n_ + p];
-      dual_z_[column].d[0] = 1.0;
-      dual_.rate(input, mode, dual_z_, dual_rate_);
+    const Input<Dual<Columns>> input{in.x, in.v, in.drive};
+    auto& [z, rate] = std::get<Scratch<Columns>>(scratch_);
+    z.assign(&z_[i * n_], &z_[i * n_] + n_);
+    rate.resize(n_);
+    for (std::size_t from = 0; from < n_; from += Columns) {
+      const std::size_t to = std::min(n_, from + Columns);
+      for (std::size_t column = from; column < to; ++column) z[column].d[column - from] = 1.0;
+      element.rate(input, mode, z, rate);
       ++evaluations_;
-      for (std::size_t p = 0; p < n_; ++p) {
-        rates_[i * n_ + p] = dual_rate_[p].value;
-        jacobians_[(i * n_ + p) * n_ + column] = dual_rate_[p].d[0];
+      for (std::size_t column = from; column < to; ++column) {
+        z[column].d[column - from] = 0.0;
+        for (std::size_t p = 0; p < n_; ++p) jacobians_[(i * n_ + p) * n_ + column] = rate[p].d[column - from];
       }
     }
+    for (std::size_t p = 0; p < n_; ++p) rates_[i * n_ + p] = rate[p].value;
   }
 
   void evaluate_rates(Mode mode) {
@@ -182,18 +194,36 @@ class CollocationPanel {
     return false;
   }
 
-  /// An order in which every state's rate depends on itself and on states before it only, if there is one: elements in
-  /// parallel do not see each other, a lagged level is seen by all and sees none.
+  /// The states that move on this panel; the others (return points kept for later, elements that stick) have a rate of
+  /// zero whatever the state is.
+  void find_moving() {
+    moving_.clear();
+    for (std::size_t p = 0; p < n_; ++p)
+      if (moves(p)) moving_.push_back(p);
+  }
+  bool moves(std::size_t p) const {
+    for (std::size_t i = 0; i < s_; ++i) {
+      if (rates_[i * n_ + p] != 0.0) return true;
+      for (std::size_t q = 0; q < n_; ++q)
+        if (jacobians_[(i * n_ + p) * n_ + q] != 0.0) return true;
+    }
+    return false;
+  }
+
+  /// An order in which the rate of every state that moves depends on itself and on states before it only, if there is
+  /// one: elements in parallel do not see each other, a lagged level is seen by all and sees none.
   bool find_order() {
     order_.clear();
     if (n_ == 1) return false;
     depends_.assign(n_ * n_, 0);
-    for (std::size_t p = 0; p < n_; ++p)
+    placed_.assign(n_, 1);
+    for (const std::size_t p : moving_) {
+      placed_[p] = 0;
       for (std::size_t q = 0; q < n_; ++q) depends_[p * n_ + q] = p != q && coupled(p, q) ? 1 : 0;
-    placed_.assign(n_, 0);
-    for (bool more = true; more && order_.size() < n_;) {
+    }
+    for (bool more = true; more && order_.size() < moving_.size();) {
       more = false;
-      for (std::size_t p = 0; p < n_; ++p) {
+      for (const std::size_t p : moving_) {
         bool ready = placed_[p] == 0;
         for (std::size_t q = 0; ready && q < n_; ++q) ready = depends_[p * n_ + q] == 0 || placed_[q] != 0;
         if (!ready) continue;
@@ -202,41 +232,48 @@ class CollocationPanel {
         order_.push_back(p);
       }
     }
-    return order_.size() == n_;
+    return order_.size() == moving_.size();
   }
 
   /// One step of Newton, state by state in that order: n systems of the size of the stages instead of one of n times
   /// that size.
   bool correct_in_order(double step, const ElementState& state) {
-    const std::size_t width = s_ + 1 + n_, columns = 1 + n_;
-    corrections_.assign(s_ * n_ * columns, 0.0);
+    const std::size_t length = s_ + 1 + n_, columns = 1 + n_;
+    corrections_.resize(s_ * n_ * columns);
     for (const std::size_t p : order_) {
-      system_.assign(s_ * width, 0.0);
+      system_.assign(s_ * length, 0.0);
       for (std::size_t i = 0; i < s_; ++i) {
-        double* row = &system_[i * width];
+        double* row = &system_[i * length];
         for (std::size_t j = 0; j < s_; ++j) row[j] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + p];
         row[i] += 1.0;
         row[s_] = -residual(step, state, i, p);
         for (std::size_t q = 0; q < n_; ++q) row[s_ + 1 + q] = state.sensitivity[p * n_ + q];
         for (std::size_t q = 0; q < n_; ++q)
-          if (depends_[p * n_ + q] != 0) add_coupling(step, i, p, q, row + s_);
+          if (depends_[p * n_ + q] != 0) add_coupling(step, i, p, q, state, row + s_);
       }
       if (!eliminate(system_, s_, columns)) return false;
       for (std::size_t i = 0; i < s_; ++i)
-        std::copy_n(&system_[i * width + s_], columns, &corrections_[(i * n_ + p) * columns]);
+        std::copy_n(&system_[i * length + s_], columns, &corrections_[(i * n_ + p) * columns]);
     }
-    for (std::size_t r = 0; r < s_ * n_; ++r) {
-      z_[r] += corrections_[r * columns];
-      std::copy_n(&corrections_[r * columns + 1], n_, &sensitivities_[r * n_]);
+    for (const std::size_t p : order_) {
+      for (std::size_t i = 0; i < s_; ++i) z_[i * n_ + p] += corrections_[(i * n_ + p) * columns];
+      std::copy_n(&corrections_[((s_ - 1) * n_ + p) * columns + 1], n_, &sensitivities_[p * n_]);
     }
     return true;
   }
 
-  /// What the corrections of state q, found before, add to the right-hand sides of state p at stage i.
-  void add_coupling(double step, std::size_t i, std::size_t p, std::size_t q, double* right) const {
+  /// What the corrections of state q, found before, or its derivatives alone if it stands, add to the right-hand sides
+  /// of state p at stage i.
+  void add_coupling(double step, std::size_t i, std::size_t p, std::size_t q, const ElementState& state,
+                    double* right) const {
     const std::size_t columns = 1 + n_;
+    const bool stands = std::ranges::find(moving_, q) == moving_.end();
     for (std::size_t j = 0; j < s_; ++j) {
       const double factor = step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
+      if (stands) {
+        for (std::size_t c = 0; c < n_; ++c) right[1 + c] += factor * state.sensitivity[q * n_ + c];
+        continue;
+      }
       for (std::size_t c = 0; c < columns; ++c) right[c] += factor * corrections_[(j * n_ + q) * columns + c];
     }
   }
@@ -244,11 +281,11 @@ class CollocationPanel {
   /// One step of Newton, all states together: the step of the stages, and in the further columns their derivatives by
   /// the initial state.
   bool correct_together(double step, const ElementState& state) {
-    const std::size_t m = s_ * n_, width = m + 1 + n_;
-    system_.assign(m * width, 0.0);
+    const std::size_t m = s_ * n_, length = m + 1 + n_;
+    system_.assign(m * length, 0.0);
     for (std::size_t i = 0; i < s_; ++i) {
       for (std::size_t p = 0; p < n_; ++p) {
-        double* row = &system_[(i * n_ + p) * width];
+        double* row = &system_[(i * n_ + p) * length];
         for (std::size_t j = 0; j < s_; ++j)
           for (std::size_t q = 0; q < n_; ++q)
             row[j * n_ + q] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
@@ -258,10 +295,9 @@ class CollocationPanel {
       }
     }
     if (!eliminate(system_, m, 1 + n_)) return false;
-    for (std::size_t r = 0; r < m; ++r) {
-      z_[r] += system_[r * width + m];
-      for (std::size_t q = 0; q < n_; ++q) sensitivities_[r * n_ + q] = system_[r * width + m + 1 + q];
-    }
+    for (std::size_t r = 0; r < m; ++r) z_[r] += system_[r * length + m];
+    for (std::size_t p = 0; p < n_; ++p)
+      std::copy_n(&system_[((s_ - 1) * n_ + p) * length + m + 1], n_, &sensitivities_[p * n_]);
     return true;
   }
 
@@ -275,9 +311,15 @@ class CollocationPanel {
   long evaluations_ = 0;
   std::vector<MotionNode> nodes_;
   std::vector<double> z_, rates_, sensitivities_, jacobians_, system_, corrections_, trial_, trial_rate_;
-  std::vector<std::size_t> order_;
+  std::vector<std::size_t> moving_, order_;
   std::vector<char> depends_, placed_;
-  std::vector<Dual<1>> dual_z_, dual_rate_;
+  static constexpr int width = 4;
+  std::optional<Kind<Dual<width>>> wide_;
+  template <int Columns>
+  struct Scratch {
+    std::vector<Dual<Columns>> z, rate;
+  };
+  std::tuple<Scratch<1>, Scratch<width>> scratch_;
 };
 
 }  // namespace limcycle

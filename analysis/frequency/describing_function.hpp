@@ -39,7 +39,7 @@ struct DescribingFunction {
   /// periodicity and roundings. 0 with a gain of exactly 0: no first harmonic above rounding (relay within its
   /// hysteresis, sliding on a constant level).
   double error = 0.0;
-  bool symmetric = false;             ///< the periodic state is half-wave symmetric
+  bool symmetric = false;             ///< the output is half-wave symmetric
   std::string_view method;            ///< "closed-form", "fft" or "quadrature"
   Status status = Status::converged;  ///< incomplete: the wanted accuracy was not reached, see error
   long evaluations = 0;               ///< of the element's equations

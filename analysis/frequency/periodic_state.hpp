@@ -48,6 +48,7 @@ class PeriodicStateSearch {
       PeriodicState result = iterate(guess != nullptr && guess->symmetric ? guess->state : virgin, true, visitor);
       if (result.status == Status::converged || result.status == Status::not_finite) return result;
       if (guess != nullptr && guess->symmetric) return result;
+      if (result.status == Status::no_cycle) virgin = result.state;
     }
     // On a finer mesh the virgin state is carried again: where many states are periodic, the guess is not the one.
     return iterate(virgin, false, visitor);
@@ -86,9 +87,10 @@ class PeriodicStateSearch {
     return worst;
   }
 
-  /// (M - 1)^-1 r for the derivative M of the map, by an LU with full pivoting that leaves indifferent directions
-  /// alone.
-  Vector correction(const ElementState& image, const Vector& r, double& amplification) const {
+  /// Where the map with the derivative M, applied for ever, takes the state that it moves by r, less that state:
+  /// (1 - M)^-1 r; with indifferent directions (M = 1) the group inverse of 1 - M, which leaves them alone, if `near`
+  /// the end, since the way there may bend into them. Zero: apply the map.
+  Vector correction(const ElementState& image, const Vector& r, bool near, double& amplification) const {
     const auto n = static_cast<Eigen::Index>(n_);
     Matrix m(n, n);
     for (Eigen::Index p = 0; p < n; ++p)
@@ -100,43 +102,73 @@ class PeriodicStateSearch {
     Eigen::FullPivLU<Matrix> lu(n, n);
     lu.setThreshold(1e-11);
     lu.compute(m);
+    Vector step = Vector::Zero(n);
+    amplification = 1.0;
     // FullPivLU measures rank against its largest pivot; a map that is indifferent in every direction has only small
     // ones.
     if (lu.rank() < n || std::abs(lu.matrixLU()(n - 1, n - 1)) < 1e-11) {
-      amplification = 1.0;
-      return Vector::Zero(n);
+      if (!near || lu.rank() == 0 || lu.rank() == n) return step;
+      step = group_inverse(lu, scaled);
+    } else {
+      amplification = lu.inverse().cwiseAbs().rowwise().sum().maxCoeff();
+      step = lu.solve(scaled);
     }
-    amplification = lu.inverse().cwiseAbs().rowwise().sum().maxCoeff();
-    Vector step = lu.solve(scaled);
     for (Eigen::Index p = 0; p < n; ++p) step(p) *= scale(static_cast<std::size_t>(p));
     return step;
   }
 
+  /// C (F C)^-2 F r for a matrix C F = M - 1 of less than full rank: its group inverse (Cline 1968). Zero where it has
+  /// none: then the map creeps along an indifferent direction.
+  static Vector group_inverse(const Eigen::FullPivLU<Matrix>& lu, const Vector& r) {
+    const Eigen::Index n = r.size(), k = lu.rank();
+    Matrix lower = Matrix::Identity(n, k);
+    lower.template triangularView<Eigen::StrictlyLower>() = lu.matrixLU().leftCols(k);
+    const Matrix upper = Matrix(lu.matrixLU().topRows(k).template triangularView<Eigen::Upper>());
+    const Matrix c = lu.permutationP().inverse() * lower, f = upper * lu.permutationQ().inverse();
+    const Eigen::FullPivLU<Matrix> inner(f * c);
+    if (!inner.isInvertible()) return Vector::Zero(n);
+    return c * inner.solve(inner.solve(f * r));
+  }
+
+  /// Status no_cycle: a motion whose halves end in two modes in turn is not half-wave symmetric; the state is that
+  /// after some whole periods from the start.
   template <class Visitor>
   PeriodicState iterate(const ElementState& start, bool half, Visitor& visitor) {
     PeriodicState result{Status::converged, start, half, 0.0};
-    double before = infinite;
-    int foreign_modes = 0;
+    double before = infinite, near = std::max(1e-6, std::sqrt(tolerance_));
+    double best = infinite;
+    int foreign_modes = 0, to_and_fro = 0, without_gain = 0;
+    Mode last_but_one = start.mode;
     for (int k = 0; k < 200; ++k) {
       visitor.restart();
       ElementState image = result.state;
       result.status = pass(image, half, visitor);
       if (result.status != Status::converged) return result;
       if (image.mode != result.state.mode) {
-        if (++foreign_modes > 20) break;
+        to_and_fro = half && image.mode == last_but_one ? to_and_fro + 1 : 0;
+        last_but_one = result.state.mode;
         result.state = image;
+        if (++foreign_modes > 20) break;
+        if (to_and_fro > 4 && k == foreign_modes - 1 && k % 2 == 1) {
+          result.status = Status::no_cycle;
+          return result;
+        }
         continue;
       }
       Vector r(static_cast<Eigen::Index>(n_));
       for (std::size_t p = 0; p < n_; ++p) r(static_cast<Eigen::Index>(p)) = image.z[p] - result.state.z[p];
       const double now = size(r);
       double amplification = 1.0;
-      const Vector step = n_ == 0 ? r : correction(image, r, amplification);
+      const Vector step = n_ == 0 ? r : correction(image, r, now < near, amplification);
       const double distance = std::max(now, n_ == 0 ? 0.0 : size(step));
       result.defect = distance + 1e-15 * amplification;
       result.scale.resize(n_);
       for (std::size_t p = 0; p < n_; ++p) result.scale[p] = scale(p);
       const bool indifferent = n_ == 0 || size(step) == 0.0;
+      // A map with small jumps (a level followed by switches) has no better fixed point; the defect says so.
+      without_gain = distance < 0.5 * best ? 0 : without_gain + 1;
+      best = std::min(best, distance);
+      if (without_gain > 3 && distance <= 100.0 * tolerance_) return result;
       if (distance <= tolerance_ || (now >= 0.25 * before && distance <= 1e-11) || (indifferent && now <= 1e-14))
         return result;
       // Newton as long as it gains; else (a kink of the map) the map itself, which contracts for any sound law.

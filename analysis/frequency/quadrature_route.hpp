@@ -103,10 +103,19 @@ class QuadratureRoute {
     result.gain = result.harmonics[0] / A;
     result.mean = sums_.mean(half);
     result.dissipation = sums_.work(half, motion_.frequency());
-    result.symmetric = half;
+    result.symmetric = half || (try_symmetric_ && odd_output(result));
     const double shared = 16.0 * epsilon * size + 1.3 * output_change(periodic);
     result.error = result.gain == 0.0 ? 0.0 : shared / std::abs(result.harmonics[0]);
     return result;
+  }
+
+  /// Is the output half-wave symmetric, though the state is not? What a law remembers of the way to the first turning
+  /// point may lie on one side and yet do nothing.
+  bool odd_output(const DescribingFunction& result) const {
+    double even = std::abs(result.mean);
+    for (std::size_t order = 2; order <= result.harmonics.size(); order += 2)
+      even = std::max(even, std::abs(result.harmonics[order - 1]));
+    return even <= std::max(1e-9, options_.accuracy) * size_;
   }
 
   /// By how much the output at the beginning of the period changes with the state by the defect of periodicity.

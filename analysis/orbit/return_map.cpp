@@ -101,6 +101,26 @@ void ReturnMap::close_derivative(Result& result, const LoopState& from, const Se
 ReturnMap::Result ReturnMap::approach(const LoopState& from) { return run(from, section_); }
 
 ReturnMap::Result ReturnMap::operator()(const LoopState& from) {
+  Result all = once(from);
+  for (int k = 1; k < options_.returns && all.status == Status::converged; ++k) {
+    Result next = once(all.state);
+    for (std::size_t i = 0; i < next.largest.size(); ++i) next.largest[i] = std::max(next.largest[i], all.largest[i]);
+    next.time += all.time;
+    if (all.factors.empty() || next.factors.empty()) {
+      next.factors.clear();
+      next.derivative.resize(0, 0);
+    } else {
+      next.time_gradient = (all.time_gradient + next.time_gradient * all.derivative).eval();
+      next.derivative = (next.derivative * all.derivative).eval();
+      next.factors.insert(next.factors.begin(), all.factors.begin(), all.factors.end());
+      next.flow_defect = std::max(next.flow_defect, all.flow_defect);
+    }
+    all = std::move(next);
+  }
+  return all;
+}
+
+ReturnMap::Result ReturnMap::once(const LoopState& from) {
   if (!half_) return run(from, section_);
   const double middle = (section_.C * half_->centre).value();
   Result result = run(from, Section{section_.C, 2.0 * middle - section_.level, -section_.direction});

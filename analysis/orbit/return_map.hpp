@@ -33,6 +33,7 @@ class ReturnMap {
     std::function<bool()> stop;
     bool derivative = false;
     double longest = infinite;  ///< time after which a motion that has not come back is given up, s
+    int returns = 1;            ///< crossings of the section that make one map: several for a motion of unequal swings
   };
   struct Result {
     Status status = Status::converged;
@@ -65,6 +66,7 @@ class ReturnMap {
 
  private:
   Result run(const LoopState& from, const Section& target);
+  Result once(const LoopState& from);
   void close_derivative(Result& result, const LoopState& from, const Section& target);
 
   const Loop* loop_;

@@ -174,8 +174,10 @@ class Settling {
     for (std::size_t i = 0; i < options_.known.size(); ++i) {
       const Cycle& cycle = options_.known[i];
       if (std::abs(2.0 * cycle.amplitude / swing - 1.0) > 0.02) continue;
-      ReturnMap map(loop_, choose_section(loop_, cycle.trace), std::nullopt,
-                    {options_.rtol, options_.shooting.max_steps_per_map, options_.stop});
+      const Section section = choose_section(loop_, cycle.trace);
+      ReturnMap map(loop_, section, std::nullopt,
+                    {options_.rtol, options_.shooting.max_steps_per_map, options_.stop, false, infinite,
+                     returns_of(section, cycle.trace)});
       auto at = map.approach(here);
       for (int k = 0; k < 4 && at.status == Status::converged; ++k) {
         at = map(at.state);
@@ -206,7 +208,9 @@ class Settling {
     ShootingOptions shooting = options_.shooting;
     shooting.max_maps = std::min(shooting.max_maps, 80);
     shooting.longest_map = 10.0 * (period.t.back() - period.t.front());
-    auto shot = shoot(loop_, here, choose_section(loop_, period), half, shooting);
+    const Section section = choose_section(loop_, period);
+    shooting.returns = returns_of(section, period);
+    auto shot = shoot(loop_, here, section, half, shooting);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
     if (shot.status != Status::converged || shot.cycle.stable == false) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 class Shooter {
  public:
   Shooter(const Loop& loop, ReturnMap map, const ShootingOptions& options)
-      : map_(std::move(map)), options_(options), typical_(typical_sizes(loop)) {}
+      : map_(std::move(map)), options_(options), first_(loop.states()), typical_(typical_sizes(loop)) {}
 
   Status warm_up(const LoopState& guess) {
     auto result = map_.approach(guess);
@@ -83,16 +83,30 @@ class Shooter {
     if (linear_.status != Status::converged) return linear_.status;
     if (linear_.derivative.size() == 0) return Status::stalled;
     jacobian_ = chart_->restricted(linear_.derivative);
+    find_kept();
     return Status::converged;
   }
 
-  /// Multipliers of the (half) map, from the factors of its derivative; the trivial one, taken out, tells their error.
+  /// See Cycle::remembered; states that are zero and stay so remember nothing.
+  int remembered() const {
+    Eigen::Index unused = 0;
+    for (Eigen::Index i = first_; i < std::ssize(state_.x); ++i)
+      if (state_.x[static_cast<std::size_t>(i)] == 0.0 && is_kept(i)) ++unused;
+    return static_cast<int>(kept_.cols() + turned_ - unused);
+  }
+
+  /// Multipliers of the (half) map, from the factors of its derivative, without those of what is kept; the trivial one,
+  /// taken out, tells their error.
   std::vector<std::complex<double>> multipliers(double& trivial_error) const {
     auto factors = linear_.factors;
     for (auto& factor : factors) factor = chart_->scaled(factor);
     auto values = product_eigenvalues(factors);
-    const auto trivial =
-        std::ranges::min_element(values, {}, [](const std::complex<double>& value) { return std::abs(value - 1.0); });
+    const auto nearest = [&](double to) {
+      return std::ranges::min_element(values, {}, [=](std::complex<double> value) { return std::abs(value - to); });
+    };
+    for (Eigen::Index k = 0; k < kept_.cols(); ++k) values.erase(nearest(1.0));
+    for (Eigen::Index k = 0; k < turned_; ++k) values.erase(nearest(-1.0));
+    const auto trivial = nearest(1.0);
     trivial_error = std::max(linear_.flow_defect, std::abs(*trivial - 1.0));
     values.erase(trivial);
     return values;
@@ -110,8 +124,14 @@ class Shooter {
   bool newton(ReturnMap::Result& image, VectorXd& r, bool fresh) {
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> system;
     system.setThreshold(1e-7);
-    system.compute(jacobian_ - MatrixXd::Identity(r.size(), r.size()));
-    const VectorXd step = -system.solve(r);
+    // What is kept stays as it is. In the chart the element states come last, as in the state.
+    MatrixXd matrix = MatrixXd::Zero(r.size() + kept_.cols(), r.size());
+    matrix.topRows(r.size()) = jacobian_ - MatrixXd::Identity(r.size(), r.size());
+    matrix.bottomRightCorner(kept_.cols(), kept_.rows()) = kept_.transpose();
+    system.compute(matrix);
+    VectorXd right = VectorXd::Zero(matrix.rows());
+    right.head(r.size()) = r;
+    const VectorXd step = -system.solve(right);
     LoopState trial = state_;
     double damping = 1.0;
     for (int halvings = 0; halvings < (fresh ? 6 : 1); ++halvings, damping *= 0.5) {
@@ -132,6 +152,25 @@ class Shooter {
     return false;
   }
 
+  /// Finds the combinations of element states that the map keeps, whatever the state is, and with a half map those that
+  /// it turns round (a whole period keeps them): left eigenvectors of its derivative on element states alone.
+  void find_kept() {
+    const MatrixXd all = chart_->scaled(linear_.derivative);
+    const Eigen::Index count = all.rows() - first_;
+    MatrixXd rows = all.bottomRows(count);
+    rows.rightCols(count) -= MatrixXd::Identity(count, count);
+    kept_ = left_null_space(rows);
+    rows.rightCols(count) += 2.0 * MatrixXd::Identity(count, count);
+    turned_ = map_.half() ? left_null_space(rows).cols() : 0;
+  }
+  static MatrixXd left_null_space(const MatrixXd& rows) {
+    if (rows.rows() == 0) return MatrixXd(0, 0);
+    const Eigen::JacobiSVD<MatrixXd> svd(rows, Eigen::ComputeFullU);
+    const auto rank = (svd.singularValues().array() > 1e-9).count();
+    return svd.matrixU().rightCols(rows.rows() - rank);
+  }
+  bool is_kept(Eigen::Index state) const { return kept_.rows() > 0 && kept_.row(state - first_).norm() > 1.0 - 1e-9; }
+
   ReturnMap::Result map(const LoopState& from) {
     ++maps_;
     return map_(from);
@@ -140,6 +179,9 @@ class Shooter {
 
   ReturnMap map_;
   const ShootingOptions& options_;
+  Eigen::Index first_;  ///< index of the first element state
+  MatrixXd kept_;       ///< see find_kept: by columns, orthonormal, in units of the chart
+  Eigen::Index turned_ = 0;
   State typical_, largest_;
   std::optional<SectionChart> chart_;
   LoopState state_;
@@ -180,13 +222,15 @@ void judge(Shooter& shooter, ShootingResult& result, bool exact) {
   }
   if (shooter.linearise(1e-10) != Status::converged) return;
   cycle.multipliers = shooter.multipliers(result.trivial_error);
+  cycle.remembered = shooter.remembered();
   result.multiplier_error = 1e-12 + result.trivial_error;
+  if (!exact && rough.size() != cycle.multipliers.size()) return;  // the two disagree on what is kept
   for (std::size_t i = 0; i < rough.size(); ++i)
     result.multiplier_error = std::max(result.multiplier_error, std::abs(rough[i] - cycle.multipliers[i]));
   if (shooter.half())
     for (auto& value : cycle.multipliers) value *= value;
   const double largest = cycle.multipliers.empty() ? 0.0 : std::abs(cycle.multipliers.front());
-  if (result.trivial_error < 0.02 && std::abs(largest - 1.0) > 4.0 * result.multiplier_error)
+  if (result.trivial_error < 0.1 && std::abs(largest - 1.0) > 4.0 * result.multiplier_error)
     cycle.stable = largest < 1.0;
 }
 
@@ -205,15 +249,27 @@ Section choose_section(const Loop& loop, const Trace& trace) {
   return section;
 }
 
+int returns_of(const Section& section, const Trace& trace) {
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < trace.y.size(); ++i) {
+    const bool before = trace.y[i] < section.level, after = trace.y[i + 1] < section.level;
+    if (before != after && before == (section.direction > 0)) ++count;
+  }
+  return std::max(count, 1);
+}
+
 ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& section, bool half,
                      const ShootingOptions& options) {
   const double coarse = std::max(1e-7, options.rtol), loose = 30.0 * options.rtol;
   const bool exact = choose_stepper(loop, options.rtol) == StepperKind::exact;
   std::optional<Reflection> reflection;
   if (half) reflection = symmetry(loop);
-  Shooter shooter(
-      loop, {loop, section, reflection, {coarse, options.max_steps_per_map, options.stop, false, options.longest_map}},
-      options);
+  Shooter shooter(loop,
+                  {loop,
+                   section,
+                   reflection,
+                   {coarse, options.max_steps_per_map, options.stop, false, options.longest_map, options.returns}},
+                  options);
   Status status = shooter.warm_up(guess);
   if (status != Status::converged) return failed(status, shooter, "the motion did not return to the section");
   if (!exact) status = shooter.solve(coarse, 30.0 * coarse);

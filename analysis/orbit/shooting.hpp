@@ -13,6 +13,7 @@ struct ShootingOptions {
   int max_maps = 400;        ///< budget
   long max_steps_per_map = 200000;
   double longest_map = infinite;  ///< s: a motion that has not come back by then does not
+  int returns = 1;                ///< crossings of the section in one period, see returns_of
   std::function<bool()> stop;
 };
 
@@ -30,6 +31,9 @@ struct ShootingResult {
 /// middle, where relays switch), in the direction in which y moves faster.
 Section choose_section(const Loop& loop, const Trace& trace);
 
+/// How often a trace of one period crosses the section in its direction; at least 1.
+int returns_of(const Section& section, const Trace& trace);
+
 /// Solves x = P(x) for the return map on `section`, from a guess near the cycle; of the half map if the loop has an odd
 /// symmetry and the guess shows it (`half`). A few plain maps first (cold Newton breaks down on stick-slip), then
 /// damped Newton with the exact derivative of the map (variational equations and saltation), kept as long as it
@@ -39,8 +43,8 @@ Section choose_section(const Loop& loop, const Trace& trace);
 /// warm_maps = 0).
 ///
 /// Multipliers: eigenvalues of the product of the step derivatives (product_eigenvalues), so that those which contract
-/// strongly are right too. No verdict on stability if the largest is within its error of 1, or if the trivial
-/// multiplier is off 1 by more than 1e-3.
+/// strongly are right too. No verdict on stability if the largest is within four times its error of 1, the error being
+/// at least that of the trivial multiplier, or if that is more than 0.1.
 ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& section, bool half,
                      const ShootingOptions& options = {});
 

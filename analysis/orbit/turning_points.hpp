@@ -1,12 +1,14 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace limcycle {
 
 /// Turning points of a signal, found as it comes: a reversal counts once the signal has come back by `share` of the
-/// last swing, so that the bristle's tremble at each stop is not taken for an oscillation. Each further reversal that
-/// does not count lowers that share, so that a small oscillation after a large first swing is not overlooked for ever.
+/// last swing, so that the bristle's tremble at each stop is not taken for an oscillation. When no reversal has counted
+/// for twice as long as ever before, each that does not count lowers that share, so that a small oscillation after a
+/// large first swing is not overlooked for ever.
 class TurningPoints {
  public:
   struct Point {
@@ -28,9 +30,10 @@ class TurningPoints {
       extreme_ = {t, y};
       return false;
     }
-    if (reversed) part_ *= 0.8;
+    if (reversed && t - extreme_.t > 2.0 * longest_) part_ *= 0.8;
     const double last_swing = points_.empty() ? 0.0 : std::abs(extreme_.y - points_.back().y);
     if (std::abs(y - extreme_.y) <= part_ * last_swing) return false;
+    if (!points_.empty()) longest_ = std::max(longest_, extreme_.t - points_.back().t);
     points_.push_back(extreme_);
     direction_ = -direction_;
     extreme_ = {t, y};
@@ -58,7 +61,7 @@ class TurningPoints {
 
   std::vector<Point> points_;
   Point extreme_{};
-  double last_ = 0.0, part_ = share;
+  double last_ = 0.0, part_ = share, longest_ = 0.0;
   int trend_ = 0;
   int direction_ = 0;
   bool started_ = false;

@@ -56,6 +56,9 @@ class Search {
     options.interrupted = stop_;
     // The other element's kink crosses the whole box; of gravity it is a ridge of the free swing, on which f is small.
     if (balance_.main_element() > 0) options.max_evaluations = 20000;
+    // Each sample of a law of many states takes long; a root is polished to the fine accuracy in any case.
+    if (std::visit([](const auto& e) { return e.states(); }, loop_.elements[balance_.main_element()]) > 2)
+      options.coarse_accuracy = 1e-4;
     for (const auto& pole : loop_.tangent().eigenvalues())
       if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)
         options.frequency_hints.push_back(std::abs(pole));
@@ -81,7 +84,8 @@ class Search {
       found_.notes.push_back("the root search between " + short_number(box.frequency_min) + " and " +
                              short_number(box.frequency_max) + " rad/s ended with status " +
                              std::string(to_string(found.status)) + ": roots may be missing");
-      found_.status = found.status == Status::not_finite ? Status::not_finite : Status::incomplete;
+      found_.status =
+          found.status == Status::not_finite || found.status == Status::interrupted ? found.status : Status::incomplete;
     }
     return found;
   }

@@ -5,7 +5,7 @@
 
 namespace limcycle {
 
-NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box) {
+NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std::function<bool()>& stop) {
   NyquistPicture picture;
   const auto main = std::ssize(loop.elements) - 1;
   const auto logarithmic = [](double from, double to, int i, int n) {
@@ -29,7 +29,10 @@ NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box) {
                              : std::sqrt(box.frequency_min * box.frequency_max);
     auto& curve = picture.minus_inverse_N.emplace_back();
     picture.family_frequency.push_back(w);
-    for (const double A : picture.family_amplitude) curve.push_back(-1.0 / balance.gain(A, w, 1e-4));
+    for (const double A : picture.family_amplitude) {
+      if (stop && stop()) return picture;
+      curve.push_back(-1.0 / balance.gain(A, w, 1e-4));
+    }
   }
   return picture;
 }

@@ -55,12 +55,14 @@ class Study {
 
   PredictReport run() {
     if (options_.methods.composite) begin_composite();
-    if (options_.methods.describing_function) find_df();
+    if (options_.methods.describing_function) begin_df();
+    if (loop_.delay > 0.0) end_df();  // what is predicted tells how well the delay must be approximated
     auto treated = treat_in_time(loop_, report_, report_.notes);
     time_ = std::move(treated.loop);
     pade_order_ = treated.pade_order;
     hunt_.emplace(time_, options_, box_);
     run_starts();
+    end_df();
     end_composite();
     for (std::size_t i = 0; i < report_.predictions.size() && !stopped(); ++i) check(report_.predictions[i], i);
     if (options_.methods.harmonic_balance && !stopped()) balance_harmonics();
@@ -74,16 +76,30 @@ class Study {
     if (options_.progress) options_.progress(fraction, what);
   }
 
-  void find_df() {
-    tell(0.0, "roots of 1 + N G");
+  /// What the plain describing function says.
+  struct DfFindings {
+    std::vector<Prediction> predictions;
+    std::vector<std::string> notes;
+    std::optional<Absence> absence;
+    NyquistPicture nyquist;
+    Status status = Status::converged;
+  };
+
+  /// The search for roots of 1 + N G runs beside the simulations: neither needs the other.
+  void begin_df() {
     if (const auto why = LoopBalance::not_applicable(loop_)) {
       report_.notes.push_back(*why);
       return;
     }
     balance_.emplace(loop_);
+    df_search_ = std::async(std::launch::async, [this] { return find_df(); });
+  }
+
+  DfFindings find_df() const {
+    DfFindings findings;
     auto found = find_df_roots(loop_, *balance_, box_, options_.stop);
-    report_.notes.insert(report_.notes.end(), found.notes.begin(), found.notes.end());
-    if (found.status != Status::converged) report_.status = found.status;
+    findings.notes = std::move(found.notes);
+    findings.status = found.status;
     for (const Root& root : found.roots) {
       Prediction p;
       p.method = df_name;
@@ -93,11 +109,24 @@ class Study {
       p.residual = std::abs((*balance_)(root.amplitude, root.frequency, 1e-12));
       p.stable = balance_->stable(root.amplitude, root.frequency, root.index);
       p.trust = trust(loop_, *balance_, root.amplitude, root.frequency);
-      report_.predictions.push_back(std::move(p));
+      findings.predictions.push_back(std::move(p));
     }
-    if (report_.predictions.empty()) report_.absence = absence(loop_, box_);
-    report_.nyquist = nyquist_picture(loop_, box_);
-    used_.emplace_back(df_name);
+    if (stopped()) return findings;
+    if (findings.predictions.empty()) findings.absence = absence(loop_, box_);
+    if (options_.nyquist) findings.nyquist = nyquist_picture(loop_, box_, options_.stop);
+    return findings;
+  }
+
+  void end_df() {
+    if (!df_search_.valid()) return;
+    tell(0.6, "roots of 1 + N G");
+    DfFindings found = df_search_.get();
+    report_.notes.insert(report_.notes.begin(), found.notes.begin(), found.notes.end());
+    if (found.status != Status::converged) report_.status = found.status;
+    report_.predictions = std::move(found.predictions);
+    report_.absence = std::move(found.absence);
+    report_.nyquist = std::move(found.nyquist);
+    (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(df_name);
   }
 
   /// The search with mass and friction as one element runs beside the simulations: neither needs the other.
@@ -113,7 +142,7 @@ class Study {
 
   void end_composite() {
     if (!composite_search_.valid()) return;
-    tell(0.6, "mass and friction as one element");
+    tell(0.65, "mass and friction as one element");
     auto found = composite_search_.get();
     report_.notes.insert(report_.notes.end(), found.notes.begin(), found.notes.end());
     for (const CompositeRoot& root : found.roots) {
@@ -127,7 +156,7 @@ class Study {
       composite_roots_[report_.predictions.size()] = root;
       report_.predictions.push_back(std::move(p));
     }
-    used_.emplace_back(composite_name);
+    (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(composite_name);
   }
 
   /// Initial displacements of y: the largest amplitude of interest and smaller ones, two and then one decade apart.
@@ -302,10 +331,22 @@ class Study {
     return sum / std::abs(X(1));
   }
 
+  void note_memory() {
+    for (std::size_t i = 0; i < report_.cycles.size(); ++i) {
+      if (report_.cycles[i].remembered == 0) continue;
+      report_.notes.push_back(
+          "cycle " + std::to_string(i) + " is one of many, close to each other: the law remembers " +
+          std::to_string(report_.cycles[i].remembered) + (report_.cycles[i].remembered == 1 ? " number" : " numbers") +
+          " of how it got there, which the cycle neither changes nor forgets (their multipliers, 1, "
+          "are left out; stability is for a given history)");
+    }
+  }
+
   void finish() {
     report_.cycles = hunt_->cycles();
     for (Cycle& cycle : report_.cycles) cycle.error = std::max(cycle.error, delay_error(cycle));
     report_.outcomes = hunt_->outcomes();
+    note_memory();
     for (const auto& method : used_) {
       const auto missed = missed_by(method, report_.cycles, report_.predictions);
       report_.missed.insert(report_.missed.end(), missed.begin(), missed.end());
@@ -323,6 +364,7 @@ class Study {
   std::optional<CycleHunt> hunt_;
   std::optional<LoopBalance> balance_;
   std::optional<CompositeBalance> composite_;
+  std::future<DfFindings> df_search_;
   std::future<CompositeSearch> composite_search_;
   std::map<std::size_t, CompositeRoot> composite_roots_;  ///< by index of the prediction
   std::vector<std::string> used_;

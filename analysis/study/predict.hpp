@@ -28,7 +28,8 @@ struct PredictOptions {
   std::optional<SearchBox> search;  ///< default: default_search_box
   int starts = 4;                   ///< simulations from different initial states
   double accuracy = 1e-8;           ///< wanted relative error of period and amplitude of a cycle
-  std::function<bool()> stop;       ///< asked often, by two threads; true ends the work and keeps what is there
+  bool nyquist = true;              ///< the curves for the picture too
+  std::function<bool()> stop;       ///< asked often, by several threads; true ends the work and keeps what is there
   std::function<void(double, std::string_view)> progress;  ///< fraction done (0..1), what is being done
 };
 
@@ -73,8 +74,9 @@ struct NyquistPicture {
   std::vector<std::vector<std::complex<double>>> minus_inverse_N;
 };
 
-/// Both curves over the search box; points where N or G does not exist are NaN or left out.
-NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box);
+/// Both curves over the search box; points where N or G does not exist are NaN or left out. `stop` is asked between
+/// points: when it returns true the curves end there.
+NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std::function<bool()>& stop = {});
 
 struct PredictReport {
   SearchBox search;
@@ -82,6 +84,7 @@ struct PredictReport {
   std::vector<Prediction> predictions;
   std::vector<Missed> missed;
   std::vector<OutcomeOfStart> outcomes;
+  std::vector<std::string> unfinished{};  ///< methods whose search was interrupted: they may predict more
   NyquistPicture nyquist;
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: is that proved?
   std::vector<std::string> notes;    ///< what a user must know: methods that do not apply, searches that are incomplete

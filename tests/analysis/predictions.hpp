@@ -22,7 +22,7 @@ inline PredictOptions roots_only(std::optional<SearchBox> box = {}) {
   auto options = df_only(box);
   options.starts = 0;
   const auto found = std::make_shared<bool>(false);
-  options.progress = [found](double fraction, std::string_view) { *found = fraction > 0.0; };
+  options.progress = [found](double fraction, std::string_view) { *found = fraction > 0.65; };
   options.stop = [found] { return *found; };
   return options;
 }

@@ -146,6 +146,17 @@ TEST_CASE("predict: unstable cycles and interrupted work are named") {
   CHECK_THAT(predict_text("x", report, {}), Contains("Status: interrupted"));
 }
 
+TEST_CASE("predict: a search that was interrupted is not said to predict none") {
+  PredictReport report = sample::hunting();
+  std::erase_if(report.predictions, [](const auto& one) { return one.method == "describing-function"; });
+  report.missed.clear();
+  report.unfinished = {"describing-function"};
+  report.status = Status::interrupted;
+  const std::string text = predict_text("servo", report, {});
+  CHECK(text.find("The describing function was interrupted after 0 predictions: it may predict") != std::string::npos);
+  CHECK(text.find("predicts none") == std::string::npos);
+}
+
 TEST_CASE("df: a short table is printed, a long one summarised") {
   DescribingFunction result;
   result.gain = {7.219, 127.419};

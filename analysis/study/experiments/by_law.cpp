@@ -15,7 +15,7 @@ namespace limcycle {
 namespace {
 
 /// A law that has not finished one experiment by then is stuck in it (switches without end, say).
-constexpr std::chrono::seconds patience{40};
+constexpr std::chrono::seconds patience{70};
 
 /// Greatest minus least of the finite values.
 double width(const std::vector<double>& values) {

@@ -1,6 +1,8 @@
 #include "limcycle/analysis/orbit/settle.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "limcycle/analysis/orbit/turning_points.hpp"
 #include "limcycle/tests/loops.hpp"
@@ -105,4 +107,15 @@ TEST_CASE(
     REQUIRE(settled.outcome == Outcome::cycle);
     CHECK(settled.shot->cycle.period == Approx(23.748197).epsilon(3e-8));  // measured by another program
   }
+}
+
+TEST_CASE("turning points: a ringing that does not die while the body waits is not taken for swings") {
+  TurningPoints turning;
+  for (int i = 0; i <= 40000; ++i) {
+    const double t = 0.001 * i, place = std::clamp(3.0 * std::sin(t), -1.0, 1.0);  // waits at both ends
+    turning.feed(t, place + 4e-3 * std::sin(300.0 * t));
+  }
+  std::size_t late = 0;
+  for (const auto& point : turning.points()) late += point.t > 8.0 ? 1 : 0;
+  CHECK(late == 9);
 }
