@@ -1,6 +1,8 @@
 #include "limcycle/analysis/study/orbit_guess.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <complex>
 #include <numbers>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
@@ -31,6 +33,26 @@ OrbitGuess guess_orbit(const Loop& loop, const std::function<Eigen::VectorXd(dou
     state.modes = field.modes();
   }
   return guess;
+}
+
+Eigen::VectorXd linear_states(const Loop& loop, const HarmonicBalance& balance, double phase, double late) {
+  using Complex = std::complex<double>;
+  const Eigen::Index n = loop.states();
+  const auto output = [&](int order) {
+    Eigen::VectorXcd W(std::ssize(balance.outputs));
+    for (std::size_t k = 0; k < balance.outputs.size(); ++k)
+      W(static_cast<Eigen::Index>(k)) = balance.outputs[k](order);
+    return W;
+  };
+  const Eigen::VectorXd pull = loop.E * loop.external + loop.B * output(0).imag();
+  Eigen::VectorXd x = loop.A.completeOrthogonalDecomposition().solve(-pull);
+  for (int order = 1; order <= balance.harmonics; ++order) {
+    const Complex s(0.0, order * balance.frequency);
+    const Eigen::MatrixXcd M = s * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<Complex>();
+    const Complex turn = std::polar(1.0, order * phase) * std::exp(-s * late);
+    x += (M.partialPivLu().solve(loop.B.cast<Complex>() * output(order)) * turn).imag();
+  }
+  return x;
 }
 
 }  // namespace limcycle

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 
+#include "limcycle/analysis/frequency/harmonic_balance.hpp"
 #include "limcycle/analysis/orbit/multiple_shooting.hpp"
 
 namespace limcycle {
@@ -10,5 +11,9 @@ namespace limcycle {
 /// prediction at every node.
 OrbitGuess guess_orbit(const Loop& loop, const std::function<Eigen::VectorXd(double phase)>& linear_states,
                        double frequency, bool half, int nodes = 8);
+
+/// Linear states of a loop on a harmonic balance, at a phase of its fundamental. `late`: by how much the elements act
+/// later than their inputs say, where that is not in the states of the loop (a delayed relay), s.
+Eigen::VectorXd linear_states(const Loop& loop, const HarmonicBalance& balance, double phase, double late);
 
 }  // namespace limcycle

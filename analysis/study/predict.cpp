@@ -12,7 +12,7 @@
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/composite_balance.hpp"
 #include "limcycle/analysis/study/cycle_hunt.hpp"
-#include "limcycle/analysis/study/df_roots.hpp"
+#include "limcycle/analysis/study/df_predictions.hpp"
 #include "limcycle/analysis/study/orbit_guess.hpp"
 #include "limcycle/analysis/study/output_per_input.hpp"
 #include "limcycle/analysis/study/verdicts.hpp"
@@ -21,7 +21,7 @@
 namespace limcycle {
 namespace {
 
-constexpr std::string_view df_name = "describing-function", composite_name = "composite-describing-function",
+constexpr std::string_view df_name = DfPredictions::method, composite_name = "composite-describing-function",
                            balance_name = "harmonic-balance";
 
 /// The loop as the time domain can treat it, and a note of what was done to a delay: the Pade approximation is right to
@@ -76,15 +76,6 @@ class Study {
     if (options_.progress) options_.progress(fraction, what);
   }
 
-  /// What the plain describing function says.
-  struct DfFindings {
-    std::vector<Prediction> predictions;
-    std::vector<std::string> notes;
-    std::optional<Absence> absence;
-    NyquistPicture nyquist;
-    Status status = Status::converged;
-  };
-
   /// The search for roots of 1 + N G runs beside the simulations: neither needs the other.
   void begin_df() {
     if (const auto why = LoopBalance::not_applicable(loop_)) {
@@ -92,35 +83,13 @@ class Study {
       return;
     }
     balance_.emplace(loop_);
-    df_search_ = std::async(std::launch::async, [this] { return find_df(); });
-  }
-
-  DfFindings find_df() const {
-    DfFindings findings;
-    auto found = find_df_roots(loop_, *balance_, box_, options_.stop);
-    findings.notes = std::move(found.notes);
-    findings.status = found.status;
-    for (const Root& root : found.roots) {
-      Prediction p;
-      p.method = df_name;
-      p.input_amplitude = root.amplitude;
-      p.amplitude = balance_->output_amplitude(root.amplitude, root.frequency);
-      p.frequency = root.frequency;
-      p.residual = std::abs((*balance_)(root.amplitude, root.frequency, 1e-12));
-      p.stable = balance_->stable(root.amplitude, root.frequency, root.index);
-      p.trust = trust(loop_, *balance_, root.amplitude, root.frequency);
-      findings.predictions.push_back(std::move(p));
-    }
-    if (stopped()) return findings;
-    if (findings.predictions.empty()) findings.absence = absence(loop_, box_);
-    if (options_.nyquist) findings.nyquist = nyquist_picture(loop_, box_, options_.stop);
-    return findings;
+    df_search_ = std::async(std::launch::async, [this] { return df_predictions(loop_, *balance_, box_, options_); });
   }
 
   void end_df() {
     if (!df_search_.valid()) return;
     tell(0.6, "roots of 1 + N G");
-    DfFindings found = df_search_.get();
+    DfPredictions found = df_search_.get();
     report_.notes.insert(report_.notes.begin(), found.notes.begin(), found.notes.end());
     if (found.status != Status::converged) report_.status = found.status;
     report_.predictions = std::move(found.predictions);
@@ -260,27 +229,6 @@ class Study {
     used_.emplace_back(balance_name);
   }
 
-  /// Linear states of the loop that is treated in time on a harmonic balance.
-  Eigen::VectorXd linear_state(const HarmonicBalance& found, double phase) const {
-    using Complex = std::complex<double>;
-    const Eigen::Index n = time_.states();
-    const auto output = [&](int order) {
-      Eigen::VectorXcd W(std::ssize(found.outputs));
-      for (std::size_t k = 0; k < found.outputs.size(); ++k) W(static_cast<Eigen::Index>(k)) = found.outputs[k](order);
-      return W;
-    };
-    const Eigen::VectorXd pull = time_.E * time_.external + time_.B * output(0).imag();
-    Eigen::VectorXd x = time_.A.completeOrthogonalDecomposition().solve(-pull);
-    const bool relay_is_late = loop_.delay > 0.0 && n == loop_.states();
-    for (int order = 1; order <= found.harmonics; ++order) {
-      const Complex s(0.0, order * found.frequency);
-      const Eigen::MatrixXcd M = s * Eigen::MatrixXcd::Identity(n, n) - time_.A.cast<Complex>();
-      const Complex turn = std::polar(1.0, order * phase) * (relay_is_late ? std::exp(-s * loop_.delay) : 1.0);
-      x += (M.partialPivLu().solve(time_.B.cast<Complex>() * output(order)) * turn).imag();
-    }
-    return x;
-  }
-
   bool missed_by_df(std::size_t cycle) const {
     return std::ranges::none_of(report_.predictions,
                                 [&](const Prediction& p) { return p.method == df_name && p.cycle == cycle; });
@@ -310,9 +258,11 @@ class Study {
              std::abs(q.amplitude / p.amplitude - 1.0) < 1e-6;
     };
     if (std::ranges::any_of(report_.predictions, same)) return;
-    if (!nearest(hunt_->cycles(), p))
-      hunt_->shoot_from(guess_orbit(
-          time_, [&](double phase) { return linear_state(found, phase); }, p.frequency, symmetry(time_).has_value()));
+    if (!nearest(hunt_->cycles(), p)) {
+      const double late = time_.states() == loop_.states() ? loop_.delay : 0.0;
+      const auto states = [&](double phase) { return linear_states(time_, found, phase, late); };
+      hunt_->shoot_from(guess_orbit(time_, states, p.frequency, symmetry(time_).has_value()));
+    }
     if (const auto cycle = nearest(hunt_->cycles(), p))
       compare(p, hunt_->cycles(), *cycle);
     else
@@ -364,7 +314,7 @@ class Study {
   std::optional<CycleHunt> hunt_;
   std::optional<LoopBalance> balance_;
   std::optional<CompositeBalance> composite_;
-  std::future<DfFindings> df_search_;
+  std::future<DfPredictions> df_search_;
   std::future<CompositeSearch> composite_search_;
   std::map<std::size_t, CompositeRoot> composite_roots_;  ///< by index of the prediction
   std::vector<std::string> used_;

@@ -107,7 +107,7 @@ TEST_CASE("a servo with Xiong's law repeats after three unequal swings each way"
   CHECK(cycle.half_wave_symmetric);
   const int returns = returns_of(choose_section(loop, cycle.trace), cycle.trace);
   CHECK(returns == 3);
-  CHECK(plain_period(loop, 0.1, 600.0, choose_section(loop, cycle.trace).level, returns) ==
+  CHECK(plain_period(loop, 0.1, 400.0, choose_section(loop, cycle.trace).level, returns) ==
         Approx(cycle.period).epsilon(1e-6));
 }
 
