@@ -51,6 +51,20 @@ class ControlledRodas5p {
     return result;
   }
 
+  /// The same with the rate at (x, t) given, as Odeint's explicit steppers take it.
+  template <class System>
+  Result try_step(System&& system, const State& x, const State& dxdt, double& t, State& xout, double& dt) {
+    dt = admit(x, dt);
+    if (retries(x, t)) {
+      stepper_.repeat_step(system, new_x_, dt, error_);
+    } else {
+      stepper_.do_step(system, x, dxdt, t, new_x_, dt, error_);
+    }
+    const Result result = judge(x, t, dt);
+    if (result == Result::success) xout = new_x_;
+    return result;
+  }
+
   /// Forgets the step before. Call it whenever the system changes (mode, parameters) or the state jumps: after a
   /// failure f and J of the old system would be used again from the same (x, t), and the trend of the error ends.
   void reset();

@@ -73,6 +73,7 @@ LoopField::LoopField(const Loop& loop)
   ext_ = loop.external;
   ext_rate_ = External::Zero();
   for (std::size_t i = 0; i < n_; ++i) E_ext_[i] = E_[i].dot(ext_.data());
+  if (PlainField::applies(loop)) plain_.emplace(loop);
 }
 
 Held LoopField::held(std::size_t i) const {
@@ -259,11 +260,17 @@ void LoopField::solve_held(const State& x) {
 void LoopField::look_outside(double t) {
   if (!signals_) return;
   signals_(t, ext_, ext_rate_);
+  if (plain_) return plain_->set_external(ext_);
   for (std::size_t i = 0; i < n_; ++i) E_ext_[i] = E_[i].dot(ext_.data());
 }
 
 void LoopField::evaluate(const State& x, double t) {
   look_outside(t);
+  if (plain_) {
+    plain_->rate(x, modes_, inputs_, w_, plain_dx_);
+    std::copy_n(plain_dx_.begin(), n_, dX_.begin());
+    return;
+  }
   holding_.clear();
   followed_ = false;
   for (std::size_t i = 0; i < ne_; ++i) {
@@ -283,7 +290,10 @@ void LoopField::find_inputs(const State& x) {
   for (std::size_t i = 0; i < ne_; ++i) {
     const SparsePort& port = ports_[i];
     inputs_[i].v = port.C_v.dot(x.data()) + port.D_v.dot(w_.data()) + port.c_v.dot(ext_.data());
-    if (has_follower_[i])  // friction that is more than compensated holds nothing, even where the forces would balance
+    if (plain_)
+      inputs_[i].drive = plain_->drive(i, plain_dx_, w_[i], ext_rate_);
+    else if (has_follower_[i])  // friction that is more than compensated holds nothing, even where the forces would
+                                // balance
       inputs_[i].drive = drive_with_follower(i, x);
     else if (held(i) == Held::nothing && i != asks_drive_)  // which has it from its turn
       inputs_[i].drive = drive_of(i);
@@ -312,6 +322,10 @@ void LoopField::solve_with_drive(const State& x) {
 }
 
 void LoopField::rate(const State& x, State& dx, double t) {
+  if (plain_) {
+    look_outside(t);
+    return plain_->rate(x, modes_, inputs_, w_, dx);
+  }
   evaluate(x, t);
   dx.resize(size_);
   std::ranges::copy(dX_, dx.begin());

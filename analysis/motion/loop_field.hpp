@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/cycle.hpp"
 #include "limcycle/analysis/dual.hpp"
+#include "limcycle/analysis/motion/plain_field.hpp"
 #include "limcycle/analysis/motion/state.hpp"
 #include "limcycle/models/loop.hpp"
 
@@ -102,6 +103,8 @@ class LoopField {
   std::size_t first_guard_of(std::size_t i, std::size_t guard) const;
 
   const Loop* loop_;
+  std::optional<PlainField> plain_;  ///< does the work of evaluate() and jacobian() where it applies
+  State plain_dx_;
   std::size_t size_ = 0;
   std::size_t n_ = 0, ne_ = 0;
   std::vector<std::size_t> first_state_;

@@ -139,6 +139,10 @@ void LoopField::output_gradients(const State& x) {
 
 void LoopField::jacobian(const State& x, Eigen::MatrixXd& J, double t, State& dfdt) {
   evaluate(x, t);
+  if (plain_ && !signals_) {
+    dfdt.assign(size_, 0.0);
+    return plain_->jacobian(x, modes_, inputs_, J);
+  }
   output_gradients(x);
   const auto size = static_cast<Index>(size_), n = static_cast<Index>(n_);
   J.resize(size, size);

@@ -170,7 +170,7 @@ bool March::try_step(double& dt) {
         if constexpr (std::is_same_v<S, ExactStepper>)
           return boost::numeric::odeint::fail;
         else if constexpr (std::is_same_v<S, ControlledRodas5p>)
-          return stepper.try_step(implicit_system(field_), step_.x1, step_.t1, dt);
+          return stepper.try_step(implicit_system(field_), step_.x0, step_.dx0, step_.t1, step_.x1, dt);
         else
           return stepper.try_step(right_side(field_), step_.x1, step_.t1, dt);
       },
@@ -208,11 +208,14 @@ Eigen::MatrixXd March::smooth_transition() {
 
 Status March::step(double t_end) {
   if (t_ >= t_end) return Status::converged;
+  if (fresh_)
+    field_.rate(x_, step_.dx0, t_);
+  else
+    std::swap(step_.dx0, step_.dx1);  // the step before ended here
   step_.t0 = t_;
   step_.x0 = x_;
   step_.switched.reset();
   step_.on_section = false;
-  field_.rate(x_, step_.dx0, t_);
   if (!is_finite(x_) || !is_finite(step_.dx0)) return Status::not_finite;
   field_.guards(x_, t_, guards_start_);
   if (fresh_) {
@@ -225,9 +228,10 @@ Status March::step(double t_end) {
     fresh_ = false;
   }
   double dt = std::min({dt_, dt_max_, t_end - t_});
-  const bool shortened = dt < dt_;
+  bool shortened = dt < dt_;  // by what is asked for, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_;
   while (!try_step(dt)) {
+    shortened = false;
     if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12)))
       return is_finite(step_.x1) ? Status::stalled : Status::not_finite;
   }

@@ -2,12 +2,11 @@
 /// One step of RODAS5P, the implicit method for stiff motion (friction with a stiff bristle above all).
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <boost/numeric/odeint/stepper/stepper_categories.hpp>
 #include <cstddef>
 #include <functional>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "limcycle/analysis/motion/dense_segment.hpp"
@@ -61,7 +60,17 @@ class Rodas5p {
   /// embedded one in xerr. xout may be x.
   template <class System>
   void do_step(System&& system, const State& x, double t, State& xout, double dt, State& xerr) {
-    begin(system, x, t);
+    begin(x, t);
+    unwrap(unwrap(system).first)(std::as_const(x0_), f0_, t);
+    linearise(system);
+    advance(system, xout, dt, xerr);
+  }
+  /// The same with the rate at (x, t) given, as Odeint's explicit steppers take it: one call of f less.
+  template <class System>
+  void do_step(System&& system, const State& x, const State& dxdt, double t, State& xout, double dt, State& xerr) {
+    begin(x, t);
+    f0_ = dxdt;
+    linearise(system);
     advance(system, xout, dt, xerr);
   }
   template <class System>
@@ -95,50 +104,51 @@ class Rodas5p {
   void adjust_size(const State& x) { resize(x.size()); }
 
  private:
+  /// The right side of a system, whatever its type: the stages are compiled once, in their own file.
+  struct RightSide {
+    void* system;
+    void (*rate)(void* system, const State& x, State& dxdt, double t);
+  };
+
+  void begin(const State& x, double t);
+
   template <class System>
-  void begin(System& system, const State& x, double t) {
-    resize(x.size());
-    x0_ = x;
-    t0_ = t;
+  void linearise(System& system) {
     jacobian_.setZero();
-    dfdt_.assign(x.size(), 0.0);
-    auto& parts = unwrap(system);
-    unwrap(parts.first)(std::as_const(x0_), f0_, t);
-    unwrap(parts.second)(std::as_const(x0_), jacobian_, t, dfdt_);
+    dfdt_.assign(x0_.size(), 0.0);
+    unwrap(unwrap(system).second)(std::as_const(x0_), jacobian_, t0_, dfdt_);
   }
 
   template <class System>
   void advance(System& system, State& xout, double dt, State& xerr) {
     auto& f = unwrap(unwrap(system).first);
-    factorise(dt);
-    solve_stage(0, f0_);
-    for (std::size_t s = 1; s < rodas5p::stages; ++s) {
-      place_stage(s);
-      f(std::as_const(stage_x_), stage_f_, t0_ + rodas5p::node[s] * dt);
-      solve_stage(s, stage_f_);
-    }
+    auto call = [&f](const State& x, State& dxdt, double t) { f(x, dxdt, t); };
+    run({&call, [](void* object, const State& x, State& dxdt,
+                   double t) { (*static_cast<decltype(call)*>(object))(x, dxdt, t); }},
+        dt);
     finish(xout, xerr);
   }
 
   void resize(std::size_t n);
-  /// LU of I/(gamma h) - J.
-  void factorise(double h);
-  /// stage_x_ = x0 + sum_j A[s][j] k_j; stages come in order.
-  void place_stage(std::size_t s);
-  /// k_s from f at the stage.
-  void solve_stage(std::size_t s, const State& f);
+  void run(const RightSide& f, double h);
+  template <int N>
+  void run_sized(const RightSide& f, double h);
+  template <int N, std::size_t s>
+  void stage(const RightSide& f);
+  template <int N>
+  void factorise();
+  template <int N>
+  void solve(double* solution);
   void finish(State& xout, State& xerr);
 
-  template <int N>
-  using Lu = Eigen::PartialPivLU<Eigen::Matrix<double, N, N>>;
-
-  State x0_, f0_, dfdt_, x1_, stage_x_, stage_f_, unused_error_;
+  State x0_, f0_, dfdt_, x1_, stage_x_, stage_f_, right_, unused_error_;
   Eigen::MatrixXd jacobian_;
   std::vector<double> k_;  ///< the stages, one after the other
+  /// I/(gamma h) - J by columns, factorised or inverted, and its rows in the order of the pivots.
+  std::vector<double> lu_;
+  std::vector<std::size_t> order_;
   double t0_ = 0;
   double h_ = 0;
-  /// Small systems are solved at fixed size, which is about three times as fast.
-  std::variant<Lu<Eigen::Dynamic>, Lu<1>, Lu<2>, Lu<3>, Lu<4>, Lu<5>, Lu<6>, Lu<7>, Lu<8>> lu_;
 };
 
 }  // namespace limcycle

@@ -1,9 +1,10 @@
 #include "limcycle/analysis/motion/transition.hpp"
 
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <vector>
 
+#include "limcycle/analysis/dense_elimination.hpp"
 #include "limcycle/analysis/motion/march.hpp"
 
 namespace limcycle {
@@ -20,16 +21,33 @@ Eigen::MatrixXd transition(LoopField& field, const Step& step) {
        {(16.0 - s6) / 36.0, (16.0 + s6) / 36.0, 1.0 / 9.0}}};
   const auto n = static_cast<Index>(field.size());
   const double h = step.t1 - step.t0;
-  MatrixXd system = MatrixXd::Identity(3 * n, 3 * n), right(3 * n, n), J;
+  // Row-major, the right sides [I; I; I] beside it; unknowns and rows stage by stage.
+  const Index m = 3 * n, width = m + n;
+  std::vector<double> system(static_cast<std::size_t>(m * width), 0.0);
+  const auto at = [&](Index row, Index column) -> double& {
+    return system[static_cast<std::size_t>(row * width + column)];
+  };
+  MatrixXd J;
   State x, time;
-  for (std::size_t j = 0; j < 3; ++j) {
-    step.interpolate(c[j], x);
-    field.jacobian(x, J, step.t0 + c[j] * h, time);
-    for (std::size_t i = 0; i < 3; ++i)
-      system.block(static_cast<Index>(i) * n, static_cast<Index>(j) * n, n, n) -= h * a[i][j] * J;
-    right.middleRows(static_cast<Index>(j) * n, n).setIdentity();
+  for (Index j = 0; j < 3; ++j) {
+    const auto stage = static_cast<std::size_t>(j);
+    step.interpolate(c[stage], x);
+    field.jacobian(x, J, step.t0 + c[stage] * h, time);
+    for (Index i = 0; i < 3; ++i)
+      for (Index row = 0; row < n; ++row)
+        for (Index column = 0; column < n; ++column)
+          at(i * n + row, j * n + column) = -h * a[static_cast<std::size_t>(i)][stage] * J(row, column);
+    for (Index row = 0; row < n; ++row) {
+      at(j * n + row, j * n + row) += 1.0;
+      at(j * n + row, m + row) = 1.0;
+    }
   }
-  return system.partialPivLu().solve(right).bottomRows(n);
+  MatrixXd result(n, n);
+  if (!eliminate(system, static_cast<std::size_t>(m), static_cast<std::size_t>(n)))
+    return MatrixXd::Constant(n, n, NAN);
+  for (Index row = 0; row < n; ++row)
+    for (Index column = 0; column < n; ++column) result(row, column) = at(2 * n + row, m + column);
+  return result;
 }
 
 }  // namespace limcycle

@@ -212,15 +212,16 @@ bool describe(const Loop& loop, const Shooter& shooter, double rtol, int resolut
 }
 
 /// Multipliers at two tolerances, whose disagreement is their error, and the verdict they allow.
-void judge(Shooter& shooter, ShootingResult& result, bool exact) {
+void judge(Shooter& shooter, ShootingResult& result, bool exact, double rtol) {
+  if (!(rtol > 0.0)) return;
   Cycle& cycle = result.cycle;
   std::vector<std::complex<double>> rough;
   double trivial = 0.0;
   if (!exact) {
-    if (shooter.linearise(1e-9) != Status::converged) return;
+    if (shooter.linearise(10.0 * rtol) != Status::converged) return;
     rough = shooter.multipliers(trivial);
   }
-  if (shooter.linearise(1e-10) != Status::converged) return;
+  if (shooter.linearise(rtol) != Status::converged) return;
   cycle.multipliers = shooter.multipliers(result.trivial_error);
   cycle.remembered = shooter.remembered();
   result.multiplier_error = 1e-12 + result.trivial_error;
@@ -260,7 +261,7 @@ int returns_of(const Section& section, const Trace& trace) {
 
 ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& section, bool half,
                      const ShootingOptions& options) {
-  const double coarse = std::max(1e-7, options.rtol), loose = 30.0 * options.rtol;
+  const double loose = 30.0 * options.rtol, coarse = std::max(1e-7, loose);
   const bool exact = choose_stepper(loop, options.rtol) == StepperKind::exact;
   std::optional<Reflection> reflection;
   if (half) reflection = symmetry(loop);
@@ -272,25 +273,25 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
                   options);
   Status status = shooter.warm_up(guess);
   if (status != Status::converged) return failed(status, shooter, "the motion did not return to the section");
-  if (!exact) status = shooter.solve(coarse, 30.0 * coarse);
+  if (!exact && coarse > loose) status = shooter.solve(coarse, 30.0 * coarse);
   const double tolerance = exact ? 1e-13 : options.tolerance;
   if (status == Status::converged) status = shooter.solve(loose, tolerance);
   if (status != Status::converged) return failed(status, shooter, "no fixed point of the return map was reached");
   Cycle rough;
-  if (!describe(loop, shooter, loose, 500, rough))
+  if (!describe(loop, shooter, loose, options.resolution / 2, rough))
     return failed(Status::stalled, shooter, "the cycle could not be followed");
 
   status = shooter.solve(options.rtol, tolerance);
   if (status != Status::converged) return failed(status, shooter, "the fixed point was lost at the tight tolerance");
   ShootingResult result;
   Cycle& cycle = result.cycle;
-  if (!describe(loop, shooter, options.rtol, 1000, cycle))
+  if (!describe(loop, shooter, options.rtol, options.resolution, cycle))
     return failed(Status::stalled, shooter, "the cycle could not be followed");
   cycle.method = exact ? "exact" : "shooting";
   const double floor = exact ? 1e-13 : 10.0 * options.rtol;
   cycle.error = std::max({std::abs(cycle.period / rough.period - 1.0),
                           std::abs(cycle.amplitude / rough.amplitude - 1.0), cycle.residual, floor});
-  judge(shooter, result, exact);
+  judge(shooter, result, exact, options.derivative_rtol);
   result.status = Status::converged;
   result.maps = shooter.maps();
   return result;
