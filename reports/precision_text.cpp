@@ -74,7 +74,8 @@ std::string chart_text(const WorkChart& chart) {
   std::string out = "\n" + question_in_words(chart) + "\n" + wrapped(reference_in_words(chart), 80, 2);
   if (chart.points.empty()) return out;
   if (chart.question == "cycle") out += wrapped(conditions(), 80, 2);
-  return out + method_table(chart).text() + reasons(chart) + wrapped(front_in_words(chart), 80, 2);
+  out += "  CPU time that each method needs for an error, the least error, failures:\n";
+  return out + method_table(chart).text() + reasons(chart);
 }
 
 }  // namespace
@@ -132,7 +133,7 @@ std::string conditions() {
 
 Table method_table(const WorkChart& chart) {
   Table table{{{"method", "", Align::left}}, {}};
-  for (const double level : shown) table.columns.push_back({"for " + power(level), ""});
+  for (const double level : shown) table.columns.push_back({power(level), ""});
   table.columns.push_back({"least error", ""});
   table.columns.push_back({"not right", "", Align::left});
   for (const auto& method : chart.methods) {

@@ -136,8 +136,11 @@ const palette = ["#2f81c7", "#d9661f", "#2e9e5b", "#a05bc4", "#c4a000", "#d1477a
 
 // Marks of methods over two logarithmic axes: circles where they are right, crosses where they fail.
 function work(d) {
-  const traces = d.series.map((one, i) => {
-    const follows = one.colour >= 0, shade = palette[(follows ? one.colour : i) % palette.length];
+  const shades = [];
+  const traces = d.series.map((one) => {
+    const follows = one.colour >= 0;
+    shades.push(follows ? shades[one.colour] : palette[d.series.slice(0, shades.length).filter((s) => s.colour < 0).length % palette.length]);
+    const shade = shades[shades.length - 1];
     return {name: one.name, x: one.x, y: one.y, mode: one.joined ? "lines+markers" : "markers",
       line: {color: shade, width: 1.6, dash: ["solid", "dash", "dot"][one.dash]}, showlegend: !follows,
       marker: {color: shade, size: one.good.map((good) => good ? 7 : 10), symbol: one.good.map((good) => good ? "circle" : "x")},
