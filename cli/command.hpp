@@ -49,6 +49,7 @@ Case load_case(const CommonFlags& flags);
 Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 
 // Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.
+void add_adequate(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_continue(CLI::App& program, Action& action);
 void add_df(CLI::App& program, Action& action);
