@@ -19,7 +19,7 @@ std::string short_name(const std::string& method) {
 /// "3.2 %", "rest", "-".
 std::string verdict_cell(const AdequatePoint& point) {
   if (!point.answer.answered) return "-";
-  if (std::isinf(point.error)) return point.answer.verdict;
+  if (std::isinf(point.error)) return point.answer.verdict == "no cycle" ? "none" : point.answer.verdict;
   return as_percent(point.error);
 }
 
@@ -63,7 +63,8 @@ std::string best_in_words(const AdequateReport& report, const Units& units) {
 std::string adequate_answer(const AdequateReport& report, const Units& units) {
   const std::string front = report.status == Status::interrupted ? "Interrupted; as far as it went: " : "";
   if (report.status == Status::undefined) return "There is nothing to measure by: " + report.why + ".";
-  if (!report.best.answered) return front + "nothing was decided.";
+  if (!report.best.answered || (!report.least && report.status == Status::interrupted))
+    return front + "nothing was decided.";
   const std::string range = report.spread.empty() ? "" : " over the spread of the parameters";
   if (!report.least)
     return front +
@@ -136,8 +137,9 @@ std::string adequate_text(const std::string& title, const AdequateReport& report
   if (!report.points.empty()) {
     out += "\nError of period and amplitude by law and method, or the other verdict\n" + ladder_table(report).text();
     out += wrapped(
-        "Worst: by shooting, over the spread of the parameters; only asked of laws that are enough at the "
-        "case's own values.",
+        "DF: describing function, comp. DF: with mass and friction as one element, HB: harmonic balance; none: it sees "
+        "no cycle, -: no answer. Worst: by shooting, over the spread of the parameters; only asked of laws that are "
+        "enough at the case's own values.",
         80, 2);
     Table costs{{{"law", "", Align::left}}, {}};
     for (const auto& method : scene_methods()) costs.columns.push_back({short_name(method), ""});

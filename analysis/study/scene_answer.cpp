@@ -20,6 +20,9 @@ constexpr std::string_view df_name = "describing-function", composite_name = "co
                            balance_name = "harmonic-balance", simulation_name = "simulation",
                            shooting_name = "shooting";
 
+/// What methods say that do not tell rest from steady sliding.
+constexpr std::string_view no_cycle = "no cycle";
+
 /// An oscillation that a first-harmonic method predicts.
 struct Oscillation {
   double amplitude = 0.0, frequency = 0.0, input_amplitude = 0.0;
@@ -78,7 +81,7 @@ std::optional<std::vector<Oscillation>> by_composite(const Loop& loop, const Pre
 SceneAnswer answer_of(const std::vector<Oscillation>& list) {
   SceneAnswer answer;
   answer.answered = true;
-  answer.verdict = "rest";
+  answer.verdict = std::string(no_cycle);
   for (const Oscillation& one : list) {
     if (one.stable == false || one.amplitude <= answer.amplitude) continue;
     answer.verdict = "cycle";
@@ -145,7 +148,7 @@ class Watch {
     if (!calm) return unanswered("the simulation neither came to rest nor repeated itself");
     SceneAnswer answer;
     answer.answered = true;
-    answer.verdict = "rest";
+    answer.verdict = std::string(no_cycle);
     return answer;
   }
 
@@ -266,10 +269,13 @@ SceneAnswer ask_scene(const std::string& method, const Loop& loop, const Predict
 
 double scene_error(const std::string& method, const SceneAnswer& answer, const SceneAnswer& best) {
   if (!answer.answered || !best.answered) return not_known;
-  // One start tells one outcome; it must be among those that all starts have.
-  const bool one_start = method != shooting_name;
-  const bool same = one_start ? ("/" + best.verdict + "/").find("/" + answer.verdict + "/") != std::string::npos
-                              : answer.verdict == best.verdict;
+  // Where not all starts were tried, or not all ends told apart, the answer must be among those that there are.
+  const std::string there = "/" + best.verdict + "/";
+  bool same = answer.verdict == best.verdict;
+  if (method != shooting_name)
+    same = answer.verdict == no_cycle
+               ? there.find("/rest/") != std::string::npos || there.find("/sliding/") != std::string::npos
+               : there.find("/" + answer.verdict + "/") != std::string::npos;
   if (!same || answer.hunts() != (answer.period > 0.0)) return infinite;
   if (!answer.hunts()) return 0.0;
   const bool first = method == df_name || method == composite_name;

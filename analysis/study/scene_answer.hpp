@@ -18,13 +18,13 @@ struct SceneAnswer {
   double error = 0.0;                    ///< own estimate, relative
   double seconds = 0.0;                  ///< CPU
   std::string why;                       ///< unless answered: one sentence
-  bool hunts() const { return verdict.find("cycle") != std::string::npos; }
+  bool hunts() const { return verdict != "no cycle" && verdict.find("cycle") != std::string::npos; }
 };
 
-/// The ladder of methods, least first. A first-harmonic method says "rest" where it sees no stable oscillation, and
-/// answers with the first harmonic. Harmonic balance begins from the roots of either, and takes over their stability.
-/// "simulation" is a plain one that runs until its swings repeat; "shooting" simulates until the motion is near a cycle
-/// and solves for it.
+/// The ladder of methods, least first. A first-harmonic method says "no cycle" where it sees no stable oscillation,
+/// and answers with the first harmonic. Harmonic balance begins from the roots of either, and takes over their
+/// stability. "simulation" is a plain one that runs until its swings repeat; "shooting" simulates until the motion is
+/// near a cycle and solves for it.
 const std::vector<std::string>& scene_methods();
 
 /// Asks one of them. `options`: search box, starts, stop.
