@@ -33,6 +33,7 @@ class Study {
     WorkChart chart;
     chart.question = "cycle";
     report_.cycle = cycle_reference(time.loop, options_.cycle.predict, options_.cycle.check_steps, chart.why);
+    if (stopped()) chart.why = "interrupted";
     if (report_.cycle) {
       const CycleReference& reference = *report_.cycle;
       chart.answered = reference.verified();
