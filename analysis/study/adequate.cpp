@@ -102,11 +102,18 @@ class Study {
   }
 
   void ask_methods(const LawRung& rung) {
+    bool predicted = false;  // by a first-harmonic method, so that harmonic balance has a start
     for (const auto& method : scene_methods()) {
       if (stopped()) return;
       AdequatePoint point{.law = rung.name, .method = method, .answer = {}, .worst_at = {}, .why = {}};
-      point.answer = rung.own && method == shooting ? report_.best : ask_law(method, *rung.law);
+      if (rung.own && method == shooting)
+        point.answer = report_.best;
+      else if (method == "harmonic-balance" && !predicted)
+        point.answer = balance_without_start();
+      else
+        point.answer = ask_law(method, *rung.law);
       if (stopped()) return;
+      predicted = predicted || (point.answer.answered && point.answer.hunts());
       point.error = scene_error(method, point.answer, report_.best);
       judge(point, point.error, point.answer, report_.best, "");
       report_.points.push_back(std::move(point));

@@ -23,6 +23,8 @@ constexpr std::string_view df_name = "describing-function", composite_name = "co
 /// What methods say that do not tell rest from steady sliding.
 constexpr std::string_view no_cycle = "no cycle";
 
+constexpr std::string_view no_start = "no first-harmonic method predicts a cycle to begin from";
+
 /// An oscillation that a first-harmonic method predicts.
 struct Oscillation {
   double amplitude = 0.0, frequency = 0.0, input_amplitude = 0.0;
@@ -95,9 +97,9 @@ SceneAnswer ask_balance(const Loop& loop, const PredictOptions& options) {
   std::string why;
   auto list = by_describing_function(loop, options, why);
   if (!list || list->empty()) list = by_composite(loop, options, why);
-  if (!list) return unanswered("no first-harmonic method has a root to begin from: " + why);
+  if (!list || list->empty()) return unanswered(std::string(no_start));
   SceneAnswer best = answer_of({});
-  bool balanced = list->empty();
+  bool balanced = false;
   for (const Oscillation& root : *list) {
     HarmonicBalanceOptions balance;
     balance.max_evaluations = 200'000;
@@ -253,6 +255,12 @@ const std::vector<std::string>& scene_methods() {
                                               std::string(balance_name), std::string(simulation_name),
                                               std::string(shooting_name)};
   return names;
+}
+
+SceneAnswer balance_without_start() {
+  SceneAnswer answer = unanswered(std::string(no_start));
+  answer.seconds = not_known;
+  return answer;
 }
 
 SceneAnswer ask_scene(const std::string& method, const Loop& loop, const PredictOptions& options) {

@@ -30,6 +30,9 @@ const std::vector<std::string>& scene_methods();
 /// Asks one of them. `options`: search box, starts, stop.
 SceneAnswer ask_scene(const std::string& method, const Loop& loop, const PredictOptions& options);
 
+/// What harmonic balance says where neither describing function predicts a cycle: nothing.
+SceneAnswer balance_without_start();
+
 /// Largest relative difference of period and amplitude (for first-harmonic methods: of the first harmonic), infinite
 /// where the verdicts differ, NaN where there is no answer.
 double scene_error(const std::string& method, const SceneAnswer& answer, const SceneAnswer& best);
