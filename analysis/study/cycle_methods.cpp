@@ -126,7 +126,9 @@ Attempt compare_roots(const std::vector<std::pair<double, double>>& roots, Statu
   }
   if (std::isnan(attempt.error)) {
     attempt.of_another_kind = attempt.answered;
-    attempt.why = roots.empty() ? "predicts no cycle" : "predicts no cycle near this one";
+    attempt.why = !attempt.answered ? "the search ended with status " + std::string(to_string(status))
+                  : roots.empty()   ? "predicts no cycle"
+                                    : "predicts no cycle near this one";
   } else if (attempt.error > right_within) {
     attempt.why = "one harmonic is not enough here: no setting changes this error";
   }
