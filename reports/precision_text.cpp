@@ -40,12 +40,13 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// "2 too slow, 1 wrong", or the first reason where all settings fare alike.
+/// "1 wrong, 2 too slow"; "-" if all settings are right.
 std::string failures(const WorkChart& chart, const std::string& method) {
   std::map<Quality, int> count;
   for (const auto& point : chart.points)
     if (point.method == method && point.quality != Quality::right) ++count[point.quality];
   std::vector<std::string> words;
+  words.reserve(count.size());
   for (const auto& [quality, times] : count) words.push_back(fmt::format("{} {}", times, to_string(quality)));
   return words.empty() ? "-" : joined(words);
 }

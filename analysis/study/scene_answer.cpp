@@ -248,6 +248,14 @@ SceneAnswer ask(const std::string& method, const Loop& loop, const PredictOption
   return list ? answer_of(*list) : unanswered(why);
 }
 
+/// Is what one start gives among the ends that all starts have?
+bool is_among(const std::string& verdict, const std::string& all) {
+  const auto has = [&](const std::string& word) {
+    return ("/" + all + "/").find("/" + word + "/") != std::string::npos;
+  };
+  return verdict == no_cycle ? has("rest") || has("sliding") : has(verdict);
+}
+
 }  // namespace
 
 const std::vector<std::string>& scene_methods() {
@@ -277,13 +285,11 @@ SceneAnswer ask_scene(const std::string& method, const Loop& loop, const Predict
 
 double scene_error(const std::string& method, const SceneAnswer& answer, const SceneAnswer& best) {
   if (!answer.answered || !best.answered) return not_known;
-  // Where not all starts were tried, or not all ends told apart, the answer must be among those that there are.
-  const std::string there = "/" + best.verdict + "/";
   bool same = answer.verdict == best.verdict;
-  if (method != shooting_name)
-    same = answer.verdict == no_cycle
-               ? there.find("/rest/") != std::string::npos || there.find("/sliding/") != std::string::npos
-               : there.find("/" + answer.verdict + "/") != std::string::npos;
+  if (method == simulation_name)
+    same = is_among(answer.verdict, best.verdict);  // from one start
+  else if (method != shooting_name)
+    same = answer.hunts() == best.hunts();  // roots of the whole box
   if (!same || answer.hunts() != (answer.period > 0.0)) return infinite;
   if (!answer.hunts()) return 0.0;
   const bool first = method == df_name || method == composite_name;

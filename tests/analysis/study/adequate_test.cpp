@@ -143,6 +143,26 @@ TEST_CASE("adequate: a loop that rests needs the least law there is") {
   CHECK(point(report, "coulomb", "describing-function").within);
 }
 
+TEST_CASE("adequate: answers are compared by kind first, then by their numbers") {
+  SceneAnswer best, answer;
+  best.answered = answer.answered = true;
+  best.verdict = "cycle/rest";
+  best.period = 2.0;
+  best.amplitude = 1.0;
+  best.first_harmonic = 1.1;
+  answer.verdict = "no cycle";
+  CHECK(scene_error("simulation", answer, best) == 0.0);  // one start may well come to rest
+  CHECK(std::isinf(scene_error("describing-function", answer, best)));
+  answer.verdict = "cycle";
+  answer.period = 2.02;
+  answer.amplitude = answer.first_harmonic = 1.0;
+  CHECK(scene_error("simulation", answer, best) == Approx(0.01));
+  CHECK(scene_error("describing-function", answer, best) == Approx(1.0 - 1.0 / 1.1));  // of the first harmonic
+  CHECK(std::isinf(scene_error("shooting", answer, best)));                            // which tries every start
+  answer.answered = false;
+  CHECK(std::isnan(scene_error("simulation", answer, best)));
+}
+
 TEST_CASE("adequate: without friction there is nothing to ask") {
   LoopParts parts;
   parts.plant = TransferFunction{{1.0}, {1.0, 1.0}, 0.0};
