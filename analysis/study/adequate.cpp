@@ -130,7 +130,7 @@ class Study {
     else if (std::isinf(error))
       point.why = "says " + answer.verdict + " where it is " + best.verdict;
     else
-      point.why = "off by " + short_number(100.0 * error, 2) + " %";
+      point.why = "off by " + short_number(100.0 * error, 3) + " %";
     if (!where.empty()) point.why += " at " + where;
   }
 
