@@ -49,12 +49,14 @@ Case load_case(const CommonFlags& flags);
 Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 
 // Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.
+void add_adequate(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_continue(CLI::App& program, Action& action);
 void add_df(CLI::App& program, Action& action);
 void add_experiment(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
 void add_margin(CLI::App& program, Action& action);
+void add_precision(CLI::App& program, Action& action);
 void add_predict(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);
 

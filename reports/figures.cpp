@@ -31,12 +31,7 @@ Json picked(const std::vector<double>& values, const std::vector<std::size_t>& i
   return out;
 }
 
-std::string text_of(const Json& data) {
-  std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe;  // "</script>" and "<!--" must not appear inside the page's script element
-  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return safe;
-}
+std::string text_of(const Json& data) { return figure_data(data.dump(-1, ' ', false, Json::error_handler_t::replace)); }
 
 bool drawable(const Trace& trace) {
   const std::size_t n = trace.t.size();

@@ -19,4 +19,10 @@ struct Figure {
 /// about 2000 points; where a simulation is too long to draw only its first part is shown, and the text says so.
 std::vector<Figure> predict_figures(const PredictReport& report, const Units& units);
 
+/// JSON text as it may stand inside a script element of a page: without '<'.
+std::string figure_data(const std::string& json);
+
+/// Markup of figures, which the script of the page draws. Without scripts their findings remain.
+std::string figures_html(const std::vector<Figure>& figures);
+
 }  // namespace limcycle

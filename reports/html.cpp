@@ -53,17 +53,6 @@ std::string tables(const PredictReport& report, const Units& units) {
   return out + "<h2>Simulations</h2>\n" + html_table(outcomes, "What each start reaches");
 }
 
-std::string figure_html(const Figure& figure) {
-  const std::string label = html_escaped(figure.heading + ". " + figure.finding);
-  return fmt::format(
-      "<figure>\n<h3>{0}</h3>\n<div class=\"plot{1}\" data-figure=\"{2}\" tabindex=\"0\" role=\"img\" "
-      "aria-label=\"{3}\"></div>\n"
-      "<figcaption>{4}</figcaption>\n<script type=\"application/json\" id=\"data-{2}\">{5}</script>\n</figure>\n",
-      html_escaped(figure.heading),
-      figure.id == "nyquist" || figure.id == "time" || figure.id == "multipliers" ? " tall" : "", figure.id, label,
-      html_escaped(figure.finding), figure.data);
-}
-
 }  // namespace
 
 std::string predict_page(const PredictReport& report, const Provenance& provenance, const std::string& case_text,
@@ -71,13 +60,7 @@ std::string predict_page(const PredictReport& report, const Provenance& provenan
   const Answer words = answer(report, units);
   const auto figures = predict_figures(report, units);
   std::string body = tables(report, units) + html_notes(report.notes);
-  if (!figures.empty())
-    body +=
-        "<h2>Figures</h2>\n<p class=\"hint\">Drag to move, or use the keys of a focused figure: arrows move, + and − "
-        "zoom, a shows all, 0 the first view again.</p>\n<noscript><p>The figures need JavaScript; the texts under "
-        "them "
-        "say what they show.</p></noscript>\n";
-  for (const auto& figure : figures) body += figure_html(figure);
+  if (!figures.empty()) body += "<h2>Figures</h2>\n" + figures_html(figures);
   return html_page({.provenance = provenance,
                     .answer = words.what_happens,
                     .worth = words.worth,

@@ -132,6 +132,25 @@ const draw = {
   },
 };
 
+const palette = ["#2f81c7", "#d9661f", "#2e9e5b", "#a05bc4", "#c4a000", "#d1477a", "#3aa6a6", "#8a6d3b", "#7a8a99", "#5b6ee1"];
+
+// Marks of methods over two logarithmic axes: circles where they are right, crosses where they fail.
+function work(d) {
+  const shades = [];
+  const traces = d.series.map((one) => {
+    const follows = one.colour >= 0;
+    shades.push(follows ? shades[one.colour] : palette[d.series.slice(0, shades.length).filter((s) => s.colour < 0).length % palette.length]);
+    const shade = shades[shades.length - 1];
+    return {name: one.name, x: one.x, y: one.y, mode: one.joined ? "lines+markers" : "markers",
+      line: {color: shade, width: 1.6, dash: ["solid", "dash", "dot"][one.dash]}, showlegend: !follows,
+      marker: {color: shade, size: one.good.map((good) => good ? 7 : 10), symbol: one.good.map((good) => good ? "circle" : "x")},
+      customdata: one.label, hovertemplate: "%{customdata}<extra></extra>"};
+  });
+  return [traces, layout({xaxis: axis(d.x, {type: "log", dtick: 1}), yaxis: axis(d.y, {type: "log"}),
+    margin: {l: 64, r: 14, t: 34, b: window.innerWidth < 640 ? 150 : 96}})];
+}
+for (const id of ["work-cycle", "work-df", "work-stiffness", "work-ladder"]) draw[id] = work;
+
 // + and - zoom, arrows move, a shows all, 0 the first view: for those who use no pointer.
 function keys(event) {
   const plot = event.currentTarget, change = {};

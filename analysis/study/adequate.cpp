@@ -1,0 +1,217 @@
+#include "limcycle/analysis/study/adequate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "limcycle/analysis/short_number.hpp"
+#include "limcycle/models/delay.hpp"
+
+namespace limcycle {
+namespace {
+
+const std::string shooting = "shooting";
+
+/// A loop as every method takes it. A delay is approximated for all of them alike, so that methods are compared and not
+/// treatments of the delay.
+Loop loop_of(const LoopParts& parts, const Element<double>& law) {
+  LoopParts changed = parts;
+  changed.friction = law;
+  const Loop loop = build_loop(changed);
+  return loop.delay == 0.0 ? loop : in_time_domain(loop, 6).loop;
+}
+
+class Study {
+ public:
+  Study(const LoopParts& parts, const AdequateOptions& options) : parts_(parts), options_(options) {
+    report_.tolerance = options.tolerance;
+    report_.laws = law_ladder(*parts.friction);
+    if (options.spread > 0.0) variations_ = law_variations(*parts.friction, options.spread);
+    for (const auto& one : variations_) report_.spread.push_back(one.name);
+  }
+
+  AdequateReport run() {
+    if (!find_best()) return std::move(report_);
+    for (std::size_t i = 0; i < report_.laws.size() && !stopped(); ++i) {
+      tell(0.1 + 0.4 * static_cast<double>(i) / static_cast<double>(report_.laws.size()), report_.laws[i].name);
+      if (report_.laws[i].law) ask_methods(report_.laws[i]);
+    }
+    find_best_over_spread();
+    find_least();
+    if (report_.least) find_cheapest();
+    if (stopped()) report_.status = Status::interrupted;
+    tell(1.0, "done");
+    return std::move(report_);
+  }
+
+ private:
+  bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
+  void tell(double fraction, std::string_view what) const {
+    if (options_.progress) options_.progress(fraction, what);
+  }
+
+  SceneAnswer ask_law(const std::string& method, const Element<double>& law) const {
+    const double begin = cpu_seconds();
+    const auto late = [&] { return cpu_seconds() - begin > options_.patience; };
+    PredictOptions options = options_.predict;
+    options.stop = [&] { return stopped() || late(); };
+    SceneAnswer answer;
+    try {
+      answer = ask_scene(method, loop_of(parts_, law), options);
+    } catch (const std::invalid_argument& error) {  // the plant does not take this law
+      answer.why = error.what();
+    }
+    if (late()) {
+      answer.answered = false;
+      answer.why = "gave up after " + short_number(options_.patience) + " s of CPU time";
+    }
+    return answer;
+  }
+
+  bool find_best() {
+    tell(0.0, "the case's own law");
+    const Loop loop = loop_of(parts_, *parts_.friction);
+    report_.best = ask_scene(shooting, loop, options_.predict);
+    if (!report_.best.answered) return give_up("its own law by shooting: " + report_.best.why);
+    if (!report_.best.cycle) return confirm_without_cycle(loop);
+    CycleReference reference{
+        *report_.best.cycle, sizes_on_cycle(loop, *report_.best.cycle), {}, {}, false, infinite, infinite};
+    verify(loop, reference, 1000000, options_.predict.stop);
+    if (!(reference.agreement < 0.01 * options_.tolerance))
+      return give_up("no second method confirms the cycle of its own law");
+    report_.verified = "to " + short_number(reference.agreement, 2) + " by " + reference.verified_by;
+    return true;
+  }
+
+  /// A loop that does not hunt: simulations from elsewhere must say the same.
+  bool confirm_without_cycle(const Loop& loop) {
+    PredictOptions elsewhere = options_.predict;
+    elsewhere.search = options_.predict.search.value_or(default_search_box(loop));
+    elsewhere.search->amplitude_max *= 0.37;
+    const SceneAnswer second = ask_scene(shooting, loop, elsewhere);
+    if (!second.answered || second.verdict != report_.best.verdict)
+      return give_up("simulations from other states do not confirm that its own law gives " + report_.best.verdict);
+    report_.verified = "by simulations from other states";
+    return true;
+  }
+
+  bool give_up(std::string why) {
+    report_.status = stopped() ? Status::interrupted : Status::undefined;
+    report_.why = std::move(why);
+    return false;
+  }
+
+  void ask_methods(const LawRung& rung) {
+    bool predicted = false;  // by a first-harmonic method, so that harmonic balance has a start
+    for (const auto& method : scene_methods()) {
+      if (stopped()) return;
+      AdequatePoint point{.law = rung.name, .method = method, .answer = {}, .worst_at = {}, .why = {}};
+      if (rung.own && method == shooting)
+        point.answer = report_.best;
+      else if (method == "harmonic-balance" && !predicted)
+        point.answer = balance_without_start();
+      else
+        point.answer = ask_law(method, *rung.law);
+      if (stopped()) return;
+      predicted = predicted || (point.answer.answered && point.answer.hunts());
+      point.error = scene_error(method, point.answer, report_.best);
+      judge(point, point.error, point.answer, report_.best, "");
+      report_.points.push_back(std::move(point));
+    }
+  }
+
+  /// Sets `within`, or why not.
+  void judge(AdequatePoint& point, double error, const SceneAnswer& answer, const SceneAnswer& best,
+             const std::string& where) const {
+    point.within = error <= options_.tolerance;
+    if (point.within) return;
+    if (!answer.answered)
+      point.why = answer.why;
+    else if (std::isinf(error))
+      point.why = "says " + answer.verdict + " where it is " + best.verdict;
+    else
+      point.why = "off by " + short_number(100.0 * error, 3) + " %";
+    if (!where.empty()) point.why += " at " + where;
+  }
+
+  AdequatePoint* point_of(const std::string& law, const std::string& method) {
+    const auto found = std::ranges::find_if(
+        report_.points, [&](const AdequatePoint& one) { return one.law == law && one.method == method; });
+    return found == report_.points.end() ? nullptr : &*found;
+  }
+
+  void find_best_over_spread() {
+    for (std::size_t i = 0; i < variations_.size() && !stopped(); ++i) {
+      tell(0.5 + 0.2 * static_cast<double>(i) / static_cast<double>(variations_.size()), variations_[i].name);
+      best_.push_back(ask_law(shooting, variations_[i].law));
+      if (!best_.back().answered && !stopped())
+        report_.notes.push_back(variations_[i].name + ": the case's own law gives no answer, left out (" +
+                                best_.back().why + ")");
+    }
+  }
+
+  /// The same rung made from a varied law.
+  static std::optional<Element<double>> varied(const Element<double>& own, std::size_t rung) {
+    const auto ladder = law_ladder(own);
+    return rung < ladder.size() ? ladder[rung].law : std::nullopt;
+  }
+
+  /// Asks a point over the spread, which must have been within before. Stops at the first place where it is not.
+  void over_spread(AdequatePoint& point, std::size_t rung) {
+    point.worst = point.error;
+    point.worst_at = "the case's own values";
+    for (std::size_t i = 0; i < best_.size() && !stopped() && point.within; ++i) {
+      if (!best_[i].answered) continue;
+      const auto law = varied(variations_[i].law, rung);
+      if (!law) continue;
+      const bool same = report_.laws[rung].own && point.method == shooting;
+      const SceneAnswer answer = same ? best_[i] : ask_law(point.method, *law);
+      if (stopped()) return;
+      const double error = scene_error(point.method, answer, best_[i]);
+      if (error <= point.worst) continue;
+      point.worst = error;
+      point.worst_at = variations_[i].name;
+      judge(point, error, answer, best_[i], variations_[i].name);
+    }
+  }
+
+  void find_least() {
+    for (std::size_t i = 0; i < report_.laws.size() && !stopped(); ++i) {
+      tell(0.7 + 0.2 * static_cast<double>(i) / static_cast<double>(report_.laws.size()), report_.laws[i].name);
+      AdequatePoint* point = point_of(report_.laws[i].name, shooting);
+      if (point == nullptr || !point->within) continue;
+      over_spread(*point, i);
+      if (point->within && !stopped() && !report_.least) report_.least = i;
+    }
+  }
+
+  void find_cheapest() {
+    const std::string& law = report_.laws[*report_.least].name;
+    for (std::size_t i = 0; i < report_.points.size() && !stopped(); ++i) {
+      AdequatePoint& point = report_.points[i];
+      if (point.law != law) continue;
+      tell(0.9, point.method);
+      if (point.within && point.method != shooting) over_spread(point, *report_.least);
+      if (stopped() || !point.within) continue;
+      if (!report_.cheapest || point.answer.seconds < report_.points[*report_.cheapest].answer.seconds)
+        report_.cheapest = i;
+    }
+  }
+
+  const LoopParts& parts_;
+  const AdequateOptions& options_;
+  std::vector<LawVariation> variations_;
+  std::vector<SceneAnswer> best_;  ///< of the own law, for each variation
+  AdequateReport report_;
+};
+
+}  // namespace
+
+AdequateReport adequate(const LoopParts& parts, const AdequateOptions& options) {
+  if (!parts.friction)
+    throw std::invalid_argument(
+        "this loop has no [loop.friction]: `adequate` asks which friction law is enough, so there is nothing to ask");
+  return Study(parts, options).run();
+}
+
+}  // namespace limcycle

@@ -1,0 +1,58 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limcycle/analysis/study/cycle_reference.hpp"
+#include "limcycle/analysis/study/law_ladder.hpp"
+#include "limcycle/analysis/study/scene_answer.hpp"
+#include "limcycle/analysis/study/work_point.hpp"
+
+namespace limcycle {
+
+struct AdequateOptions {
+  double tolerance = 0.05;  ///< on period and amplitude, relative
+  double spread = 0.1;      ///< by which each number of the law is moved, one at a time; 0: not at all
+  double patience = 2.0;    ///< CPU seconds for one answer other than the reference
+  PredictOptions predict;   ///< search box, starts, stop
+  std::function<void(double, std::string_view)> progress;
+};
+
+/// One law with one method.
+struct AdequatePoint {
+  std::string law, method;
+  SceneAnswer answer;        ///< at the case's own values
+  double error = not_known;  ///< there, against the best available; infinite: another verdict
+  double worst = not_known;  ///< over the spread; NaN: not asked, since it fails before
+  std::string worst_at;      ///< where in the spread
+  bool within = false;       ///< everywhere within the tolerance
+  std::string why;           ///< unless within: what is wrong, one sentence
+};
+
+struct AdequateReport {
+  SceneAnswer best;      ///< of the case's own law by shooting
+  std::string verified;  ///< by what it is confirmed, in words; empty: it is not
+  std::vector<LawRung> laws;
+  std::vector<AdequatePoint> points;
+  std::vector<std::string> spread;      ///< what was varied
+  std::optional<std::size_t> least;     ///< index of the least law
+  std::optional<std::size_t> cheapest;  ///< index of its cheapest point
+  double tolerance = 0.05;
+  std::vector<std::string> notes;
+  Status status = Status::converged;
+  std::string why;  ///< unless converged: one sentence
+};
+
+/// The least law and the cheapest method that tell of this loop what its own law, solved by shooting, does: verdict,
+/// period, amplitude and stability of its (largest) stable cycle, at the case's own values and with each number of the
+/// law moved up and down. Laws are made by law_ladder; only the friction is exchanged. A law counts if shooting with it
+/// stays within the tolerance; then all methods are asked with that law.
+///
+/// Throws std::invalid_argument if the loop has no friction. Status no_cycle never; undefined: the case's own law gives
+/// no confirmed answer, so that there is nothing to compare with; interrupted: what was computed until then is kept.
+/// Cost: some seconds a law for the methods, and a simulation for each law, number and direction.
+AdequateReport adequate(const LoopParts& parts, const AdequateOptions& options);
+
+}  // namespace limcycle

@@ -1,0 +1,42 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/study/work_point.hpp"
+
+namespace limcycle {
+
+struct DfPrecisionOptions {
+  std::vector<double> accuracies{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
+  int largest_fft = 1 << 16;  ///< samples a period
+  WorkOptions work;
+};
+
+/// How well the describing function of one element is computed, over some points: worst relative error of the gain and
+/// total cost. The reference is the quadrature at the tightest accuracy (the closed form where there is one); the FFT
+/// of uniform samples, which shares neither mesh nor quadrature with it, is the second method.
+struct DfPrecision {
+  std::vector<DfPoint> points;
+  std::vector<WorkPoint> results;  ///< "fft", "quadrature", "automatic"
+  std::string made_by, verified_by;
+  double agreement = 0.0;  ///< largest relative difference of the reference and the second method over the points
+  double error = 0.0;      ///< largest own estimate of the reference
+  std::vector<std::string> notes;
+  bool verified() const { return agreement < 1e-3; }
+};
+
+/// A few points that span pre-sliding to gross slip, by the element's own scales: 0.1 to 1000 times its displacement
+/// scale, each slowly and fast against its velocity scale. Without a displacement scale `amplitude` stands for it.
+std::vector<DfPoint> representative_points(const Element<double>& element, double amplitude = 1.0);
+
+/// At most five amplitudes by three frequencies out of lists, evenly spread over each, without bias.
+std::vector<DfPoint> representative_points(const std::vector<double>& amplitudes,
+                                           const std::vector<double>& frequencies);
+
+/// Points where the element has no describing function are left out, with a note. Empty results: no point is left.
+DfPrecision df_precision(const Element<double>& element, std::vector<DfPoint> points,
+                         const DfPrecisionOptions& options = {});
+
+}  // namespace limcycle

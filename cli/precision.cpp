@@ -1,0 +1,83 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/units_of.hpp"
+#include "limcycle/reports/precision.hpp"
+
+namespace limcycle {
+namespace {
+
+struct PrecisionFlags : CommonFlags {
+  std::string html;           ///< --html
+  bool no_stiffness = false;  ///< --no-stiffness
+};
+
+/// The element whose describing function is asked for: that of a case with [df] or with friction; else null.
+const Element<double>* element_of(const Case& from) {
+  const bool friction = from.element || (from.loop && from.loop->friction);
+  return from.df || friction ? &df_element(from) : nullptr;
+}
+
+std::vector<DfPoint> points_of(const Case& from) {
+  if (from.df) return representative_points(from.df->amplitude, from.df->frequency);
+  const Element<double>* element = element_of(from);
+  return element == nullptr ? std::vector<DfPoint>{} : representative_points(*element);
+}
+
+/// A cycle without a verified reference is no answer, nor is nothing at all. A loop that rests has no such question.
+int exit_code(const PrecisionReport& report) {
+  const auto answered = [](const auto& chart) { return chart && chart->answered; };
+  if (report.status == Status::interrupted) return exit_done;
+  if (report.cycle && !answered(report.cycle_chart)) return exit_no_answer;
+  return answered(report.cycle_chart) || answered(report.df_chart) ? exit_done : exit_no_answer;
+}
+
+PrecisionReport compute(const Case& from, const PrecisionFlags& flags) {
+  Progress progress(flags.quiet);
+  PrecisionOptions options;
+  options.cycle.predict = from.predict;
+  options.cycle.predict.stop = options.work.stop = interrupted;
+  options.stiffness = !flags.no_stiffness;
+  options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
+  catch_interrupts();
+  return precision(from.loop ? &*from.loop : nullptr, element_of(from), points_of(from), options);
+}
+
+int run(PrecisionFlags flags) {
+  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  const Case from = load_case(flags);
+  const Units units = from.loop ? units_of(*from.loop) : Units{};
+  Output output(flags);
+  output.check_file("--html", flags.html);
+  const PrecisionReport report = compute(from, flags);
+  const auto made = provenance(flags, &from);
+  std::string text = precision_text(from.title, report, units);
+  if (!flags.html.empty()) {
+    output.file(flags.html, precision_page(report, made, from.text, units));
+    text += "\nreport: " + flags.html + "\n";
+  }
+  output.text(text);
+  if (output.wants_json()) output.json(precision_json(made, report));
+  if (output.wants_csv()) output.csv(precision_csv(report));
+  output.finish();
+  if (report.status == Status::interrupted && !flags.quiet)
+    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  return exit_code(report);
+}
+
+}  // namespace
+
+void add_precision(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<PrecisionFlags>();
+  CLI::App* command = add_command(program, action, "precision", "Speed against accuracy of every method", true, flags,
+                                  [flags] { return run(*flags); });
+  command->add_flag("--no-stiffness", flags->no_stiffness, "Leave out the runs over the stiffness of the bristles");
+  command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
+      ->type_name("FILE");
+}
+
+}  // namespace limcycle

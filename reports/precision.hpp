@@ -1,0 +1,46 @@
+#pragma once
+#include <string>
+
+#include "limcycle/analysis/study/precision.hpp"
+#include "limcycle/reports/figures.hpp"
+#include "limcycle/reports/provenance.hpp"
+#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/units.hpp"
+
+namespace limcycle {
+
+/// "2.4 ms", "13 us", "1.2 s".
+std::string as_duration(double seconds);
+
+/// Which method for which error, and which never: sentences. Empty for a chart without points.
+std::string front_in_words(const WorkChart& chart);
+
+/// What the reference is and how far it can be trusted, in one sentence.
+std::string reference_in_words(const WorkChart& chart);
+
+/// From where the methods begin that are asked for the cycle.
+std::string conditions();
+
+/// One sentence that answers "which method shall I use?", for each question.
+std::string precision_answer(const PrecisionReport& report);
+
+/// One row a method: its cost at some errors, the least error it reaches, and how often it failed.
+Table method_table(const WorkChart& chart);
+
+/// One row a setting: everything measured.
+Table point_table(const WorkChart& chart);
+
+/// One row a stiffness and tolerance, one column a stepper: its time where it is right, else what it is.
+Table stiffness_table(const StiffnessStudy& study);
+
+std::string precision_text(const std::string& title, const PrecisionReport& report, const Units& units);
+
+std::string precision_json(const Provenance& provenance, const PrecisionReport& report);
+
+/// One row a point of a chart or of the stiffness study, told apart by the first column.
+std::string precision_csv(const PrecisionReport& report);
+
+std::string precision_page(const PrecisionReport& report, const Provenance& provenance, const std::string& case_text,
+                           const Units& units);
+
+}  // namespace limcycle
