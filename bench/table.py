@@ -174,6 +174,10 @@ def describing_functions(rows, charts):
     unsolved = grouped([row for row in rows if row.problem.startswith("point ") and row.status], lambda row: row.contender)
     for name, group in unsolved.items():
         lines += ["", f"{name} cannot solve: " + "; ".join(row.problem.removeprefix("point ") for row in group) + "."]
+    threads = [row for row in rows if row.problem == "threads"]
+    if len(threads) == 2:
+        lines += ["", f"Two threads at accuracy 1e-9: {threads[0].seconds / threads[1].seconds:.2f} times one in wall time "
+                  "(goal: 1.8)."]
     ends = [row for row in rows if "end to end" in row.problem]
     if ends:
         lines += ["", "### As a process", "", "`limcycle df` at accuracy 1e-6, start, harmonics and writing included "
