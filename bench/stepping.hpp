@@ -10,7 +10,6 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "limcycle/bench/measure.hpp"
@@ -66,14 +65,15 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
   return worst;
 }
 
-/// Runs `march(sigma0, tolerance)` -> Positions over the tolerances and prints a row for each; after a slow run every
-/// other tolerance is left out. Once it gave up at a tolerance the tighter ones are not tried.
+/// Runs `march(sigma0, tolerance)` -> Positions over the tolerances and prints a row for each; after a slow run the
+/// next tolerance is left out, after a very slow one the next three. Once it gave up at a tolerance the tighter ones
+/// are not tried.
 template <class March>
 void stepping_ladder(const char* contender, double sigma0, const std::vector<double>& reference, double least,
                      March&& march) {
-  double last_seconds = 0.0;
+  int left_out = 0;
   for (const double tolerance : tolerances(least)) {
-    if (std::exchange(last_seconds, 0.0) > 0.2) continue;
+    if (left_out > 0 && left_out--) continue;
     Row row{"stepping", stepping_problem(sigma0), contender, short_power(tolerance)};
     const double begin = cpu_seconds();
     try {
@@ -90,7 +90,7 @@ void stepping_ladder(const char* contender, double sigma0, const std::vector<dou
       row.status = failure.what();
     }
     print(row);
-    last_seconds = row.seconds;
+    left_out = row.seconds > 2.0 ? 3 : row.seconds > 0.2 ? 1 : 0;
     if (row.status.rfind("gave up", 0) == 0) return;
   }
 }
