@@ -151,7 +151,6 @@ def describing_functions(rows, charts):
              "largest relative error of N. limcycle: all 40,000 points of a table, one thread. Plain programs: 25 points "
              "spread over the same range, each with the setting that is cheapest for it and without those that no setting "
              "solves, which flatters them; or all with the one setting that solves the most."]
-    bars = []
     for target in (1e-6, 1e-9):
         rates = []
         for name, runs in grouped([row for row in rows if row.problem == "200 x 200 table"], lambda row: row.contender).items():
@@ -168,9 +167,12 @@ def describing_functions(rows, charts):
             goal = GOALS.get(("table", target), {}).get(name)
             body.append([f"**{name}**" if name.startswith(OURS) else name, f"{rate:.3g}",
                          (f"{ours / rate:.3g}" if ours else "-") + (f" ({goal})" if goal else ""), f"{error:.1e}", remark])
-            bars.append((f"{name}, {target:.0e}", rate, f"{rate:.2g}"))
         lines += ["", f"### To {target:.0e}", ""] + table(["contender", "points/s", "limcycle is times faster (goal)",
                                                          "largest error", "solved"], body)
+        if rates:
+            charts[f"df-{target:.0e}"] = chart.bars(
+                f"Describing functions of LuGre friction to {target:.0e}", "points per second and core",
+                [(name, rate, f"{rate:.3g}" if rate < 1000 else f"{rate:,.0f}") for name, rate, _, _ in rates])
     unsolved = grouped([row for row in rows if row.problem.startswith("point ") and row.status], lambda row: row.contender)
     for name, group in unsolved.items():
         lines += ["", f"{name} cannot solve: " + "; ".join(row.problem.removeprefix("point ") for row in group) + "."]
@@ -183,8 +185,6 @@ def describing_functions(rows, charts):
         lines += ["", "### As a process", "", "`limcycle df` at accuracy 1e-6, start, harmonics and writing included "
                   "(goal: 0.15 s).", ""]
         lines += table(["what", "time", "s"], [[row.problem, row.setting, f"{row.seconds:.3f}"] for row in ends])
-    if bars:
-        charts["df"] = chart.bars("Describing functions of LuGre friction", "points per second and core", bars)
     return lines
 
 
