@@ -59,7 +59,7 @@ int main(int count, char** arguments) {
       bench::stepping_ladder(name, s, x, least,
                              [type](double stiffness, double tolerance) { return march(type, stiffness, tolerance); });
     };
-    ladder("gsl msbdf", gsl_odeiv2_step_msbdf, 1e-11);
+    ladder("gsl msbdf", gsl_odeiv2_step_msbdf, 1e-13);
     ladder("gsl bsimp", gsl_odeiv2_step_bsimp, 1e-11);
     ladder("gsl rk8pd", gsl_odeiv2_step_rk8pd, 1e-11);
   }
