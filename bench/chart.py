@@ -4,7 +4,7 @@ from xml.sax.saxutils import escape
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 900, 540, 80, 240, 50, 60
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f4f24", "#8a8a00", "#6a3d9a", "#555555",
-           "#b15928", "#1b9e77", "#a6761d", "#386cb0")
+           "#b15928", "#f032e6", "#a6761d", "#386cb0")
 OURS = "#000000"
 
 
