@@ -60,7 +60,7 @@ struct Pack {
   Values v{};
 
   Pack() = default;
-  Pack(double same) : v(Values{} + same) {}  // NOLINT(google-explicit-constructor): constants mix freely with packs
+  Pack(double same) : v(same - Values{}) {}  // NOLINT(google-explicit-constructor): constants mix freely with packs
   explicit Pack(Values values) : v(values) {}
 
   static Pack load(const double* from) {
@@ -107,7 +107,7 @@ struct Pack {
   /// e^a within 2 units of the last place, gradual underflow included. exp(-inf) = 0, exp(inf) = inf, exp(NaN) = NaN.
   /// e^r on |r| <= ln(2)/2 by a Chebyshev interpolant of (e^r - 1 - r)/r^2 (own coefficients, relative error 2e-17).
   friend Pack exp(const Pack& a) {
-    const Pack x = select(a > 710.0, Pack(710.0), select(a < -746.0, Pack(-746.0), a));  // NaN stays
+    const Pack x = min(Pack(710.0), max(Pack(-746.0), a));  // NaN stays
     const Pack n = (x * 0x1.71547652b82fep+0 + magic) - magic;
     const Pack r = (x - n * 0x1.62e42fee00000p-1) - n * 1.9082149292705877e-10;
     const Pack q = ((((((((Pack(2.510038549551032e-08) * r + 2.7620088445409746e-07) * r + 2.7557268459997064e-06) * r +
@@ -125,9 +125,7 @@ struct Pack {
                        r +
                    0.5;
     const Pack whole = (r * r * q + r) + 1.0;
-    // 2^n in two factors: e^a may be above or below what one can hold though it is a number itself.
-    const Pack first = select(n > 1000.0, Pack(1000.0), select(n < -1000.0, Pack(-1000.0), n));
-    return whole * two_to(first) * two_to(n - first);
+    return scaled(whole, n);
   }
 
   /// Natural logarithm within 2 units of the last place; -inf at 0, NaN below.
@@ -172,6 +170,15 @@ struct Pack {
 
   static Bits to_bits(const Pack& a) { return (Bits)a.v; }
   static Pack from_bits(Bits bits) { return Pack((Values)bits); }
+  /// a 2^n for whole n in -1100..1100, with gradual underflow.
+  static Pack scaled(const Pack& a, const Pack& n) {
+#if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+    if constexpr (N == 8) return Pack(__builtin_ia32_scalefpd512_mask(a.v, n.v, a.v, -1, 4));
+#endif
+    // In two factors: the result may be a number though 2^n is none.
+    const Pack first = max(Pack(-1000.0), min(Pack(1000.0), n));
+    return a * two_to(first) * two_to(n - first);
+  }
   /// 2^n for whole n in -1022..1023.
   static Pack two_to(const Pack& n) { return from_bits((to_bits(n + (magic + 1023.0)) << 52)); }
   /// Whole numbers below 2^51 in size.

@@ -1,0 +1,65 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "limcycle/analysis/frequency/linear_kernel.hpp"
+#include "limcycle/models/element/element.hpp"
+
+namespace limcycle {
+
+/// How finely the half period between two reversals is cut, and what that is worth.
+struct HalfPeriodSettings {
+  int stages = 4;        ///< of the collocation: 4, 5, 6 or 8
+  double width = 0.6;    ///< of a panel in tau = ln tan(phi/2)
+  double cap = 0.3;      ///< panels at the reversals, in units of the layer there
+  double ignored = 0.0;  ///< share of a layer, deep within a wider one, that need not be seen
+  double bound = 1e-6;   ///< of the relative error of the state's first harmonic where the level is constant
+  double growth = 1e-6;  ///< of that bound, times (Fs/Fc - 1)^2
+};
+
+/// All panels that meshes of one width may consist of. In tau = ln tan(phi/2), where sin(phi) = sech(tau) and dphi =
+/// sech(tau) dtau, panels of equal width shrink geometrically towards both reversals; panel j begins at tau = j width.
+/// What is left at the ends are caps, in phi itself: [0, phi(j width)] and [phi(j width), pi]. So nodes and weights
+/// depend on nothing but the settings, and are computed once.
+class HalfPeriodPanels {
+ public:
+  /// Cost: about 0.1 ms a stage.
+  HalfPeriodPanels(int stages, double width, int orders);
+
+  /// The same, kept for the next one who asks; safe from any thread.
+  static std::shared_ptr<const HalfPeriodPanels> of(int stages, double width, int orders);
+
+  /// Panels of a mesh whose caps end at about these phases (rad) before and after a reversal: see PanelGeometry.
+  void select(double cap_left, double cap_right, std::vector<const double*>& panels) const;
+
+  const CollocationNumbers& collocation() const { return collocation_; }
+  int most_panels() const { return 2 * reach_ + 2; }
+
+ private:
+  struct Quadrature;
+  enum class Part { inner, left_cap, right_cap };
+  const double* block(Part part, int j) const;
+  void fill(Part part, int j, const Quadrature& fine, double* block) const;
+  int index_of(double phase) const;
+
+  int stages_, orders_, reach_;
+  double width_;
+  CollocationNumbers collocation_{};
+  std::vector<double> blocks_;
+};
+
+/// What the mesh must know of a law whose state relaxes towards a level g(v).
+struct LevelShape {
+  double displacement = infinite;  ///< way over which the state settles (m)
+  double velocity = infinite;      ///< over which the level changes (m/s)
+  double kink = 0.0;               ///< g changes like |v|^kink at rest; 0: g is smooth and even
+};
+
+/// Phases, after a reversal and before the next one, within which the state of such a law can be taken for a
+/// polynomial, for the motion A sin wt.
+struct Layers {
+  double after = 1.0, before = 1.0;
+};
+Layers layers_of(const LevelShape& shape, double amplitude, double frequency, const HalfPeriodSettings& settings);
+
+}  // namespace limcycle
