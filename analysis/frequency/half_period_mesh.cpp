@@ -157,12 +157,22 @@ int HalfPeriodPanels::index_of(double phase) const {
   return std::clamp(static_cast<int>(std::floor(tau / width_ + 1e-9)), -reach_, 0);
 }
 
-void HalfPeriodPanels::select(double cap_left, double cap_right, std::vector<const double*>& panels) const {
-  const int from = index_of(cap_left), to = -index_of(cap_right);
+HalfPeriodPanels::Range HalfPeriodPanels::range(double cap_after, double cap_before) const {
+  return {index_of(cap_after), -index_of(cap_before)};
+}
+
+void HalfPeriodPanels::select(Range range, std::vector<const double*>& panels) const {
   panels.clear();
-  panels.push_back(block(Part::left_cap, from));
-  for (int j = from; j < to; ++j) panels.push_back(block(Part::inner, j));
-  panels.push_back(block(Part::right_cap, to));
+  panels.push_back(block(Part::left_cap, range.from));
+  for (int j = range.from; j < range.to; ++j) panels.push_back(block(Part::inner, j));
+  panels.push_back(block(Part::right_cap, range.to));
+}
+
+int HalfPeriodPanels::panels_until(Range range, double phase) const {
+  const int all = range.to - range.from + 2;
+  if (!(phase < pi)) return all;
+  const int end = static_cast<int>(std::ceil(std::log(std::tan(0.5 * phase)) / width_));
+  return end > range.to ? all : std::max(1, 1 + end - range.from);
 }
 
 Layers layers_of(const LevelShape& shape, double amplitude, double frequency, const HalfPeriodSettings& settings) {
@@ -175,7 +185,7 @@ Layers layers_of(const LevelShape& shape, double amplitude, double frequency, co
   if (shape.kink == 0.0 && speed > way && (way < settings.ignored * speed || speed > 3.0)) layers.before = speed;
   if (shape.kink == 0.0 || shape.kink == 1.0) return layers;
   // |v|^kink at rest has no derivatives: what a polynomial misses is its size there, moved by the square of the phase.
-  const double least = std::pow(settings.bound, 1.0 / (2.0 + shape.kink));
+  const double least = std::pow(0.1 * settings.bound, 1.0 / (2.0 + shape.kink));
   layers.after *= least;
   layers.before *= least;
   return layers;

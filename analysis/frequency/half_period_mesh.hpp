@@ -13,8 +13,9 @@ struct HalfPeriodSettings {
   double width = 0.6;    ///< of a panel in tau = ln tan(phi/2)
   double cap = 0.3;      ///< panels at the reversals, in units of the layer there
   double ignored = 0.0;  ///< share of a layer, deep within a wider one, that need not be seen
-  double bound = 1e-6;   ///< of the relative error of the state's first harmonic where the level is constant
-  double growth = 1e-6;  ///< of that bound, times (Fs/Fc - 1)^2
+  double bound = 1e-6;   ///< of the relative error of the state's first harmonic, see DfKernel: where g is constant
+  double slope = 0.0;    ///< what a peak of g adds: slope r + cubic r^3, r = Fs/Fc - 1
+  double cubic = 0.0;
 };
 
 /// All panels that meshes of one width may consist of. In tau = ln tan(phi/2), where sin(phi) = sech(tau) and dphi =
@@ -29,8 +30,16 @@ class HalfPeriodPanels {
   /// The same, kept for the next one who asks; safe from any thread.
   static std::shared_ptr<const HalfPeriodPanels> of(int stages, double width, int orders);
 
-  /// Panels of a mesh whose caps end at about these phases (rad) before and after a reversal: see PanelGeometry.
-  void select(double cap_left, double cap_right, std::vector<const double*>& panels) const;
+  /// Numbers of the inner panels at which the caps end, about these phases (rad) after and before a reversal.
+  struct Range {
+    int from = 0, to = 0;
+    auto operator<=>(const Range&) const = default;
+  };
+  Range range(double cap_after, double cap_before) const;
+  /// The panels of a range: see PanelGeometry.
+  void select(Range range, std::vector<const double*>& panels) const;
+  /// How many of its panels end before that phase, and the one in which it lies.
+  int panels_until(Range range, double phase) const;
 
   const CollocationNumbers& collocation() const { return collocation_; }
   int most_panels() const { return 2 * reach_ + 2; }

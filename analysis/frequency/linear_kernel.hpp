@@ -33,8 +33,8 @@ struct LinearTask {
   const CollocationNumbers* collocation = nullptr;
   const double* const* panels = nullptr;
   int panel_count = 0;
-  int orders = 0;             ///< odd orders 1, 3, .., 2 orders - 1
-  double negligible = 1e-17;  ///< share of the initial state below which it is forgotten
+  int orders = 0;      ///< odd orders 1, 3, .., 2 orders - 1
+  int remembered = 0;  ///< panels after which nothing is left of the initial state
   const double* amplitude = nullptr;
   const double* frequency = nullptr;
   double* scratch = nullptr;  ///< aligned to 64 bytes; see scratch_size

@@ -91,12 +91,11 @@ class LinearPass {
     return in;
   }
 
-  /// Both solutions through all panels; the homogeneous one as long as it is not negligible.
+  /// Both solutions through all panels; the homogeneous one as long as anything is left of it.
   void march() {
     P particular(0.0), homogeneous(1.0);
     int p = 0;
-    for (; p < task_.panel_count; ++p) {
-      if (!(homogeneous > task_.negligible).any()) break;
+    for (; p < task_.remembered; ++p) {
       P x[S], y[S];
       solve<true>(p, x, y);
       for (int i = 0; i < S; ++i) {
@@ -106,7 +105,6 @@ class LinearPass {
       particular = z_[p * S + S - 1];
       homogeneous = homogeneous_[p * S + S - 1];
     }
-    both_ = p;
     for (; p < task_.panel_count; ++p) {
       P x[S], y[S];
       for (int i = 0; i < S; ++i) y[i] = particular * numbers_.row_sum[i];
@@ -114,7 +112,7 @@ class LinearPass {
       for (int i = 0; i < S; ++i) z_[p * S + i] = x[i];
       particular = x[S - 1];
     }
-    if (both_ < task_.panel_count) homogeneous = P(0.0);
+    if (task_.remembered < task_.panel_count) homogeneous = P(0.0);
     start_ = -particular / (1.0 + homogeneous);
   }
 
@@ -164,7 +162,7 @@ class LinearPass {
 
   /// The periodic state at all nodes.
   void combine() {
-    for (int p = 0; p < both_; ++p)
+    for (int p = 0; p < task_.remembered; ++p)
       for (int i = 0; i < S; ++i) z_[p * S + i] += start_ * homogeneous_[p * S + i];
   }
 
@@ -204,7 +202,6 @@ class LinearPass {
   const CollocationNumbers& numbers_;
   P amplitude_, frequency_, peak_, period_;
   P *z_, *homogeneous_;
-  int both_ = 0;  ///< panels on which the homogeneous solution was needed
   P start_;
 };
 
