@@ -155,11 +155,21 @@ class TableRun {
     return stopped_;
   }
 
+  /// End of the points of a unit that may be begun.
+  std::size_t begun(std::size_t first, std::size_t end) {
+    const std::lock_guard lock(guard_);
+    while (first < end && !stopped_) {
+      stopped_ = stop_ && stop_();
+      if (!stopped_) ++first;
+    }
+    return first;
+  }
+
   void compute(std::size_t unit) {
     const std::size_t first = unit * unit_, end = std::min(points_.size(), first + unit_);
     std::size_t at = first;
     if (kernel_) {
-      while (at < end && !stopped()) ++at;
+      at = begun(first, end);
       by_kernel(first, at);
     }
     for (std::size_t i = first; i < (kernel_ ? at : end); ++i) {

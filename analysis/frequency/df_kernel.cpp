@@ -17,11 +17,11 @@ constexpr double pi = std::numbers::pi;
 
 /// Meshes from coarse to fine.
 constexpr std::array<HalfPeriodSettings, 6> meshes{{{4, 1.0, 0.6, 0.1, 8e-5, 1.2e-4, 3e-5},
-                                                    {4, 0.75, 0.5, 0.05, 1e-5, 1.4e-5, 4e-6},
-                                                    {5, 0.68, 0.5, 0.03, 4e-7, 1e-6, 1.5e-7},
-                                                    {6, 0.65, 0.4, 5e-3, 1.2e-8, 3e-8, 2e-8},
-                                                    {8, 0.66, 0.3, 3e-4, 1e-10, 2e-10, 4.4e-9},
-                                                    {8, 0.45, 0.2, 1e-5, 4e-12, 1.4e-11, 4e-12}}};
+                                                    {4, 0.75, 0.5, 0.05, 1e-5, 1e-5, 4.5e-6},
+                                                    {5, 0.81, 0.7, 0.03, 4.8e-7, 7e-7, 5.5e-7},
+                                                    {6, 0.75, 0.4, 5e-3, 6e-9, 1e-8, 5.5e-8},
+                                                    {8, 0.85, 0.4, 2e-3, 5e-10, 5e-10, 9e-10},
+                                                    {8, 0.58, 0.2, 1e-5, 6e-12, 2e-12, 5e-12}}};
 constexpr double roundings = 4e-15;
 
 const LinearKernels& kernels_of(Isa isa) {
@@ -40,6 +40,9 @@ struct Freed {
 };
 using Aligned = std::unique_ptr<double[], Freed>;
 
+/// |z| of numbers that are far from the ends of the range.
+double size(std::complex<double> z) { return std::sqrt(std::norm(z)); }
+
 Aligned aligned(std::size_t count) {
   return Aligned(static_cast<double*>(::operator new[](count * sizeof(double), std::align_val_t{64})));
 }
@@ -54,66 +57,57 @@ class DfKernel::Batch {
         settings_(settings),
         orders_((owner.options_.harmonics + 1) / 2),
         lanes_(lanes_of(owner.options_.isa)),
-        panels_(HalfPeriodPanels::of(settings.stages, settings.width, orders_)) {}
+        panels_(HalfPeriodPanels::of(settings.stages, settings.width, orders_)),
+        layers_(owner.shape_, settings),
+        output_(std::visit([](const auto& law) { return law.linear_output({.x = 0.0, .v = 1.0, .drive = 0.0}); },
+                           owner.law_)) {}
 
   /// The points numbered in `wanted`, with the bound of the mesh as the error.
   void compute(std::span<const DfPoint> points, const std::vector<std::size_t>& wanted,
                std::span<DescribingFunction> results) {
-    keys_.clear();
-    for (const std::size_t i : wanted) keys_.push_back({mesh_of(points[i]), i});
-    std::sort(keys_.begin(), keys_.end());
-    for (std::size_t first = 0; first < keys_.size();) {
-      std::size_t end = first;
-      while (end < keys_.size() && end - first < static_cast<std::size_t>(lanes_) &&
-             keys_[end].mesh == keys_[first].mesh)
-        ++end;
-      run(points, {keys_.data() + first, end - first}, results);
-      first = end;
+    for (const std::size_t i : wanted) {
+      Group& group = group_of(layers_.range(*panels_, points[i].amplitude, points[i].frequency));
+      group.points.push_back(i);
+      if (std::ssize(group.points) == lanes_) run(group, points, results);
     }
+    for (Group& group : groups_)
+      if (!group.points.empty()) run(group, points, results);
   }
 
  private:
-  struct Mesh {
-    HalfPeriodPanels::Range range;
-    int remembered = 0;
-    auto operator<=>(const Mesh&) const = default;
-  };
-  struct Key {
-    Mesh mesh;
-    std::size_t point;
-    auto operator<=>(const Key&) const = default;
+  /// Points that wait for others with the same mesh.
+  struct Group {
+    HalfPeriodPanels::Range mesh;
+    std::vector<const double*> panels;
+    std::vector<std::size_t> points;
   };
 
-  Mesh mesh_of(const DfPoint& point) const {
-    const Layers layers = layers_of(owner_.shape_, point.amplitude, point.frequency, settings_);
-    Mesh mesh;
-    mesh.range =
-        panels_->range(std::min(1.0, settings_.cap * layers.after), std::min(1.0, settings_.cap * layers.before));
-    // The initial state has decayed by e^-40 at least after the way of 40 displacements.
-    const double half_sine_square = 20.0 * owner_.shape_.displacement / point.amplitude;
-    const double phase = half_sine_square < 1.0 ? 2.0 * std::asin(std::sqrt(half_sine_square)) : pi;
-    mesh.remembered = panels_->panels_until(mesh.range, phase);
-    return mesh;
+  Group& group_of(const HalfPeriodPanels::Range& mesh) {
+    if (last_ < groups_.size() && groups_[last_].mesh == mesh) return groups_[last_];
+    const auto known = std::ranges::find(groups_, mesh, &Group::mesh);
+    last_ = static_cast<std::size_t>(known - groups_.begin());
+    if (known != groups_.end()) return *known;
+    groups_.push_back({mesh, {}, {}});
+    panels_->select(mesh, groups_.back().panels);
+    return groups_.back();
   }
 
-  void run(std::span<const DfPoint> points, std::span<const Key> keys, std::span<DescribingFunction> results) {
-    const Mesh& mesh = keys.front().mesh;
-    panels_->select(mesh.range, selected_);
-    const int count = static_cast<int>(selected_.size());
+  void run(Group& group, std::span<const DfPoint> points, std::span<DescribingFunction> results) {
+    const int count = static_cast<int>(group.panels.size());
     need(LinearTask::scratch_size(settings_.stages, count, lanes_) + (4 * orders_ + 2) * lanes_);
     double* amplitude = scratch_.get();
     double* frequency = amplitude + lanes_;
     for (int lane = 0; lane < lanes_; ++lane) {
-      const DfPoint& point = points[keys[std::min(static_cast<std::size_t>(lane), keys.size() - 1)].point];
+      const DfPoint& point = points[group.points[std::min(static_cast<std::size_t>(lane), group.points.size() - 1)]];
       amplitude[lane] = point.amplitude;
       frequency[lane] = point.frequency;
     }
     LinearTask task;
     task.collocation = &panels_->collocation();
-    task.panels = selected_.data();
+    task.panels = group.panels.data();
     task.panel_count = count;
     task.orders = orders_;
-    task.remembered = mesh.remembered;
+    task.remembered = group.mesh.remembered;
     task.amplitude = amplitude;
     task.frequency = frequency;
     task.state_sums = frequency + lanes_;
@@ -124,8 +118,9 @@ class DfKernel::Batch {
       kernels.lugre[settings_.stages](*lugre, task);
     else
       kernels.dahl[settings_.stages](std::get<Dahl<double>>(owner_.law_), task);
-    for (std::size_t lane = 0; lane < keys.size(); ++lane)
-      collect(task, static_cast<int>(lane), points[keys[lane].point], results[keys[lane].point]);
+    for (std::size_t lane = 0; lane < group.points.size(); ++lane)
+      collect(task, static_cast<int>(lane), points[group.points[lane]], results[group.points[lane]]);
+    group.points.clear();
   }
 
   void need(int count) {
@@ -143,30 +138,27 @@ class DfKernel::Batch {
 
   void collect(const LinearTask& task, int lane, const DfPoint& point, DescribingFunction& result) const {
     const double A = point.amplitude, w = point.frequency;
-    const LinearOutput<double> output =
-        std::visit([](const auto& law) { return law.linear_output({.x = 0.0, .v = 1.0, .drive = 0.0}); }, owner_.law_);
-    const std::complex<double> j(0.0, 1.0);
     result.harmonics.assign(static_cast<std::size_t>(owner_.options_.harmonics), 0.0);
     double state_part = 0.0;
     for (int order = 0; order < orders_; ++order) {
       const auto k = static_cast<double>(2 * order + 1);
       const std::complex<double> z = coefficient(task.state_sums, order, lane);
       // Of dz/dt: j k w times that of z, which is exact. Where the damping varies: the sum over dz/dt itself.
-      std::complex<double> F = output.stiffness * z;
+      std::complex<double> F = output_.stiffness * z;
       if (task.damping_sums == nullptr)
-        F += output.damping * k * w * std::complex<double>(-z.imag(), z.real());
+        F += output_.damping * k * w * std::complex<double>(-z.imag(), z.real());
       else
         F += coefficient(task.damping_sums, order, lane);
       if (order == 0) {
-        state_part = std::abs(F);
-        F += j * (output.rest * A * w);
+        state_part = size(F);
+        F += std::complex<double>(0.0, output_.rest * A * w);
       }
       result.harmonics[static_cast<std::size_t>(2 * order)] = F;
     }
     result.gain = result.harmonics[0] / A;
     result.mean = 0.0;
     result.dissipation = pi * A * result.harmonics[0].imag();
-    result.error = owner_.bound(settings_) * state_part / std::abs(result.harmonics[0]) + roundings;
+    result.error = owner_.bound(settings_) * state_part / size(result.harmonics[0]) + roundings;
     result.symmetric = true;
     result.status = Status::converged;
     result.evaluations += static_cast<long>(task.panel_count) * settings_.stages;
@@ -176,10 +168,12 @@ class DfKernel::Batch {
   HalfPeriodSettings settings_;
   int orders_, lanes_;
   std::shared_ptr<const HalfPeriodPanels> panels_;
+  Layers layers_;
+  LinearOutput<double> output_;  ///< at the rate 1; rest and damping as numbers where they are
   Aligned scratch_;
   int room_ = 0;
-  std::vector<Key> keys_;
-  std::vector<const double*> selected_;
+  std::vector<Group> groups_;
+  std::size_t last_ = 0;  ///< group that was found last
 };
 
 DfKernel::DfKernel(Law law, const DfOptions& options) : law_(law), options_(options) {

@@ -151,14 +151,18 @@ void HalfPeriodPanels::fill(Part part, int j, const Quadrature& fine, double* bl
   }
 }
 
-/// Number of the panel that begins next to a phase, not after it.
-int HalfPeriodPanels::index_of(double phase) const {
-  const double tau = std::log(std::tan(0.5 * std::clamp(phase, 1e-15, 0.5 * pi)));
-  return std::clamp(static_cast<int>(std::floor(tau / width_ + 1e-9)), -reach_, 0);
+/// Number of the inner panel that begins where a cap of the phase e^cap ends, or before.
+int HalfPeriodPanels::index_of(double cap) const {
+  const double tau = std::min(cap, 0.0) - std::numbers::ln2;  // ln tan(phi/2) of a small phi
+  return std::max(static_cast<int>(std::floor(tau / width_)), -reach_);
 }
 
-HalfPeriodPanels::Range HalfPeriodPanels::range(double cap_after, double cap_before) const {
-  return {index_of(cap_after), -index_of(cap_before)};
+HalfPeriodPanels::Range HalfPeriodPanels::range(double after, double before, double forgotten) const {
+  Range range{index_of(after), -index_of(before), 0};
+  const int all = range.to - range.from + 2;
+  const double panels = 1.0 + std::ceil(forgotten / width_) - range.from;
+  range.remembered = panels < all ? std::max(1, static_cast<int>(panels)) : all;
+  return range;
 }
 
 void HalfPeriodPanels::select(Range range, std::vector<const double*>& panels) const {
@@ -168,27 +172,33 @@ void HalfPeriodPanels::select(Range range, std::vector<const double*>& panels) c
   panels.push_back(block(Part::right_cap, range.to));
 }
 
-int HalfPeriodPanels::panels_until(Range range, double phase) const {
-  const int all = range.to - range.from + 2;
-  if (!(phase < pi)) return all;
-  const int end = static_cast<int>(std::ceil(std::log(std::tan(0.5 * phase)) / width_));
-  return end > range.to ? all : std::max(1, 1 + end - range.from);
+Layers::Layers(const LevelShape& shape, const HalfPeriodSettings& settings)
+    : displacement_(std::log(shape.displacement)),
+      velocity_(std::log(shape.velocity)),
+      cap_(std::log(settings.cap)),
+      ignored_(std::log(settings.ignored)),
+      even_(shape.kink == 0.0) {
+  // |v|^kink at rest has no derivatives: what a polynomial misses is its size there, moved by the square of the phase.
+  if (!even_ && shape.kink != 1.0) cap_ += std::log(0.1 * settings.bound) / (2.0 + shape.kink);
 }
 
-Layers layers_of(const LevelShape& shape, double amplitude, double frequency, const HalfPeriodSettings& settings) {
-  const double way = std::sqrt(2.0 * shape.displacement / amplitude);  // settles within that phase
-  const double speed = shape.velocity / (amplitude * frequency);       // the level changes within that
+HalfPeriodPanels::Range Layers::range(const HalfPeriodPanels& panels, double amplitude, double frequency) {
+  if (amplitude != amplitude_) {
+    amplitude_ = amplitude;
+    amplitude_log_ = std::log(amplitude);
+    // The initial state has decayed by e^-40 at least after 40 displacements: A (1 - cos(phi)) with
+    // 1 - cos(phi) = 2/(1 + e^(-2 tau)).
+    const double half = 20.0 * std::exp(displacement_ - amplitude_log_);
+    forgotten_ = half < 1.0 ? 0.5 * std::log(half / (1.0 - half)) : infinite;
+  }
+  const double way = 0.5 * (std::numbers::ln2 + displacement_ - amplitude_log_);  // the state settles within that phase
+  const double speed = velocity_ - amplitude_log_ - std::log(frequency);          // the level changes within that
   // A layer of the level within that of the state moves the state by the square of their ratio only.
-  const double inner = std::max(speed, settings.ignored * way);
-  Layers layers{std::min(way, inner), speed < way ? inner : way};
+  const double inner = std::max(speed, ignored_ + way);
+  double after = std::min(way, inner), before = speed < way ? inner : way;
   // In a wider one the state follows the level, and stops where the level is flat if that is even in the velocity.
-  if (shape.kink == 0.0 && speed > way && (way < settings.ignored * speed || speed > 3.0)) layers.before = speed;
-  if (shape.kink == 0.0 || shape.kink == 1.0) return layers;
-  // |v|^kink at rest has no derivatives: what a polynomial misses is its size there, moved by the square of the phase.
-  const double least = std::pow(0.1 * settings.bound, 1.0 / (2.0 + shape.kink));
-  layers.after *= least;
-  layers.before *= least;
-  return layers;
+  if (even_ && speed > way && (way < ignored_ + speed || speed > 1.1)) before = speed;
+  return panels.range(cap_ + after, cap_ + before, forgotten_);
 }
 
 }  // namespace limcycle

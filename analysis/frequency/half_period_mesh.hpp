@@ -30,26 +30,25 @@ class HalfPeriodPanels {
   /// The same, kept for the next one who asks; safe from any thread.
   static std::shared_ptr<const HalfPeriodPanels> of(int stages, double width, int orders);
 
-  /// Numbers of the inner panels at which the caps end, about these phases (rad) after and before a reversal.
+  /// A mesh: numbers of the inner panels at which its caps end, and of its first panels, after which nothing is left of
+  /// the initial state.
   struct Range {
-    int from = 0, to = 0;
-    auto operator<=>(const Range&) const = default;
+    int from = 0, to = 0, remembered = 0;
+    bool operator==(const Range&) const = default;
   };
-  Range range(double cap_after, double cap_before) const;
+  /// That with caps of about the phases e^after and e^before (rad), at most 1, in which the initial state is forgotten
+  /// after the panel that holds tau.
+  Range range(double after, double before, double forgotten) const;
   /// The panels of a range: see PanelGeometry.
   void select(Range range, std::vector<const double*>& panels) const;
-  /// How many of its panels end before that phase, and the one in which it lies.
-  int panels_until(Range range, double phase) const;
-
   const CollocationNumbers& collocation() const { return collocation_; }
-  int most_panels() const { return 2 * reach_ + 2; }
 
  private:
   struct Quadrature;
   enum class Part { inner, left_cap, right_cap };
   const double* block(Part part, int j) const;
   void fill(Part part, int j, const Quadrature& fine, double* block) const;
-  int index_of(double phase) const;
+  int index_of(double cap) const;
 
   int stages_, orders_, reach_;
   double width_;
@@ -64,11 +63,18 @@ struct LevelShape {
   double kink = 0.0;               ///< g changes like |v|^kink at rest; 0: g is smooth and even
 };
 
-/// Phases, after a reversal and before the next one, within which the state of such a law can be taken for a
-/// polynomial, for the motion A sin wt.
-struct Layers {
-  double after = 1.0, before = 1.0;
+/// Where such a law needs caps, for motions A sin wt. Logarithms of phases, in which all of it is sums.
+class Layers {
+ public:
+  Layers(const LevelShape& shape, const HalfPeriodSettings& settings);
+
+  HalfPeriodPanels::Range range(const HalfPeriodPanels& panels, double amplitude, double frequency);
+
+ private:
+  double displacement_, velocity_, cap_, ignored_;
+  bool even_;
+  // Of the last amplitude, which a table has many times.
+  double amplitude_ = 0.0, amplitude_log_ = 0.0, forgotten_ = 0.0;
 };
-Layers layers_of(const LevelShape& shape, double amplitude, double frequency, const HalfPeriodSettings& settings);
 
 }  // namespace limcycle
