@@ -217,7 +217,7 @@ void DfKernel::compute(std::span<const DfPoint> points, std::span<DescribingFunc
       DescribingFunction& result = results[i];
       if (!verified_) {
         const double apart = std::abs(result.gain - std::exchange(coarser[i], result.gain)) / std::abs(result.gain);
-        result.error = have_coarser ? 2.0 * apart + mesh.bound + roundings : 1.0;
+        result.error = have_coarser ? 5.0 * apart + 10.0 * mesh.bound + roundings : 1.0;
       }
       if (!(result.error <= options_.accuracy)) return false;
       result.method = "kernel";

@@ -153,7 +153,7 @@ void HalfPeriodPanels::fill(Part part, int j, const Quadrature& fine, double* bl
 
 /// Number of the inner panel that begins where a cap of the phase e^cap ends, or before.
 int HalfPeriodPanels::index_of(double cap) const {
-  const double tau = std::min(cap, 0.0) - std::numbers::ln2;  // ln tan(phi/2) of a small phi
+  const double tau = cap - std::numbers::ln2;  // ln tan(phi/2) of a small phi
   return std::max(static_cast<int>(std::floor(tau / width_)), -reach_);
 }
 
@@ -177,6 +177,7 @@ Layers::Layers(const LevelShape& shape, const HalfPeriodSettings& settings)
       velocity_(std::log(shape.velocity)),
       cap_(std::log(settings.cap)),
       ignored_(std::log(settings.ignored)),
+      widest_(cap_),
       even_(shape.kink == 0.0) {
   // |v|^kink at rest has no derivatives: what a polynomial misses is its size there, moved by the square of the phase.
   if (!even_ && shape.kink != 1.0) cap_ += std::log(0.1 * settings.bound) / (2.0 + shape.kink);
@@ -198,7 +199,8 @@ HalfPeriodPanels::Range Layers::range(const HalfPeriodPanels& panels, double amp
   double after = std::min(way, inner), before = speed < way ? inner : way;
   // In a wider one the state follows the level, and stops where the level is flat if that is even in the velocity.
   if (even_ && speed > way && (way < ignored_ + speed || speed > 1.1)) before = speed;
-  return panels.range(cap_ + after, cap_ + before, forgotten_);
+  // However slow all of it is, sin(phi) itself is no polynomial.
+  return panels.range(std::min(cap_ + after, widest_), std::min(cap_ + before, widest_), forgotten_);
 }
 
 }  // namespace limcycle

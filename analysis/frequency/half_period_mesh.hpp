@@ -36,7 +36,7 @@ class HalfPeriodPanels {
     int from = 0, to = 0, remembered = 0;
     bool operator==(const Range&) const = default;
   };
-  /// That with caps of about the phases e^after and e^before (rad), at most 1, in which the initial state is forgotten
+  /// That with caps of about the phases e^after and e^before (rad), less than 1, in which the initial state is forgotten
   /// after the panel that holds tau.
   Range range(double after, double before, double forgotten) const;
   /// The panels of a range: see PanelGeometry.
@@ -71,7 +71,7 @@ class Layers {
   HalfPeriodPanels::Range range(const HalfPeriodPanels& panels, double amplitude, double frequency);
 
  private:
-  double displacement_, velocity_, cap_, ignored_;
+  double displacement_, velocity_, cap_, ignored_, widest_;
   bool even_;
   // Of the last amplitude, which a table has many times.
   double amplitude_ = 0.0, amplitude_log_ = 0.0, forgotten_ = 0.0;

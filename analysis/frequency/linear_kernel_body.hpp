@@ -20,8 +20,7 @@ struct LuGreLanes {
     law.delta = from.delta;
     law.curve.index = from.curve.index;
     law.sigma0 = from.sigma0 * unit;
-    law.sigma1 = from.sigma1 * unit;
-    law.sigma2 = from.sigma2 * unit;
+    law.sigma1 = from.sigma1;  // its part of the output is multiplied by `unit` later on, as dz/dt is
     law.vd = from.vd / unit;
     law.vs = 1.0;
   }
