@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <numbers>
 #include <sstream>
@@ -29,6 +30,10 @@ bool is_friction(const Element<double>& element) {
   return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
 }
 
+bool is_rate_independent(const Element<double>& element) {
+  return std::visit([]<class E>(const E&) { return RateIndependent<E>; }, element);
+}
+
 bool finite(const DescribingFunction& df) {
   bool all = std::isfinite(df.gain.real()) && std::isfinite(df.gain.imag()) && std::isfinite(df.mean) &&
              std::isfinite(df.dissipation) && std::isfinite(df.error);
@@ -54,9 +59,26 @@ DescribingFunction clean(DescribingFunction df, const DfOptions& options) {
 class Table {
  public:
   explicit Table(const Element<double>& element)
-      : element_(element), erased_(element), friction_(is_friction(element)), odd_(erased_.odd()) {}
+      : element_(element),
+        erased_(element),
+        friction_(is_friction(element)),
+        odd_(erased_.odd()),
+        rate_independent_(is_rate_independent(element)) {}
 
-  DescribingFunction at(const DfPoint& point, const DfOptions& options) const {
+  DescribingFunction at(const DfPoint& point, const DfOptions& options) {
+    if (!rate_independent_ || point.bias != 0.0 || options.method != DfMethod::automatic) return found(point, options);
+    // The path is the same at all frequencies, and so is the work of a period.
+    {
+      const std::lock_guard lock(guard_);
+      if (const auto known = by_amplitude_.find(point.amplitude); known != by_amplitude_.end()) return known->second;
+    }
+    DescribingFunction result = found({point.amplitude, 1.0, 0.0}, options);
+    const std::lock_guard lock(guard_);
+    return by_amplitude_.try_emplace(point.amplitude, std::move(result)).first->second;
+  }
+
+ private:
+  DescribingFunction found(const DfPoint& point, const DfOptions& options) const {
     const PrescribedMotion motion(point.amplitude, point.frequency, point.bias, friction_);
     const bool try_symmetric = odd_ && point.bias == 0.0;
     if (undefined_under(element_, motion.least_speed(), motion.mean_rate())) {
@@ -77,7 +99,6 @@ class Table {
     return clean(std::move(result), options);
   }
 
- private:
   /// The exact gain where there is one; the other harmonics stay those of the quadrature.
   void take_closed_form(const DfPoint& point, DescribingFunction& result) const {
     const auto exact = std::visit(
@@ -98,7 +119,9 @@ class Table {
 
   const Element<double>& element_;
   ErasedElement<double> erased_;
-  bool friction_, odd_;
+  bool friction_, odd_, rate_independent_;
+  std::mutex guard_;
+  std::map<double, DescribingFunction> by_amplitude_;
 };
 
 /// The points of a list, unit by unit, by several threads.
@@ -189,17 +212,10 @@ class TableRun {
 
   /// Those that the kernel can do; the others keep an empty method.
   void by_kernel(std::size_t first, std::size_t end) {
-    std::vector<DfPoint> points;
-    std::vector<std::size_t> where;
-    for (std::size_t i = first; i < end; ++i) {
-      if (points_[i].bias != 0.0) continue;
-      points.push_back(points_[i]);
-      where.push_back(i);
-    }
-    std::vector<DescribingFunction> results(points.size());
-    kernel_->compute(points, results);
-    for (std::size_t k = 0; k < where.size(); ++k)
-      if (!results[k].method.empty() && finite(results[k])) results_[where[k]] = std::move(results[k]);
+    const std::span results(results_.data() + first, end - first);
+    kernel_->compute({points_.data() + first, end - first}, results);
+    for (DescribingFunction& result : results)
+      if (!finite(result)) result = {};
   }
 
   const std::vector<DfPoint>& points_;

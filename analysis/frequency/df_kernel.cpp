@@ -6,7 +6,6 @@
 #include <memory>
 #include <new>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 namespace limcycle {
@@ -204,8 +203,10 @@ double DfKernel::bound(const HalfPeriodSettings& mesh) const {
 }
 
 void DfKernel::compute(std::span<const DfPoint> points, std::span<DescribingFunction> results) const {
-  std::vector<std::size_t> wanted(points.size());
-  std::iota(wanted.begin(), wanted.end(), std::size_t{0});
+  std::vector<std::size_t> wanted;
+  wanted.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].bias == 0.0) wanted.push_back(i);
   std::vector<std::complex<double>> coarser(verified_ ? 0 : points.size());
   bool have_coarser = false;
   for (const HalfPeriodSettings& mesh : meshes) {

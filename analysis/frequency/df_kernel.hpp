@@ -23,8 +23,8 @@ class DfKernel {
   /// Empty if the element is none of these laws, or if the accuracy is beyond the finest mesh.
   static std::optional<DfKernel> of(const Element<double>& element, const DfOptions& options);
 
-  /// Points without bias, friction laws. Where the wanted accuracy was not reached, or a number is not finite, `method`
-  /// stays empty. Cost of a point: 0.2 microseconds at 1e-6 with AVX-512, 1 at 1e-9.
+  /// The points without bias. Where the wanted accuracy was not reached, and for the other points, `method` stays
+  /// empty. Cost of a point: 0.2 microseconds at 1e-6 with AVX-512, 1 at 1e-9.
   void compute(std::span<const DfPoint> points, std::span<DescribingFunction> results) const;
 
   /// Highest order of the harmonics that it computes.

@@ -13,6 +13,7 @@ struct Dahl {
   S Fc{}, sigma0{}, exponent{1.0};
 
   static constexpr std::string_view kind = "dahl";
+  static constexpr bool rate_independent = true;
   static constexpr std::string_view equation =
       "dz/dt = v |1 - s sigma0 z/Fc|^exponent sgn(1 - s sigma0 z/Fc), s = sgn(v);  F = sigma0 z";
   static constexpr std::string_view source =

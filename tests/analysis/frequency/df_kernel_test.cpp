@@ -308,6 +308,37 @@ TEST_CASE("kernel: what it leaves to other methods", "[df][kernel]") {
   CHECK(describing_function(lugre(), {1e-3, 1.0, 0.0}, with(DfMethod::quadrature, 1e-6)).method == "quadrature");
 }
 
+TEST_CASE("a law that knows no rate is computed once an amplitude", "[df][rate]") {
+  BoucWen<double> bouc_wen;
+  bouc_wen.alpha = 0.1;
+  bouc_wen.k = 1e5;
+  bouc_wen.D = 1e-5;
+  bouc_wen.beta = 0.7;
+  bouc_wen.gamma = 0.3;
+  bouc_wen.n = 2.0;
+  Jenkins<double> jenkins;
+  jenkins.k = 1e5;
+  jenkins.Fc = 1.0;
+  for (const Element<double>& element :
+       {Element<double>(bouc_wen), Element<double>(dahl(2.0)), Element<double>(jenkins)}) {
+    std::vector<DfPoint> points;
+    for (const double A : {3e-6, 3e-5, 3e-4})
+      for (const double w : {0.1, 30.0, 1e3}) points.push_back({A, w, 0.0});
+    for (const int threads : {1, 3}) {
+      auto options = asking(1e-8);
+      options.threads = threads;
+      const auto table = describing_function_table(element, points, options);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto alone = describing_function(element, points[i], with(DfMethod::quadrature, 1e-8));
+        CAPTURE(points[i].amplitude, points[i].frequency);
+        CHECK(apart(table[i].gain, alone.gain) <= table[i].error + alone.error);
+        CHECK(table[i].gain == table[i - i % 3].gain);
+        CHECK(table[i].dissipation == Approx(alone.dissipation).epsilon(1e-6).margin(1e-14));
+      }
+    }
+  }
+}
+
 TEST_CASE("the linear form of a law is its own equations", "[laws][kernel]") {
   Random random(11);
   for (int i = 0; i < 200; ++i) {
