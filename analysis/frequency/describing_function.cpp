@@ -134,8 +134,9 @@ class TableRun {
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     threads_ = options.threads > 0 ? options.threads : cores;
     // Large enough to fill the lanes with points of like meshes, small enough to share out.
-    const std::size_t shares = 8 * static_cast<std::size_t>(threads_), most = kernel_ ? 4096 : 16;
-    unit_ = std::clamp((points.size() + shares - 1) / shares, std::size_t{1}, most);
+    const std::size_t shares = 8 * static_cast<std::size_t>(threads_);
+    unit_ = std::clamp((points.size() + shares - 1) / shares, std::size_t{kernel_ ? 512U : 1U},
+                       std::size_t{kernel_ ? 4096U : 16U});
     computed_.assign((points.size() + unit_ - 1) / unit_, 0);
   }
 

@@ -6,7 +6,6 @@
 #include <memory>
 #include <new>
 #include <numbers>
-#include <utility>
 
 namespace limcycle {
 
@@ -207,7 +206,11 @@ void DfKernel::compute(std::span<const DfPoint> points, std::span<DescribingFunc
   wanted.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     if (points[i].bias == 0.0) wanted.push_back(i);
-  std::vector<std::complex<double>> coarser(verified_ ? 0 : points.size());
+  struct Coarser {
+    std::complex<double> gain;
+    double apart = 0.0;  ///< from a mesh that was coarser still
+  };
+  std::vector<Coarser> coarser(verified_ ? 0 : points.size());
   bool have_coarser = false;
   for (const HalfPeriodSettings& mesh : meshes) {
     if (wanted.empty()) break;
@@ -217,8 +220,10 @@ void DfKernel::compute(std::span<const DfPoint> points, std::span<DescribingFunc
     std::erase_if(wanted, [&](std::size_t i) {
       DescribingFunction& result = results[i];
       if (!verified_) {
-        const double apart = std::abs(result.gain - std::exchange(coarser[i], result.gain)) / std::abs(result.gain);
-        result.error = have_coarser ? 5.0 * apart + 10.0 * mesh.bound + roundings : 1.0;
+        const double apart = have_coarser ? std::abs(result.gain - coarser[i].gain) / std::abs(result.gain) : 0.1;
+        // Two meshes may agree by chance, but not after the one before them was far off.
+        result.error = 10.0 * std::max(apart, coarser[i].apart / 30.0) + 10.0 * mesh.bound + roundings;
+        coarser[i] = {result.gain, have_coarser ? apart : 0.0};
       }
       if (!(result.error <= options_.accuracy)) return false;
       result.method = "kernel";
