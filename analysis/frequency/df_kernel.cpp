@@ -30,7 +30,7 @@ LevelShape shape_of(const LuGre<double>& law) {
   const double delta = law.curve.index == 1 ? 1.0 : law.delta;
   const bool even = std::fmod(delta, 2.0) == 0.0, whole = delta == std::floor(delta);
   const double velocity = law.vd > 0.0 ? std::min(law.vs, law.vd) : law.vs;
-  return {law.Fs / law.sigma0, velocity, even ? 0.0 : whole ? 1.0 : delta};
+  return {law.Fs / law.sigma0, velocity, even ? 0.0 : whole ? 1.0 : delta, law.vd > 0.0};
 }
 
 struct Freed {
@@ -109,8 +109,9 @@ class DfKernel::Batch {
     task.amplitude = amplitude;
     task.frequency = frequency;
     task.state_sums = frequency + lanes_;
-    task.damping_sums = owner_.constant_damping_ ? nullptr : task.state_sums + 2 * orders_ * lanes_;
-    task.scratch = task.state_sums + 4 * orders_ * lanes_;
+    const std::ptrdiff_t sums = std::ptrdiff_t{2} * orders_ * lanes_;
+    task.damping_sums = owner_.constant_damping_ ? nullptr : task.state_sums + sums;
+    task.scratch = task.state_sums + 2 * sums;
     const LinearKernels& kernels = kernels_of(owner_.options_.isa);
     if (const auto* lugre = std::get_if<LuGre<double>>(&owner_.law_))
       kernels.lugre[settings_.stages](*lugre, task);
@@ -151,7 +152,7 @@ class DfKernel::Batch {
         state_part = size(F);
         F += std::complex<double>(0.0, output_.rest * A * w);
       }
-      result.harmonics[static_cast<std::size_t>(2 * order)] = F;
+      result.harmonics[2 * static_cast<std::size_t>(order)] = F;
     }
     result.gain = result.harmonics[0] / A;
     result.mean = 0.0;
@@ -211,25 +212,25 @@ void DfKernel::compute(std::span<const DfPoint> points, std::span<DescribingFunc
     double apart = 0.0;  ///< from a mesh that was coarser still
   };
   std::vector<Coarser> coarser(verified_ ? 0 : points.size());
-  bool have_coarser = false;
+  int done = 0;
   for (const HalfPeriodSettings& mesh : meshes) {
     if (wanted.empty()) break;
-    // Without a bound that is known: two meshes that are too coarse will not agree.
-    if (verified_ ? bound(mesh) + roundings > options_.accuracy : mesh.bound > 100.0 * options_.accuracy) continue;
+    // Without a bound that is known three meshes are wanted, of which the coarsest need not be that accurate.
+    if (verified_ ? bound(mesh) + roundings > options_.accuracy : mesh.bound > 300.0 * options_.accuracy) continue;
     Batch(*this, mesh).compute(points, wanted, results);
     std::erase_if(wanted, [&](std::size_t i) {
       DescribingFunction& result = results[i];
       if (!verified_) {
-        const double apart = have_coarser ? std::abs(result.gain - coarser[i].gain) / std::abs(result.gain) : 0.1;
-        // Two meshes may agree by chance, but not after the one before them was far off.
+        const double apart = done > 0 ? std::abs(result.gain - coarser[i].gain) / std::abs(result.gain) : 1.0;
+        // Two meshes may agree by chance; then the one before them was far off.
         result.error = 10.0 * std::max(apart, coarser[i].apart / 30.0) + 10.0 * mesh.bound + roundings;
-        coarser[i] = {result.gain, have_coarser ? apart : 0.0};
+        coarser[i] = {result.gain, apart};
       }
-      if (!(result.error <= options_.accuracy)) return false;
+      if (!(result.error <= options_.accuracy) || (!verified_ && done < 2)) return false;
       result.method = "kernel";
       return true;
     });
-    have_coarser = true;
+    ++done;
   }
 }
 

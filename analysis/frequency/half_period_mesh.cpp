@@ -20,15 +20,13 @@ constexpr double farthest = 32.0;  ///< tau: a phase of 2.5e-14
 double at(const double* row, int i) { return row[i]; }
 
 CollocationNumbers numbers_of(const RadauIIA& table) {
-  const int s = table.stages;
+  const auto s = static_cast<std::size_t>(table.stages);
   CollocationNumbers numbers{};
   // Gauss-Jordan with row exchange, in extended precision.
-  std::vector<std::vector<long double>> rows(static_cast<std::size_t>(s));
-  for (int i = 0; i < s; ++i) {
-    auto& row = rows[static_cast<std::size_t>(i)];
-    row.assign(static_cast<std::size_t>(2 * s), 0.0L);
-    for (int j = 0; j < s; ++j) row[static_cast<std::size_t>(j)] = table.coefficient(i, j);
-    row[static_cast<std::size_t>(s + i)] = 1.0L;
+  std::vector<std::vector<long double>> rows(s, std::vector<long double>(2 * s, 0.0L));
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t j = 0; j < s; ++j) rows[i][j] = table.a[i * s + j];
+    rows[i][s + i] = 1.0L;
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto largest =
@@ -43,10 +41,10 @@ CollocationNumbers numbers_of(const RadauIIA& table) {
       for (std::size_t j = 0; j < rows[i].size(); ++j) rows[i][j] -= factor * rows[k][j];
     }
   }
-  for (int i = 0; i < s; ++i) {
+  for (std::size_t i = 0; i < s; ++i) {
     long double sum = 0.0L;
-    for (int j = 0; j < s; ++j) {
-      const long double value = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(s + j)];
+    for (std::size_t j = 0; j < s; ++j) {
+      const long double value = rows[i][s + j];
       numbers.inverse[i * s + j] = static_cast<double>(value);
       sum += value;
     }
@@ -88,8 +86,8 @@ HalfPeriodPanels::HalfPeriodPanels(int stages, double width, int orders)
       collocation_(numbers_of(radau_iia(stages))) {
   const RadauIIA& table = radau_iia(stages);
   const Quadrature fine(table, 1 + orders / 4), finer(table, 2 + orders / 2);
-  const int size = PanelGeometry::size(stages, orders), count = 2 * reach_ + 1;
-  blocks_.assign(static_cast<std::size_t>(3 * size * count), 0.0);
+  const auto size = static_cast<std::size_t>(PanelGeometry::size(stages, orders));
+  blocks_.assign(3 * size * (2 * static_cast<std::size_t>(reach_) + 1), 0.0);
   for (int j = -reach_; j <= reach_; ++j) {
     for (const Part part : {Part::inner, Part::left_cap, Part::right_cap}) {
       const bool wide = part != Part::inner && std::abs(j) * width < 3.0;
@@ -176,7 +174,7 @@ Layers::Layers(const LevelShape& shape, const HalfPeriodSettings& settings)
     : displacement_(std::log(shape.displacement)),
       velocity_(std::log(shape.velocity)),
       cap_(std::log(settings.cap)),
-      ignored_(std::log(settings.ignored)),
+      ignored_(shape.seen ? -infinite : std::log(settings.ignored)),
       widest_(cap_),
       even_(shape.kink == 0.0) {
   // |v|^kink at rest has no derivatives: what a polynomial misses is its size there, moved by the square of the phase.

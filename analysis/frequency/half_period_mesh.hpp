@@ -36,8 +36,8 @@ class HalfPeriodPanels {
     int from = 0, to = 0, remembered = 0;
     bool operator==(const Range&) const = default;
   };
-  /// That with caps of about the phases e^after and e^before (rad), less than 1, in which the initial state is forgotten
-  /// after the panel that holds tau.
+  /// That with caps of about the phases e^after and e^before (rad), less than 1, in which the initial state is
+  /// forgotten after the panel that holds tau.
   Range range(double after, double before, double forgotten) const;
   /// The panels of a range: see PanelGeometry.
   void select(Range range, std::vector<const double*>& panels) const;
@@ -61,6 +61,7 @@ struct LevelShape {
   double displacement = infinite;  ///< way over which the state settles (m)
   double velocity = infinite;      ///< over which the level changes (m/s)
   double kink = 0.0;               ///< g changes like |v|^kink at rest; 0: g is smooth and even
+  bool seen = false;               ///< whether the output itself changes over `velocity`, so that no layer is ignored
 };
 
 /// Where such a law needs caps, for motions A sin wt. Logarithms of phases, in which all of it is sums.
