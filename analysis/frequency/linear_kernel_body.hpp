@@ -59,13 +59,12 @@ template <class P, int S, class Law>
 class LinearPass {
  public:
   LinearPass(const Law& law, const LinearTask& task)
-      : law_(law),
+      : frequency_(P::load(task.frequency)),
+        peak_(P::load(task.amplitude) * frequency_ / law.unit),
+        period_(1.0 / frequency_),
+        law_(law),
         task_(task),
         numbers_(*task.collocation),
-        amplitude_(P::load(task.amplitude)),
-        frequency_(P::load(task.frequency)),
-        peak_(amplitude_ * frequency_ / law.unit),
-        period_(1.0 / frequency_),
         z_(reinterpret_cast<P*>(task.scratch)),
         homogeneous_(z_ + S * task.panel_count) {}
 
@@ -196,12 +195,11 @@ class LinearPass {
     (cosine[0] * law_.unit).store(sums + 2 * lanes * order + lanes);
   }
 
+  P frequency_, peak_, period_, start_;
   const Law& law_;
   const LinearTask& task_;
   const CollocationNumbers& numbers_;
-  P amplitude_, frequency_, peak_, period_;
   P *z_, *homogeneous_;
-  P start_;
 };
 
 template <class P, int S>
