@@ -1,6 +1,7 @@
 #include "limcycle/cli/command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <stdexcept>
 #include <thread>
 
 #include "build_info.hpp"
@@ -27,8 +28,12 @@ CLI::App* add_command(CLI::App& program, Action& action, const std::string& name
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  command->add_option("--isa", flags->isa, "Instruction set: auto or x86-64 (the portable one)")
-      ->check(CLI::IsMember({"auto", "x86-64"}))
+  std::vector<std::string> sets{"auto"};
+  for (const Isa isa : all_isas()) sets.emplace_back(to_string(isa));
+  command
+      ->add_option("--isa", flags->isa,
+                   "Instruction set of the kernels: auto (the widest that this machine has) or one of those listed")
+      ->check(CLI::IsMember(sets))
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--quiet", flags->quiet, "No progress bar and no messages but errors");
@@ -38,13 +43,19 @@ CLI::App* add_command(CLI::App& program, Action& action, const std::string& name
 
 Case load_case(const CommonFlags& flags) { return load_case(flags.case_file, flags.set); }
 
+Isa instruction_set(const CommonFlags& flags) {
+  const Isa isa = isa_named(flags.isa).value();
+  if (!is_available(isa)) throw std::invalid_argument("--isa: this machine has no " + flags.isa);
+  return isa;
+}
+
 Provenance provenance(const CommonFlags& flags, const Case* from) {
   Provenance made;
   made.version = build_info::version;
   made.commit = build_info::commit;
   made.compiler = build_info::compiler;
   made.build_type = build_info::build_type;
-  made.isa = flags.isa == "auto" ? "x86-64" : flags.isa;
+  made.isa = to_string(instruction_set(flags));
   made.seed = flags.seed;
   made.threads =
       flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

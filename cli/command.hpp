@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/analysis/lanes/isa.hpp"
 #include "limcycle/cases/case.hpp"
 #include "limcycle/reports/provenance.hpp"
 
@@ -44,6 +45,9 @@ CLI::App* add_command(CLI::App& program, Action& action, const std::string& name
 
 /// The case of the command line, read and validated. Throws InputError.
 Case load_case(const CommonFlags& flags);
+
+/// The instruction set that --isa names. Throws std::invalid_argument if this machine lacks it.
+Isa instruction_set(const CommonFlags& flags);
 
 /// Who made a result, with which settings, from what. `from`: the case, or null if the command has none.
 Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);

@@ -17,6 +17,9 @@ int run(const CommonFlags& flags) {
   const Case from = load_case(flags);
   const DfSection& section = need_df(from);
   const auto points = section.points();
+  DfOptions options = section.options;
+  options.isa = instruction_set(flags);
+  options.threads = flags.threads;
   Output output(flags);
 
   std::vector<DescribingFunction> results;
@@ -24,7 +27,7 @@ int run(const CommonFlags& flags) {
     Progress progress(flags.quiet);
     const auto total = static_cast<double>(points.size());
     catch_interrupts();
-    results = describing_function_table(df_element(from), points, section.options, interrupted, [&](std::size_t done) {
+    results = describing_function_table(df_element(from), points, options, interrupted, [&](std::size_t done) {
       progress.show(static_cast<double>(done) / total, "describing functions");
     });
   }

@@ -67,6 +67,25 @@ void add_prediction(std::string& out, std::size_t i, const Prediction& predictio
                 {"why", prediction.why}});
 }
 
+/// Numbers and plain words only, so no field needs quotes. What a result without an answer holds is left empty.
+void add_df_row(std::string& out, const DfPoint& point, const DescribingFunction& result, std::size_t orders) {
+  const auto add = [&](double value, bool known) {
+    if (known) append_shortest(out, value);
+    out += ',';
+  };
+  const bool answered = result.answered();
+  for (const double value : {point.amplitude, point.frequency, point.bias}) add(value, true);
+  for (const double value : {result.gain.real(), result.gain.imag(), result.mean}) add(value, answered);
+  for (std::size_t k = 0; k < orders; ++k) {
+    const bool known = answered && k < result.harmonics.size();
+    add(known ? result.harmonics[k].real() : 0.0, known);
+    add(known ? result.harmonics[k].imag() : 0.0, known);
+  }
+  add(result.dissipation, answered);
+  add(result.error, answered);
+  out.append(result.method).append(1, ',').append(to_string(result.status)).append(1, '\n');
+}
+
 }  // namespace
 
 std::string df_csv(const std::vector<DfPoint>& points, const std::vector<DescribingFunction>& results) {
@@ -79,23 +98,9 @@ std::string df_csv(const std::vector<DfPoint>& points, const std::vector<Describ
     names.push_back("harmonic_" + std::to_string(k) + "_cosine");
   }
   for (const char* name : {"dissipation", "error", "method", "status"}) names.emplace_back(name);
-  std::string out;
-  out += csv_line(names);
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const auto& r = results[i];
-    const bool answered = r.answered();
-    const auto known = [&](double value) { return answered ? shortest(value) : std::string(); };
-    std::vector<std::string> row = {shortest(points[i].amplitude), shortest(points[i].frequency),
-                                    shortest(points[i].bias),      known(r.gain.real()),
-                                    known(r.gain.imag()),          known(r.mean)};
-    for (std::size_t k = 0; k < orders; ++k) {
-      row.push_back(k < r.harmonics.size() ? known(r.harmonics[k].real()) : "");
-      row.push_back(k < r.harmonics.size() ? known(r.harmonics[k].imag()) : "");
-    }
-    row.insert(row.end(),
-               {known(r.dissipation), known(r.error), std::string(r.method), std::string(to_string(r.status))});
-    out += csv_line(row);
-  }
+  std::string out = csv_line(names);
+  out.reserve(out.size() + results.size() * (140 + 42 * orders));
+  for (std::size_t i = 0; i < results.size(); ++i) add_df_row(out, points[i], results[i], orders);
   return out;
 }
 

@@ -9,27 +9,27 @@ using Json = nlohmann::ordered_json;
 
 std::string replaced(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-}  // namespace
-
-std::string json_document(const std::string& command, const Provenance& provenance, const std::string& body) {
+Json head(const std::string& command, const Provenance& provenance) {
   const auto text_or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
-  Json top{{"schema", "limcycle/1"},
-           {"command", command},
-           {"case",
-            {{"title", text_or_null(provenance.title)},
-             {"file", text_or_null(provenance.file)},
-             {"sha256", text_or_null(provenance.sha256)}}},
-           {"provenance",
-            {{"version", provenance.version},
-             {"commit", provenance.commit},
-             {"compiler", provenance.compiler},
-             {"build_type", provenance.build_type},
-             {"seed", provenance.seed},
-             {"isa", provenance.isa},
-             {"threads", provenance.threads},
-             {"overrides", provenance.overrides}}}};
-  const Json members = Json::parse(body);
-  for (const auto& [key, value] : members.items()) top[key] = value;
+  return {{"schema", "limcycle/1"},
+          {"command", command},
+          {"case",
+           {{"title", text_or_null(provenance.title)},
+            {"file", text_or_null(provenance.file)},
+            {"sha256", text_or_null(provenance.sha256)}}},
+          {"provenance",
+           {{"version", provenance.version},
+            {"commit", provenance.commit},
+            {"compiler", provenance.compiler},
+            {"build_type", provenance.build_type},
+            {"seed", provenance.seed},
+            {"isa", provenance.isa},
+            {"threads", provenance.threads},
+            {"overrides", provenance.overrides}}}};
+}
+
+/// The members, one a line; of a list of structures one structure a line. The closing brace is left to the caller.
+std::string framed(const Json& top) {
   std::string text = "{";
   bool first = true;
   for (const auto& [key, value] : top.items()) {
@@ -42,7 +42,20 @@ std::string json_document(const std::string& command, const Provenance& provenan
     for (std::size_t i = 0; i < value.size(); ++i) text += (i == 0 ? "[\n    " : ",\n    ") + replaced(value[i]);
     text += "\n  ]";
   }
-  return text + "\n}\n";
+  return text;
+}
+
+}  // namespace
+
+std::string json_document(const std::string& command, const Provenance& provenance, const std::string& body) {
+  Json top = head(command, provenance);
+  const Json members = Json::parse(body);
+  for (const auto& [key, value] : members.items()) top[key] = value;
+  return framed(top) + "\n}\n";
+}
+
+std::string json_beginning(const std::string& command, const Provenance& provenance) {
+  return framed(head(command, provenance));
 }
 
 std::string csv_line(const std::vector<std::string>& fields) {

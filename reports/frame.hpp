@@ -10,6 +10,10 @@ namespace limcycle {
 /// text of a JSON object. Without a case its title, file and sha256 are null. Text that is not UTF-8 is replaced.
 std::string json_document(const std::string& command, const Provenance& provenance, const std::string& body);
 
+/// The beginning of such a document, for one that is too long to be parsed: members follow as ",\n  "key": value", then
+/// "\n}\n".
+std::string json_beginning(const std::string& command, const Provenance& provenance);
+
 /// One line of CSV (RFC 4180, ended by a newline only).
 std::string csv_line(const std::vector<std::string>& fields);
 

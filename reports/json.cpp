@@ -86,23 +86,47 @@ Json prediction_json(const Prediction& prediction) {
           {"trust", trust_json(prediction.trust)}};
 }
 
-Json point_json(const DfPoint& point, const DescribingFunction& result) {
+/// Appends a number as the library does; null for one that does not exist. A table has a million of them: no Json is
+/// made for each.
+void append_number(std::string& out, double value) {
+  if (!std::isfinite(value)) {
+    out += "null";
+    return;
+  }
+  char buffer[64];
+  out.append(buffer, nlohmann::detail::to_chars(buffer, buffer + sizeof buffer, value));
+}
+
+void append_pair(std::string& out, double first, double second) {
+  out += '[';
+  append_number(out, first);
+  out += ',';
+  append_number(out, second);
+  out += ']';
+}
+
+void append_point(std::string& out, const DfPoint& point, const DescribingFunction& result) {
   // A result without an answer holds zeros, which are not numbers that exist.
-  const bool answered = result.answered();
-  const auto known = [&](double value) { return answered ? number(value) : Json(nullptr); };
-  Json harmonics = Json::array();
-  for (const auto& harmonic : result.harmonics)
-    harmonics.push_back(Json::array({known(harmonic.real()), known(harmonic.imag())}));
-  return {{"amplitude", number(point.amplitude)},
-          {"frequency", number(point.frequency)},
-          {"bias", number(point.bias)},
-          {"gain", Json::array({known(result.gain.real()), known(result.gain.imag())})},
-          {"mean", known(result.mean)},
-          {"harmonics", harmonics},
-          {"dissipation", known(result.dissipation)},
-          {"error", known(result.error)},
-          {"method", result.method},
-          {"status", to_string(result.status)}};
+  const auto known = [&](double value) { return result.answered() ? value : NAN; };
+  const auto add = [&](std::string_view key, double value) {
+    out.append(key);
+    append_number(out, value);
+  };
+  add("{\"amplitude\":", point.amplitude);
+  add(",\"frequency\":", point.frequency);
+  add(",\"bias\":", point.bias);
+  out += ",\"gain\":";
+  append_pair(out, known(result.gain.real()), known(result.gain.imag()));
+  add(",\"mean\":", known(result.mean));
+  out += ",\"harmonics\":[";
+  for (std::size_t k = 0; k < result.harmonics.size(); ++k) {
+    if (k > 0) out += ',';
+    append_pair(out, known(result.harmonics[k].real()), known(result.harmonics[k].imag()));
+  }
+  add("],\"dissipation\":", known(result.dissipation));
+  add(",\"error\":", known(result.error));
+  out.append(",\"method\":\"").append(result.method);
+  out.append("\",\"status\":\"").append(to_string(result.status)).append("\"}");
 }
 
 }  // namespace
@@ -110,11 +134,17 @@ Json point_json(const DfPoint& point, const DescribingFunction& result) {
 std::string df_json(const Provenance& provenance, const std::vector<DfPoint>& points,
                     const std::vector<DescribingFunction>& results) {
   if (results.size() > points.size()) throw std::invalid_argument("more describing functions than points");
-  Json top;
-  top["points"] = Json::array();
-  for (std::size_t i = 0; i < results.size(); ++i) top["points"].push_back(point_json(points[i], results[i]));
-  top["status"] = to_string(results.size() < points.size() ? Status::interrupted : Status::converged);
-  return text_of("df", provenance, top);
+  std::string out = json_beginning("df", provenance);
+  if (!results.empty()) out.reserve(out.size() + results.size() * (260 + 48 * results.front().harmonics.size()));
+  out += ",\n  \"points\": [";
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    out += i == 0 ? "\n    " : ",\n    ";
+    append_point(out, points[i], results[i]);
+  }
+  if (!results.empty()) out += "\n  ";
+  out += "],\n  \"status\": \"";
+  out += to_string(results.size() < points.size() ? Status::interrupted : Status::converged);
+  return out += "\"\n}\n";
 }
 
 std::string predict_json(const Provenance& provenance, const PredictReport& report) {

@@ -36,10 +36,15 @@ std::string printed(double value, int digits, bool whole) {
 }  // namespace
 
 std::string shortest(double value) {
-  if (!std::isfinite(value)) return {};
+  std::string text;
+  append_shortest(text, value);
+  return text;
+}
+
+void append_shortest(std::string& out, double value) {
+  if (!std::isfinite(value)) return;
   char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-  return {buffer, end};
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
 std::string with_digits(double value, int digits) { return printed(value, digits, true); }

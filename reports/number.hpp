@@ -6,6 +6,9 @@ namespace limcycle {
 /// Shortest decimal text that reads back as the same double ("0.1", "1e-06"). Empty for NaN and infinities.
 std::string shortest(double value);
 
+/// Appends that text; for documents of many numbers.
+void append_shortest(std::string& out, double value);
+
 /// `digits` significant digits (1..17), plain or with an exponent, whichever is readable: plain for 1e-4 <= |value| <
 /// 1e7.
 /// "-" for NaN and infinities.

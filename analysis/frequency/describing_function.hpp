@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "limcycle/analysis/lanes/isa.hpp"
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/models/elements.hpp"
 
@@ -11,7 +12,7 @@ namespace limcycle {
 
 /// How the harmonics of the periodic steady state are computed.
 enum class DfMethod {
-  automatic,   ///< closed form for the gain where there is one, else quadrature
+  automatic,   ///< closed form for the gain where there is one, else a kernel that knows the law, else quadrature
   fft,         ///< FFT of uniform samples of the periodic steady state, doubled until two resolutions agree
   quadrature,  ///< nodes graded towards reversals and split at switches
 };
@@ -20,6 +21,8 @@ struct DfOptions {
   int harmonics = 7;       ///< orders 1..harmonics are returned
   double accuracy = 1e-6;  ///< wanted relative error of the gain, 1e-13..1e-1
   DfMethod method = DfMethod::automatic;
+  Isa isa = Isa::scalar;  ///< of the kernels; the others know the portable one only. Must be available
+  int threads = 1;        ///< of a table; 0: one a core. The numbers do not depend on it
 };
 
 /// Where a describing function is wanted: the input is bias t + amplitude sin(frequency t) for a friction law (bias:
@@ -36,11 +39,11 @@ struct DescribingFunction {
   std::vector<std::complex<double>> harmonics;  ///< [k-1]: sine + j cosine coefficient of order k, units of the output
   double dissipation = 0.0;                     ///< work per period against the element, integral of output times rate
   /// Estimated relative error of the gain: difference of two meshes (or resolutions) with a margin, defect of
-  /// periodicity and roundings. 0 with a gain of exactly 0: no first harmonic above rounding (relay within its
-  /// hysteresis, sliding on a constant level).
+  /// periodicity and roundings; of a kernel also a bound that holds for every motion and was verified by tests. 0 with
+  /// a gain of exactly 0: no first harmonic above rounding (relay within its hysteresis, sliding on a constant level).
   double error = 0.0;
   bool symmetric = false;             ///< the output is half-wave symmetric
-  std::string_view method;            ///< "closed-form", "fft" or "quadrature"
+  std::string_view method;            ///< "closed-form", "kernel", "fft" or "quadrature"
   Status status = Status::converged;  ///< incomplete: the wanted accuracy was not reached, see error
   long evaluations = 0;               ///< of the element's equations
 
@@ -57,8 +60,10 @@ void validate(const DfPoint& point);
 DescribingFunction describing_function(const Element<double>& element, const DfPoint& point,
                                        const DfOptions& options = {});
 
-/// The whole product amplitudes x frequencies x biases, amplitude slowest. `stop` is asked between points: when it
-/// returns true the points computed so far are returned. `progress` is told how many are done.
+/// All points of a list, such as the product amplitudes x frequencies x biases. `stop` is asked for every point, by any
+/// of the threads, one at a time: once it returns true no further point is begun, and those that were computed without
+/// a gap from the first on are returned. `progress` is told, now and then and at the end, how many are done. The result
+/// at a point does not depend on the other points.
 std::vector<DescribingFunction> describing_function_table(const Element<double>& element,
                                                           const std::vector<DfPoint>& points, const DfOptions& options,
                                                           const std::function<bool()>& stop = {},

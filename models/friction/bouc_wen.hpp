@@ -24,6 +24,7 @@ struct BoucWen {
   S alpha{0.0}, k{}, D{}, A{1.0}, beta{}, gamma{}, n{1.0};
 
   static constexpr std::string_view kind = "bouc-wen";
+  static constexpr bool rate_independent = true;
   static constexpr std::string_view equation =
       "F = alpha k x + (1 - alpha) k D z;  D dz/dt = A v - beta |v| |z|^(n-1) z - gamma v |z|^n";
   static constexpr std::string_view source =

@@ -1,4 +1,5 @@
 #pragma once
+#include "limcycle/models/element/linear_state.hpp"
 #include "limcycle/models/friction/features.hpp"
 #include "limcycle/models/friction/levels.hpp"
 
@@ -12,6 +13,7 @@ struct Dahl {
   S Fc{}, sigma0{}, exponent{1.0};
 
   static constexpr std::string_view kind = "dahl";
+  static constexpr bool rate_independent = true;
   static constexpr std::string_view equation =
       "dz/dt = v |1 - s sigma0 z/Fc|^exponent sgn(1 - s sigma0 z/Fc), s = sgn(v);  F = sigma0 z";
   static constexpr std::string_view source =
@@ -42,6 +44,13 @@ struct Dahl {
     dz[0] = in.v * sign(left) * power(abs(left), exponent);
   }
   S output(const Input<S>&, Mode, std::span<const S> z) const { return sigma0 * z[0]; }
+  bool is_linear_in_state() const { return exponent == 1.0; }
+  bool has_constant_damping() const { return true; }
+  LinearRate<S> linear_rate(const Input<S>& in) const {
+    using std::abs;
+    return {in.v, sigma0 * abs(in.v) / Fc};
+  }
+  LinearOutput<S> linear_output(const Input<S>&) const { return {sigma0, S(0.0), S(0.0)}; }
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return mode; }
   Scales scales() const { return {.displacement = value_of(Fc / sigma0), .output = value_of(Fc)}; }

@@ -18,6 +18,12 @@ struct Features {
   std::string_view evidence = {};   ///< what of the published form was confirmed, what is reconstructed
 };
 
+/// Optional: a law whose force is a function of the path alone, however fast it is gone.
+template <class E>
+concept RateIndependent = requires {
+  requires E::rate_independent;
+};
+
 constexpr std::string_view to_string(Memory memory) {
   return memory == Memory::none ? "none" : memory == Memory::local ? "local" : "non-local";
 }

@@ -35,6 +35,7 @@ struct Iwan {
   static constexpr double most_elements = 1e5;
   static constexpr int most_kinks = 100;
   static constexpr std::string_view kind = "iwan";
+  static constexpr bool rate_independent = true;
   static constexpr std::string_view equation =
       "F = f_r + d 2 f_v(|x - x_r|/2) since the last reversal (x_r, f_r), d = sgn(v), loops that close being "
       "forgotten; "

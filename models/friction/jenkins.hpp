@@ -12,6 +12,7 @@ struct Jenkins {
   S k{}, Fc{};
 
   static constexpr std::string_view kind = "jenkins";
+  static constexpr bool rate_independent = true;
   static constexpr bool piecewise_affine = true;
   static constexpr std::string_view equation = "ds/dt = v while k |s| < Fc or moving inwards, else 0;  F = k s";
   static constexpr std::string_view source = "Prandtl (1928); Jenkins (1962); not confirmed";

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 
+#include "limcycle/models/element/linear_state.hpp"
 #include "limcycle/models/friction/features.hpp"
 #include "limcycle/models/friction/levels.hpp"
 
@@ -61,6 +62,17 @@ struct LuGre : StribeckCurve<S> {
     S damping = sigma1;
     if (vd > 0.0) damping = sigma1 * exp(-(in.v / vd) * (in.v / vd));  // vd = 0 means "constant", not a limit
     return sigma0 * z[0] + damping * dz[0] + sigma2 * in.v;
+  }
+  bool is_linear_in_state() const { return true; }
+  bool has_constant_damping() const { return !(vd > 0.0); }
+  LinearRate<S> linear_rate(const Input<S>& in) const {
+    using std::abs;
+    return {in.v, sigma0 * abs(in.v) / this->level(in.v)};
+  }
+  LinearOutput<S> linear_output(const Input<S>& in) const {
+    using std::exp;
+    if (vd > 0.0) return {sigma0, sigma1 * exp(-(in.v / vd) * (in.v / vd)), sigma2 * in.v};
+    return {sigma0, sigma1, sigma2 * in.v};
   }
   bool odd() const { return this->symmetric(); }
   Mode mirror(Mode mode) const { return mode; }

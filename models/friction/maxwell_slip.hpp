@@ -10,6 +10,7 @@ namespace limcycle {
 template <class S>
 struct MaxwellSlip : StopElements<S> {
   static constexpr std::string_view kind = "maxwell-slip";
+  static constexpr bool rate_independent = true;
   static constexpr bool piecewise_affine = true;
   static constexpr std::string_view equation =
       "ds_i/dt = v while k_i |s_i| < W_i or moving inwards, else 0;  F = sum k_i s_i";

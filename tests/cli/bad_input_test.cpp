@@ -206,7 +206,7 @@ TEST_CASE("wrong usage") {
   check_refused(run({"check"}), "check: CASE is required");
   check_refused(run({"check", file, file}), "check: unexpected argument '" + file + "'");
   check_refused(run({"check", file, "--jsn", "-"}), "check: unknown option '--jsn'; did you mean --json?");
-  check_refused(run({"check", file, "--isa", "sse9"}), "check: --isa: sse9 not in {auto,x86-64}");
+  check_refused(run({"check", file, "--isa", "sse9"}), "check: --isa: sse9 not in {auto,x86-64,x86-64-v3,x86-64-v4}");
   CHECK(run({"check", file, "--threads", "many"}).code == 2);
   CHECK(run({"check", file, "--seed", "-1"}).code == 2);
   CHECK(run({"check", file, "--json"}).code == 2);

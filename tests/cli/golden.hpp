@@ -27,7 +27,7 @@ inline Nearness nearness(const std::string& key) {
 
 /// Text that may differ from one machine, commit or folder to the next.
 inline bool free_text(const std::string& key) {
-  static const std::set<std::string> keys = {"version", "commit", "compiler", "build_type", "file", "sha256"};
+  static const std::set<std::string> keys = {"version", "commit", "compiler", "build_type", "file", "sha256", "isa"};
   return keys.contains(key);
 }
 
