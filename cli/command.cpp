@@ -55,7 +55,8 @@ Provenance provenance(const CommonFlags& flags, const Case* from) {
   made.commit = build_info::commit;
   made.compiler = build_info::compiler;
   made.build_type = build_info::build_type;
-  made.isa = to_string(instruction_set(flags));
+  instruction_set(flags);  // one that this machine lacks is refused by every command
+  made.isa = to_string(Isa::scalar);
   made.seed = flags.seed;
   made.threads =
       flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -49,7 +49,8 @@ Case load_case(const CommonFlags& flags);
 /// The instruction set that --isa names. Throws std::invalid_argument if this machine lacks it.
 Isa instruction_set(const CommonFlags& flags);
 
-/// Who made a result, with which settings, from what. `from`: the case, or null if the command has none.
+/// Who made a result (with the portable instruction set: a command whose kernels use another says so), with which
+/// settings, from what. `from`: the case, or null if the command has none.
 Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 
 // Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.

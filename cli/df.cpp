@@ -32,7 +32,9 @@ int run(const CommonFlags& flags) {
     });
   }
   output.text(df_text(from.title, points, results));
-  if (output.wants_json()) output.json(df_json(provenance(flags, &from), points, results));
+  Provenance made = provenance(flags, &from);
+  made.isa = to_string(options.isa);
+  if (output.wants_json()) output.json(df_json(made, points, results));
   if (output.wants_csv()) output.csv(df_csv(points, results));
   output.finish();
   if (results.size() < points.size() && !flags.quiet)

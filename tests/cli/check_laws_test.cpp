@@ -25,7 +25,8 @@ TEST_CASE("check tells what the default case holds") {
 
 TEST_CASE("check: the JSON document") {
   const std::string file = shipped("pid-lugre.toml");
-  const Ran ran = run({"check", file, "--json", "-", "--set", "loop.controller.kd=7.0", "--seed", "5", "--isa", "x86-64"});
+  const Ran ran =
+      run({"check", file, "--json", "-", "--set", "loop.controller.kd=7.0", "--seed", "5", "--isa", "x86-64"});
   REQUIRE(ran.code == 0);
   const Json document = Json::parse(ran.out);
   CHECK(document.at("schema") == "limcycle/1");

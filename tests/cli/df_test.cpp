@@ -60,7 +60,8 @@ TEST_CASE("df: an interrupt keeps what was computed") {
   const std::string command =
       "timeout -s INT 2 " + quoted(LIMCYCLE_PROGRAM) + " df " + quoted(shipped("df-lugre.toml")) +
       " --set 'df.amplitude={from=1e-6, to=0.1, points=900}'" +
-      " --set 'df.frequency={from=0.1, to=1000.0, points=900}' --set df.accuracy=1e-10 --set 'df.method=\"quadrature\"' --json " +
+      " --set 'df.frequency={from=0.1, to=1000.0, points=900}' --set df.accuracy=1e-10 --set "
+      "'df.method=\"quadrature\"' --json " +
       quoted(scratch.file("r.json")) + " > " + quoted(scratch.file("out")) + " 2> " + quoted(scratch.file("err"));
   CHECK(WEXITSTATUS(std::system(command.c_str())) == 124);  // timeout says that it had to interrupt
   const auto document = Json::parse(scratch.get("r.json"));

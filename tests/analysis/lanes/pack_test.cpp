@@ -136,7 +136,8 @@ TEST_CASE("log, power and sqrt of packs are those of the C library", "[lanes]") 
 }
 
 TEST_CASE("packs choose lane by lane", "[lanes]") {
-  const std::vector<double> a{-1.0, 2.0, -0.0, 4.0, no_number, 6.0, -inf, 8.0}, b{1.0, 1.0, 1.0, 9.0, 1.0, 5.0, 0.0, 8.0};
+  const std::vector<double> a{-1.0, 2.0, -0.0, 4.0, no_number, 6.0, -inf, 8.0},
+      b{1.0, 1.0, 1.0, 9.0, 1.0, 5.0, 0.0, 8.0};
   on_every_set([&](const PackFunctions& pack) {
     std::vector<double> absolute(8), least(8), most(8), chosen(8);
     pack.choose(a.data(), b.data(), absolute.data(), least.data(), most.data(), chosen.data(), 8);
