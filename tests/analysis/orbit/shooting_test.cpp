@@ -256,3 +256,29 @@ TEST_CASE("period error falls as the integration tolerance does") {
   CHECK(period(1e-8) < 1e-7);
   CHECK(period(1e-10) < 3e-9);
 }
+
+TEST_CASE("a period is had for less: loose tolerances, rough multipliers or none, each as right as it says") {
+  const Loop loop = servo(lugre());
+  const Cycle best = cycle_of(loop);
+  const Section section{loop.C_y, 0.5 * best.amplitude, 1};
+  ShootingOptions options;
+  options.rtol = options.tolerance = 1e-9;
+  options.resolution = 200;
+  options.derivative_rtol = 0.0;
+  const auto bare = shoot(loop, displaced(loop, 1.0), section, true, options);
+  REQUIRE(bare.status == Status::converged);
+  CHECK(std::abs(bare.cycle.period / best.period - 1.0) < bare.cycle.error);
+  CHECK(std::abs(bare.cycle.amplitude / best.amplitude - 1.0) < bare.cycle.error);
+  CHECK(bare.cycle.error < 2e-8);
+  CHECK(bare.cycle.multipliers.empty());
+  CHECK_FALSE(bare.cycle.stable.has_value());
+
+  options.derivative_rtol = 1e-7;
+  const auto rough = shoot(loop, displaced(loop, 1.0), section, true, options);
+  REQUIRE(rough.status == Status::converged);
+  CHECK(rough.cycle.period == bare.cycle.period);
+  CHECK(rough.cycle.stable == true);
+  REQUIRE(rough.cycle.multipliers.size() == best.multipliers.size());
+  for (std::size_t i = 0; i < best.multipliers.size(); ++i)
+    CHECK(std::abs(rough.cycle.multipliers[i] - best.multipliers[i]) < 4.0 * rough.multiplier_error);
+}
