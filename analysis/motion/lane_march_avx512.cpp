@@ -1,0 +1,7 @@
+#include "limcycle/analysis/motion/lane_march_body.hpp"
+
+namespace limcycle {
+
+constinit const LaneKernels avx512_lane_kernels = lane_kernels<Pack<8, Isa::avx512>>();
+
+}  // namespace limcycle
