@@ -121,7 +121,6 @@ class LaneRun {
         rows_(static_cast<double*>(
             ::operator new(sizeof(double) * static_cast<std::size_t>(at_.count() * lanes_), alignment))),
         seats_(static_cast<std::size_t>(lanes_)) {
-    std::fill_n(rows_.get(), at_.count() * lanes_, 0.0);
     batch_.rows = rows_.get();
     batch_.curve = group.shape->curve;
   }
@@ -129,7 +128,7 @@ class LaneRun {
   void run() {
     const LaneKernel kernel = kernel_for(kernels_, *group_.shape);
     const int used = options_.lanes > 0 ? std::min(options_.lanes, lanes_) : lanes_;
-    for (int lane = 0; lane < lanes_; ++lane) number(lane, LaneRows::end) = infinite;
+    for (int lane = 0; lane < lanes_; ++lane) leave_idle(lane);
     for (int lane = 0; lane < used; ++lane) refill(lane);
     while (seated_ > 0) {
       kernel(batch_);
@@ -159,6 +158,13 @@ class LaneRun {
   double& number(int lane, int row) { return rows_[static_cast<std::size_t>(row * lanes_ + lane)]; }
   Seat& seat(int lane) { return seats_[static_cast<std::size_t>(lane)]; }
   const Loop& loop(int lane) { return *work_.member(seat(lane).member).loop; }
+
+  /// What is the same in all lanes (the exponent, whether damping fades) is asked of empty ones too.
+  void leave_idle(int lane) {
+    const EnsembleMember& any = work_.member(group_.members.front());
+    write_lane(*any.loop, loop_weights(*any.loop, options_.rtol), any.start.x, rows_.get() + lane, lanes_);
+    number(lane, LaneRows::end) = infinite;
+  }
 
   void refill(int lane) {
     const auto next = work_.take(group_);

@@ -133,13 +133,15 @@ void OutcomeWatch::crossed(const OutputStep& step) {
 }
 
 void OutcomeWatch::judge() {
-  if (turning_.points().size() <= 3 * order_) return;
+  if (turning_.points().size() <= 4 * order_) return;
   const auto periods = last_periods();
   if (!periods) return;
   const double now = std::max(difference(0), std::abs(periods->first / periods->second - 1.0));
   const double before = difference(1), noise = 10.0 * options_.rtol;
-  // A geometric approach: what is left is the sum of all differences to come.
-  const bool near = now <= noise || (now < before && now / (1.0 - now / before) <= options_.accuracy);
+  // A geometric approach: what is left is the sum of all differences to come. The slower of two paces counts, as a fast
+  // part of the motion may hide a slow one for a while.
+  const double pace = std::max(now / before, before / difference(2));
+  const bool near = now <= noise || (pace < 1.0 && now / (1.0 - pace) <= options_.accuracy);
   if (!near && outcome_ != Outcome::cycle) return;
   decide(Outcome::cycle);
   period_ = periods->first;
