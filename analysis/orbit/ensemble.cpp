@@ -11,8 +11,8 @@
 #include <string>
 #include <thread>
 
+#include "limcycle/analysis/motion/lane_loop.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/orbit/lane_loop.hpp"
 
 namespace limcycle {
 namespace {

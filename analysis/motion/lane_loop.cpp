@@ -1,4 +1,4 @@
-#include "limcycle/analysis/orbit/lane_loop.hpp"
+#include "limcycle/analysis/motion/lane_loop.hpp"
 
 #include <array>
 
