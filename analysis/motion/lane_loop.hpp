@@ -1,6 +1,6 @@
 #pragma once
-#include <compare>
 #include <optional>
+#include <tuple>
 
 #include "limcycle/analysis/motion/error_weights.hpp"
 #include "limcycle/analysis/motion/lane_march.hpp"
@@ -16,7 +16,11 @@ struct LaneShape {
   int curve = 0;
   double delta = 2.0;
   bool fading = false;  ///< damping that depends on the speed
-  auto operator<=>(const LaneShape&) const = default;
+
+  friend bool operator<(const LaneShape& a, const LaneShape& b) {
+    return std::tie(a.law, a.states, a.curve, a.delta, a.fading) <
+           std::tie(b.law, b.states, b.curve, b.delta, b.fading);
+  }
 };
 
 /// The shape of a loop that can be marched in lanes; empty for all others.

@@ -17,8 +17,10 @@
 namespace limcycle {
 namespace {
 
-const LaneKernels& kernels_of(Isa isa) {
-  return isa == Isa::avx512 ? avx512_lane_kernels : isa == Isa::avx2 ? avx2_lane_kernels : scalar_lane_kernels;
+/// The widest kernels of the set that as many members can fill: all give the same numbers.
+const LaneKernels& kernels_of(Isa isa, std::size_t members) {
+  if (isa == Isa::avx512 && members > 4) return avx512_lane_kernels;
+  return isa != Isa::scalar && members > 2 ? avx2_lane_kernels : scalar_lane_kernels;
 }
 
 /// Members of one shape, in order, and how far they have been handed out.
@@ -41,7 +43,7 @@ class Work {
       groups_[at->second].members.push_back(i);
     }
     // What is marched one by one takes longest: the lanes fill what time is left.
-    std::ranges::stable_partition(groups_, [](const Group& group) { return !group.shape; });
+    std::stable_partition(groups_.begin(), groups_.end(), [](const Group& group) { return !group.shape; });
   }
 
   const EnsembleMember& member(std::size_t i) const { return members_[i]; }
@@ -115,11 +117,11 @@ class LaneRun {
       : work_(work),
         options_(work.options()),
         group_(group),
-        kernels_(kernels_of(options_.isa)),
+        kernels_(kernels_of(options_.isa, group.members.size())),
         lanes_(kernels_.lanes),
         at_{group.shape->states},
-        rows_(static_cast<double*>(
-            ::operator new(sizeof(double) * static_cast<std::size_t>(at_.count() * lanes_), alignment))),
+        rows_(static_cast<double*>(::operator new(
+            sizeof(double) * static_cast<std::size_t>(at_.count()) * static_cast<std::size_t>(lanes_), alignment))),
         seats_(static_cast<std::size_t>(lanes_)) {
     batch_.rows = rows_.get();
     batch_.curve = group.shape->curve;
@@ -155,7 +157,9 @@ class LaneRun {
     std::optional<OutcomeWatch> watch;
   };
 
-  double& number(int lane, int row) { return rows_[static_cast<std::size_t>(row * lanes_ + lane)]; }
+  double& number(int lane, int row) {
+    return rows_[static_cast<std::size_t>(row) * seats_.size() + static_cast<std::size_t>(lane)];
+  }
   Seat& seat(int lane) { return seats_[static_cast<std::size_t>(lane)]; }
   const Loop& loop(int lane) { return *work_.member(seat(lane).member).loop; }
 

@@ -37,7 +37,7 @@ Case random_case(std::mt19937_64& bits, int n) {
   loop.E = Eigen::Matrix<double, Eigen::Dynamic, 4>::NullaryExpr(n, 4, number);
   loop.C_y = Eigen::RowVectorXd::NullaryExpr(n, number);
   loop.external << 1.0, number(), number(), number();
-  loop.elements.push_back(test::lugre());
+  loop.elements.emplace_back(test::lugre());
   Port port;
   port.C = port.C_delayed = Eigen::RowVectorXd::Zero(n);
   port.D = port.D_v = Eigen::RowVectorXd::Zero(1);
@@ -116,6 +116,7 @@ TEST_CASE("A step in lanes is a step of RODAS5P, whatever the loop") {
     for (int n = LaneKernels::fewest_states; n <= LaneKernels::most_states; ++n)
       for (const double h : {1e-6, 1e-4, 2e-3}) {
         std::vector<Case> cases;
+        cases.reserve(static_cast<std::size_t>(kernels_of(isa).lanes));
         for (int lane = 0; lane < kernels_of(isa).lanes; ++lane) cases.push_back(random_case(bits, n));
         check_steps(isa, cases, h);
       }
