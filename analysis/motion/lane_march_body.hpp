@@ -1,10 +1,10 @@
 #pragma once
+#include "limcycle/analysis/lanes/inverse.hpp"
 #include "limcycle/analysis/lanes/pack.hpp"
 #include "limcycle/analysis/lanes/slope.hpp"
+#include "limcycle/analysis/motion/lane_laws.hpp"
 #include "limcycle/analysis/motion/lane_march.hpp"
 #include "limcycle/analysis/motion/rodas5p_tableau.hpp"
-#include "limcycle/models/friction/dahl.hpp"
-#include "limcycle/models/friction/lugre.hpp"
 
 namespace limcycle {
 
@@ -23,38 +23,6 @@ constexpr LaneTableau lane_tableau() {
   }
   return plain;
 }
-
-/// LuGre in units of vs. `usual`: symmetric, exp(-(v/vs)^2), constant damping: numbers that the compiler then knows.
-template <class P, bool usual>
-struct LaneLuGre {
-  template <class S>
-  [[gnu::always_inline]] static LuGre<S> law(const P* numbers, int curve) {
-    LuGre<S> law;
-    law.Fs = S(numbers[0]);
-    law.Fc = S(numbers[1]);
-    law.Fs_minus = usual ? law.Fs : S(numbers[2]);
-    law.Fc_minus = usual ? law.Fc : S(numbers[3]);
-    law.sigma0 = S(numbers[4]);
-    law.sigma1 = S(numbers[5]);
-    law.sigma2 = S(numbers[6]);
-    law.vd = usual ? S(0.0) : S(numbers[7]);
-    law.delta = usual ? S(2.0) : S(numbers[8]);
-    law.vs = S(1.0);
-    law.curve.index = usual ? 0 : curve;
-    return law;
-  }
-};
-
-template <class P>
-struct LaneDahl {
-  template <class S>
-  [[gnu::always_inline]] static Dahl<S> law(const P* numbers, int) {
-    Dahl<S> law;
-    law.Fc = S(numbers[0]);
-    law.sigma0 = S(numbers[1]);
-    return law;
-  }
-};
 
 /// One batch of lanes with n linear states.
 template <class P, class Law, int n>
@@ -172,47 +140,7 @@ class LaneMarch {
       for (int j = 0; j < n; ++j) a.inverse[i][j] = -row(at.A(i, j)) - factor * row(at.C_v() + j);
       a.inverse[i][i] += diagonal;
     }
-    invert(a.inverse);
-  }
-
-  [[gnu::always_inline]] static void exchange_if(const Mask& mask, P& a, P& b) {
-    const P kept = a;
-    a = select(mask, b, a);
-    b = select(mask, kept, b);
-  }
-
-  /// Gauss and Jordan in place. Every lane has its own pivots: the largest number left in the column is brought up by
-  /// exchanges in the lanes where it is larger.
-  [[gnu::always_inline]] static void invert(P (&m)[n][n]) {
-    Mask exchanged[n][n];
-#pragma GCC unroll 8
-    for (int k = 0; k < n; ++k) {
-#pragma GCC unroll 8
-      for (int i = k + 1; i < n; ++i) {
-        exchanged[k][i] = abs(m[i][k]) > abs(m[k][k]);
-#pragma GCC unroll 8
-        for (int j = 0; j < n; ++j) exchange_if(exchanged[k][i], m[k][j], m[i][j]);
-      }
-      const P pivot = 1.0 / m[k][k];
-      m[k][k] = P(1.0);
-#pragma GCC unroll 8
-      for (int j = 0; j < n; ++j) m[k][j] *= pivot;
-#pragma GCC unroll 8
-      for (int i = 0; i < n; ++i) {
-        if (i == k) continue;
-        const P factor = m[i][k];
-        m[i][k] = P(0.0);
-#pragma GCC unroll 8
-        for (int j = 0; j < n; ++j) m[i][j] -= factor * m[k][j];
-      }
-    }
-    // Rows of the matrix were exchanged: columns of its inverse.
-#pragma GCC unroll 8
-    for (int k = n - 1; k >= 0; --k)
-#pragma GCC unroll 8
-      for (int i = n - 1; i > k; --i)
-#pragma GCC unroll 8
-        for (int j = 0; j < n; ++j) exchange_if(exchanged[k][i], m[j][k], m[j][i]);
+    invert<P, n>(a.inverse);
   }
 
   [[gnu::always_inline]] void solve(const Attempt& a, const P (&right)[N], P (&k)[N]) {

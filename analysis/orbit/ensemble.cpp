@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
-#include "limcycle/analysis/motion/lane_loop.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/ensemble_work.hpp"
 
 namespace limcycle {
 namespace {
@@ -23,97 +19,10 @@ const LaneKernels& kernels_of(Isa isa, std::size_t members) {
   return isa != Isa::scalar && members > 2 ? avx2_lane_kernels : scalar_lane_kernels;
 }
 
-/// Members of one shape, in order, and how far they have been handed out.
-struct Group {
-  std::optional<LaneShape> shape;  ///< empty: to be marched one by one
-  std::vector<std::size_t> members;
-  std::size_t next = 0;
-};
-
-/// What all threads share.
-class Work {
- public:
-  Work(std::span<const EnsembleMember> members, const EnsembleOptions& options)
-      : members_(members), options_(options), results_(members.size()) {
-    std::map<std::optional<LaneShape>, std::size_t> found;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      const auto shape = lane_shape(*members[i].loop);
-      const auto [at, fresh] = found.try_emplace(shape, groups_.size());
-      if (fresh) groups_.push_back({shape, {}, 0});
-      groups_[at->second].members.push_back(i);
-    }
-    // What is marched one by one takes longest: the lanes fill what time is left.
-    std::stable_partition(groups_.begin(), groups_.end(), [](const Group& group) { return !group.shape; });
-  }
-
-  const EnsembleMember& member(std::size_t i) const { return members_[i]; }
-  const EnsembleOptions& options() const { return options_; }
-  std::vector<Group>& groups() { return groups_; }
-  std::vector<EnsembleResult>& results() { return results_; }
-
-  std::optional<std::size_t> take(Group& group) {
-    const std::lock_guard lock(guard_);
-    if (stopped_ || group.next == group.members.size()) return std::nullopt;
-    return group.members[group.next++];
-  }
-  bool stopped() {
-    const std::lock_guard lock(guard_);
-    return stopped_ = stopped_ || (options_.stop && options_.stop());
-  }
-  void count(long useful, long tried) {
-    const std::lock_guard lock(guard_);
-    useful_ += useful;
-    tried_ += tried;
-  }
-  double occupancy() const { return tried_ > 0 ? static_cast<double>(useful_) / static_cast<double>(tried_) : 1.0; }
-
-  /// One thread's share; an exception ends the run and is kept.
-  template <class F>
-  void share(const F& work) {
-    try {
-      work();
-    } catch (...) {
-      const std::lock_guard lock(guard_);
-      if (!failure_) failure_ = std::current_exception();
-      stopped_ = true;
-    }
-  }
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  std::span<const EnsembleMember> members_;
-  const EnsembleOptions& options_;
-  std::vector<Group> groups_;
-  std::vector<EnsembleResult> results_;
-  std::mutex guard_;
-  bool stopped_ = false;
-  std::exception_ptr failure_;
-  long useful_ = 0, tried_ = 0;
-};
-
-OutcomeWatch watch_for(const Loop& loop, const EnsembleOptions& options) {
-  return {loop, {options.rtol, options.amplitude_floor, options.accuracy}, typical_sizes(loop), slow_time(loop)};
-}
-
-void conclude(EnsembleResult& result, const OutcomeWatch& watch, Status status) {
-  result.outcome = watch.outcome();
-  result.status = status;
-  if (result.outcome != Outcome::cycle) return;
-  result.period = watch.period();
-  result.amplitude = watch.amplitude();
-}
-
-/// Status of a member that reached the end of the duration.
-Status at_end(const OutcomeWatch& watch, const EnsembleOptions& options) {
-  return watch.decided() || !options.until_decided ? Status::converged : Status::incomplete;
-}
-
 /// One thread at work on a group of loops of one shape.
 class LaneRun {
  public:
-  LaneRun(Work& work, Group& group)
+  LaneRun(EnsembleWork& work, EnsembleGroup& group)
       : work_(work),
         options_(work.options()),
         group_(group),
@@ -246,9 +155,9 @@ class LaneRun {
     refill(lane);
   }
 
-  Work& work_;
+  EnsembleWork& work_;
   const EnsembleOptions& options_;
-  Group& group_;
+  EnsembleGroup& group_;
   const LaneKernels& kernels_;
   int lanes_;
   LaneRows at_;
@@ -263,7 +172,7 @@ class LaneRun {
 /// One member of any kind, by March.
 class SingleRun {
  public:
-  SingleRun(Work& work, std::size_t index)
+  SingleRun(EnsembleWork& work, std::size_t index)
       : work_(work),
         options_(work.options()),
         loop_(*work.member(index).loop),
@@ -314,7 +223,7 @@ class SingleRun {
     watch_.look(march_.t(), rates_, field_.input(loop_.elements.size() - 1).v);
   }
 
-  Work& work_;
+  EnsembleWork& work_;
   const EnsembleOptions& options_;
   const Loop& loop_;
   EnsembleResult& result_;
@@ -359,9 +268,9 @@ void validate(std::span<const EnsembleMember> members, const EnsembleOptions& op
 
 EnsembleRun run_ensemble(std::span<const EnsembleMember> members, const EnsembleOptions& options) {
   validate(members, options);
-  Work work(members, options);
+  EnsembleWork work(members, options);
   const auto march = [&work] {
-    for (Group& group : work.groups()) {
+    for (EnsembleGroup& group : work.groups()) {
       if (group.shape) {
         LaneRun(work, group).run();
         continue;
