@@ -16,7 +16,7 @@ using D = Dual<1>;
 /// The law on another scalar.
 template <class S>
 LuGre<S> lugre_on(int curve, double delta, double vd) {
-  LuGre<S> law = test::with_levels<LuGre<S>>(1.5, 1.0);
+  auto law = test::with_levels<LuGre<S>>(1.5, 1.0);
   law.Fs_minus = S(1.8);
   law.vs = S(1e-3);
   law.sigma0 = S(1e5);
