@@ -6,65 +6,11 @@
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
+#include "limcycle/analysis/orbit/rest_watch.hpp"
 #include "limcycle/analysis/orbit/turning_points.hpp"
 
 namespace limcycle {
 namespace {
-
-/// Slowest time constant of the linear part, s.
-double slow_time(const Loop& loop) {
-  const auto moduli = pole_moduli(loop);
-  return moduli.empty() ? 1.0 : 1.0 / moduli.front();
-}
-
-/// Watches whether all rates die out: every time by half, it compares what the rates would still move the state by,
-/// were they to last as long again, with the size of the state. Rates as small as the noise of the integration count as
-/// none.
-class RestWatch {
- public:
-  RestWatch(const Loop& loop, double rtol) : sizes_(typical_sizes(loop)), slow_(slow_time(loop)), noise_(0.01 * rtol) {}
-
-  enum class Verdict { moving, steady, at_rest };
-
-  /// Asked after every step. steady: the rates have become constant, though not zero.
-  Verdict look(double t, const State& dx) {
-    if (t < next_) return Verdict::moving;
-    next_ = std::max(1.5 * t, t + slow_);
-    double change = 0.0;
-    for (std::size_t i = 0; i < before_.size(); ++i)
-      change = std::max(change, std::abs(dx[i] - before_[i]) * slow_ / sizes_[i]);
-    steady_ = before_.empty() || change > 1e-7 ? 0 : steady_ + 1;
-    before_ = dx;
-    double rate = 0.0;
-    for (std::size_t i = 0; i < dx.size(); ++i) rate = std::max(rate, std::abs(dx[i]) * slow_ / sizes_[i]);
-    const double drift = rate * (t + slow_) / slow_;
-    const bool fades = rate <= noise_ || (drift < 0.6 * last_ && drift < 1e-6);
-    last_ = drift;
-    calm_ = fades ? calm_ + 1 : 0;
-    return calm_ >= 3 ? Verdict::at_rest : steady_ >= 4 ? Verdict::steady : Verdict::moving;
-  }
-
- private:
-  State sizes_;
-  double slow_, noise_, next_ = 0.0, last_ = infinite;
-  State before_;
-  int calm_ = 0, steady_ = 0;
-};
-
-/// Speed above which a friction law counts as rubbing; infinite if nothing rubs.
-double rubbing_speed(const Loop& loop) {
-  if (!loop.ports.back().rubs) return infinite;
-  const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
-  return std::isfinite(scales.velocity) ? scales.velocity / 100.0 : 1e-12;
-}
-
-/// Does the body rub steadily when the loop stands still (a belt, a ramp)?
-bool slides_at_rest(const Loop& loop) {
-  const Port& port = loop.ports.back();
-  bool exact = false;
-  const Eigen::VectorXd rest = loop.rest_point(exact);
-  return std::abs((port.C_v * rest + port.c_v * loop.external).value()) > rubbing_speed(loop);
-}
 
 /// One run: simulation, and shooting whenever the swings look steady.
 class Settling {
@@ -75,7 +21,7 @@ class Settling {
         start_(std::move(start)),
         field_(loop),
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
-        rest_(loop, options.rtol) {}
+        rest_(typical_sizes(loop), slow_time(loop), options.rtol) {}
 
   Settled run() {
     field_.modes() = start_.modes;
@@ -123,29 +69,15 @@ class Settling {
   void look_at_swings() {
     const auto& points = turning_.points();
     if (points.size() < 5) return;
-    if (died_out()) {
+    bool exact = false;
+    const double rest = loop_.C_y.dot(loop_.rest_point(exact).transpose());
+    if (exact && died_out(turning_, rest, options_.amplitude_floor)) {
       return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest,
                     "the swings decayed below the smallest amplitude of interest");
     }
     if (points.size() < next_try_) return;
     for (std::size_t order : {2U, 4U, 6U})  // turning points per period
       if (points.size() > 2 * order && steady(order) && try_cycle(order)) return;
-  }
-
-  /// Stick-slip that decays for ever: the last swings are too small to matter, about the point of rest, and farther and
-  /// farther apart. (The tremble of a bristle when the body stops is small too, but its swings follow one another at
-  /// once, and long waits may come before the next slip.)
-  bool died_out() const {
-    const auto& points = turning_.points();
-    bool exact = false;
-    const double rest = loop_.C_y.dot(loop_.rest_point(exact).transpose());
-    const double floor = options_.amplitude_floor;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& point = points[points.size() - 1 - k];
-      const auto& before = points[points.size() - 2 - k];
-      if (turning_.swing(k) > floor || std::abs(point.y - rest) > floor || point.t < 1.3 * before.t) return false;
-    }
-    return exact;
   }
 
   /// Do the last swings repeat those one period (of `order` turning points) before, to within 5 %?

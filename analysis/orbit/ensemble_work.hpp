@@ -1,0 +1,103 @@
+#pragma once
+#include <algorithm>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "limcycle/analysis/motion/lane_loop.hpp"
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/ensemble.hpp"
+
+namespace limcycle {
+
+/// Members of one shape, in order, and how far they have been handed out.
+struct EnsembleGroup {
+  std::optional<LaneShape> shape;  ///< empty: to be marched one by one
+  std::vector<std::size_t> members;
+  std::size_t next = 0;
+};
+
+/// What all threads share.
+class EnsembleWork {
+ public:
+  EnsembleWork(std::span<const EnsembleMember> members, const EnsembleOptions& options)
+      : members_(members), options_(options), results_(members.size()) {
+    std::map<std::optional<LaneShape>, std::size_t> found;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      const auto shape = lane_shape(*members[i].loop);
+      const auto [at, fresh] = found.try_emplace(shape, groups_.size());
+      if (fresh) groups_.push_back({shape, {}, 0});
+      groups_[at->second].members.push_back(i);
+    }
+    // What is marched one by one takes longest: the lanes fill what time is left.
+    std::stable_partition(groups_.begin(), groups_.end(), [](const EnsembleGroup& group) { return !group.shape; });
+  }
+
+  const EnsembleMember& member(std::size_t i) const { return members_[i]; }
+  const EnsembleOptions& options() const { return options_; }
+  std::vector<EnsembleGroup>& groups() { return groups_; }
+  std::vector<EnsembleResult>& results() { return results_; }
+
+  std::optional<std::size_t> take(EnsembleGroup& group) {
+    const std::lock_guard lock(guard_);
+    if (stopped_ || group.next == group.members.size()) return std::nullopt;
+    return group.members[group.next++];
+  }
+  bool stopped() {
+    const std::lock_guard lock(guard_);
+    return stopped_ = stopped_ || (options_.stop && options_.stop());
+  }
+  void count(long useful, long tried) {
+    const std::lock_guard lock(guard_);
+    useful_ += useful;
+    tried_ += tried;
+  }
+  double occupancy() const { return tried_ > 0 ? static_cast<double>(useful_) / static_cast<double>(tried_) : 1.0; }
+
+  /// One thread's share; an exception ends the run and is kept.
+  template <class F>
+  void share(const F& work) {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard lock(guard_);
+      if (!failure_) failure_ = std::current_exception();
+      stopped_ = true;
+    }
+  }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::span<const EnsembleMember> members_;
+  const EnsembleOptions& options_;
+  std::vector<EnsembleGroup> groups_;
+  std::vector<EnsembleResult> results_;
+  std::mutex guard_;
+  bool stopped_ = false;
+  std::exception_ptr failure_;
+  long useful_ = 0, tried_ = 0;
+};
+
+inline OutcomeWatch watch_for(const Loop& loop, const EnsembleOptions& options) {
+  return {loop, {options.rtol, options.amplitude_floor, options.accuracy}, typical_sizes(loop), slow_time(loop)};
+}
+
+inline void conclude(EnsembleResult& result, const OutcomeWatch& watch, Status status) {
+  result.outcome = watch.outcome();
+  result.status = status;
+  if (result.outcome != Outcome::cycle) return;
+  result.period = watch.period();
+  result.amplitude = watch.amplitude();
+}
+
+/// Status of a member that reached the end of the duration.
+inline Status at_end(const OutcomeWatch& watch, const EnsembleOptions& options) {
+  return watch.decided() || !options.until_decided ? Status::converged : Status::incomplete;
+}
+
+}  // namespace limcycle

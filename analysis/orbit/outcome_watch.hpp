@@ -1,0 +1,86 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/orbit/rest_watch.hpp"
+#include "limcycle/analysis/orbit/settle.hpp"
+
+namespace limcycle {
+
+/// The output y over one step from t to t + h, between its ends as DenseSegment has it.
+struct OutputStep {
+  double t = 0.0, h = 0.0;
+  double y0 = 0.0, y1 = 0.0;
+  double bend[3] = {};
+
+  /// The cubic through the values and rates of a step of a march.
+  static OutputStep through(const Loop& loop, const Step& step);
+
+  /// y at the fraction theta of the step, and its derivative by theta.
+  double value(double theta) const;
+  double slope(double theta) const;
+  /// Where y turns, in a step in which its rate changes sign.
+  TurningPoints::Point turning() const;
+  /// Time at which y reaches `level`, which is between y0 and y1.
+  double crossing(double level) const;
+};
+
+struct OutcomeOptions {
+  double rtol = 1e-8;             ///< of the march
+  double amplitude_floor = 1e-9;  ///< swings of y below this have died out
+  /// A cycle is one once its swings and its period are expected to change by no more than this share for all time.
+  double accuracy = 1e-4;
+};
+
+/// Decides what a motion comes to while it is marched, by a few numbers of it: its turning points, the times at which y
+/// goes up through a level, and the rates now and then. Rest and sliding are recognised as settle() does. A cycle is
+/// recognised without shooting: the swings and periods repeat themselves, and the rest of the way to it, extrapolated
+/// from how fast the differences between periods fade, is short. A decay that goes on at the same pace is none.
+class OutcomeWatch {
+ public:
+  /// `sizes` and `slow` as for RestWatch. The loop must outlive the watch.
+  OutcomeWatch(const Loop& loop, const OutcomeOptions& options, State sizes, double slow);
+
+  void begin(double t, double y) { turning_.feed(t, y); }
+  /// A step within which the rate of y changes sign.
+  void turned(const OutputStep& step);
+  /// A step within which y goes up through level().
+  void crossed(const OutputStep& step);
+  /// The rates of the state and of the rubbing displacement at a time not before next_look().
+  void look(double t, const State& dx, double speed);
+  /// The motion has left all bounds.
+  void diverged() { decide(Outcome::divergence); }
+
+  double next_look() const { return rest_.next(); }
+  double level() const { return level_; }  ///< infinite: none is wanted
+
+  Outcome outcome() const { return outcome_; }
+  bool decided() const { return outcome_ != Outcome::undecided; }
+  double period() const { return period_; }        ///< s; 0 without a cycle
+  double amplitude() const { return amplitude_; }  ///< half the swing of y over one period of the cycle; 0 without
+  const TurningPoints& turning() const { return turning_; }
+
+ private:
+  void decide(Outcome outcome) {
+    if (!decided()) outcome_ = outcome;
+  }
+  Outcome stillness() const { return slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest; }
+  std::size_t repeating() const;
+  double difference(std::size_t periods) const;
+  std::optional<std::pair<double, double>> last_periods() const;
+  void judge();
+
+  const Loop& loop_;
+  OutcomeOptions options_;
+  RestWatch rest_;
+  TurningPoints turning_;
+  std::optional<double> rest_y_;  ///< y of the point of rest, once asked for; NaN: none
+  std::size_t order_ = 0;         ///< turning points per period; 0: the swings do not repeat themselves
+  double level_ = infinite;
+  std::vector<double> crossings_;  ///< times of the crossings of the present level
+  Outcome outcome_ = Outcome::undecided;
+  double period_ = 0.0, amplitude_ = 0.0;
+};
+
+}  // namespace limcycle

@@ -1,0 +1,55 @@
+#include "limcycle/analysis/orbit/rest_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/motion/tolerances.hpp"
+
+namespace limcycle {
+
+RestWatch::Verdict RestWatch::look(double t, const State& dx) {
+  if (t < next_) return Verdict::moving;
+  next_ = std::max(1.5 * t, t + slow_);
+  double change = 0.0;
+  for (std::size_t i = 0; i < before_.size(); ++i)
+    change = std::max(change, std::abs(dx[i] - before_[i]) * slow_ / sizes_[i]);
+  steady_ = before_.empty() || change > 1e-7 ? 0 : steady_ + 1;
+  before_ = dx;
+  double rate = 0.0;
+  for (std::size_t i = 0; i < dx.size(); ++i) rate = std::max(rate, std::abs(dx[i]) * slow_ / sizes_[i]);
+  const double drift = rate * (t + slow_) / slow_;
+  const bool fades = rate <= noise_ || (drift < 0.6 * last_ && drift < 1e-6);
+  last_ = drift;
+  calm_ = fades ? calm_ + 1 : 0;
+  return calm_ >= 3 ? Verdict::at_rest : steady_ >= 4 ? Verdict::steady : Verdict::moving;
+}
+
+double slow_time(const Loop& loop) {
+  const auto moduli = pole_moduli(loop);
+  return moduli.empty() ? 1.0 : 1.0 / moduli.front();
+}
+
+double rubbing_speed(const Loop& loop) {
+  if (!loop.ports.back().rubs) return infinite;
+  const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
+  return std::isfinite(scales.velocity) ? scales.velocity / 100.0 : 1e-12;
+}
+
+bool slides_at_rest(const Loop& loop) {
+  const Port& port = loop.ports.back();
+  bool exact = false;
+  const Eigen::VectorXd rest = loop.rest_point(exact);
+  return std::abs((port.C_v * rest + port.c_v * loop.external).value()) > rubbing_speed(loop);
+}
+
+bool died_out(const TurningPoints& turning, double rest, double floor) {
+  const auto& points = turning.points();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& point = points[points.size() - 1 - k];
+    const auto& before = points[points.size() - 2 - k];
+    if (turning.swing(k) > floor || std::abs(point.y - rest) > floor || point.t < 1.3 * before.t) return false;
+  }
+  return true;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,44 @@
+#pragma once
+#include "limcycle/analysis/motion/state.hpp"
+#include "limcycle/analysis/orbit/turning_points.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// Watches whether all rates die out: every time by half, it compares what the rates would still move the state by,
+/// were they to last as long again, with the size of the state. Rates as small as the noise of the integration count as
+/// none.
+class RestWatch {
+ public:
+  /// `sizes`: of the states, see typical_sizes(); `slow`: slowest time constant of the linear part, s.
+  RestWatch(State sizes, double slow, double rtol) : sizes_(std::move(sizes)), slow_(slow), noise_(0.01 * rtol) {}
+
+  enum class Verdict { moving, steady, at_rest };
+
+  /// Asked after every step, or after those that end at or after next(). steady: the rates have become constant, though
+  /// not zero.
+  Verdict look(double t, const State& dx);
+  double next() const { return next_; }
+
+ private:
+  State sizes_;
+  double slow_, noise_, next_ = 0.0, last_ = infinite;
+  State before_;
+  int calm_ = 0, steady_ = 0;
+};
+
+/// Slowest time constant of the linear part, s; 1 if it has none.
+double slow_time(const Loop& loop);
+
+/// Speed above which a friction law counts as rubbing; infinite if nothing rubs.
+double rubbing_speed(const Loop& loop);
+
+/// Does the body rub steadily when the loop stands still (a belt, a ramp)?
+bool slides_at_rest(const Loop& loop);
+
+/// Stick-slip that decays for ever: the last swings are below `floor`, about the point of rest (y = rest), and farther
+/// and farther apart. (The tremble of a bristle when the body stops is small too, but its swings follow one another at
+/// once, and long waits may come before the next slip.) Needs 5 turning points.
+bool died_out(const TurningPoints& turning, double rest, double floor);
+
+}  // namespace limcycle
