@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limcycle {
 
@@ -33,7 +34,9 @@ double StepSizeControl::after_success(double h, double error) {
 double StepSizeControl::after_failure(double h, double error) {
   rejected_ = true;
   // An infinite error gives the shortest step. The upper limit keeps a step that just failed from being tried again.
-  return h * std::clamp(safety * std::pow(error, -exponent), most_shrinking, safety);
+  const double shorter = h * std::clamp(safety * std::pow(error, -exponent), most_shrinking, safety);
+  // However often it fails, a step has a length: whoever gives up does so because the clock stands still.
+  return std::copysign(std::max(std::abs(shorter), std::numeric_limits<double>::min()), h);
 }
 
 }  // namespace limcycle

@@ -52,7 +52,7 @@ TEST_CASE("adequate: a tighter tolerance asks for more") {
     if (point["law"] == "coulomb + stiction" && point["method"] == "shooting") CHECK(point["error"] < 0.05);
 }
 
-TEST_CASE("adequate: without friction it is refused, and says why; wrong usage too") {
+TEST_CASE("adequate: without friction it is refused, and says why, and wrong usage too") {
   const Scratch scratch;
   const auto ran = run({"adequate", shipped("relay-integrator.toml")});
   CHECK(ran.code == 2);

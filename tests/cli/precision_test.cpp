@@ -66,7 +66,7 @@ TEST_CASE("precision: a describing function alone") {
   for (const auto& point : document["points"]) CHECK(point["question"] == "describing-function");
 }
 
-TEST_CASE("precision: a loop without cycle and without friction cannot be answered; wrong usage is refused") {
+TEST_CASE("precision: a loop without cycle and without friction cannot be answered, wrong usage is refused") {
   const Scratch scratch;
   const auto rests = scratch.put("rests.toml",
                                  "[loop.plant]\nkind = \"transfer-function\"\nnumerator = [1.0]\ndenominator = [1.0, "

@@ -98,7 +98,7 @@ TEST_CASE("adequate: variations move one number and those that follow it") {
   }
 }
 
-TEST_CASE("adequate: hunting on a Stribeck law needs stiction and no more; the describing function sees no cycle") {
+TEST_CASE("adequate: hunting on a Stribeck law needs stiction and no more, and the describing function sees no cycle") {
   // vs is so small that the curve is a step: stiction alone is the same law.
   const auto report = adequate(servo_parts(stribeck(1.5, 1.0, 1e-6)), quick());
   REQUIRE(report.status == Status::converged);
