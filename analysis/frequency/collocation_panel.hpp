@@ -8,8 +8,8 @@
 #include <tuple>
 #include <vector>
 
-#include "limcycle/analysis/dual.hpp"
 #include "limcycle/analysis/dense_elimination.hpp"
+#include "limcycle/analysis/dual.hpp"
 #include "limcycle/analysis/frequency/prescribed_motion.hpp"
 #include "limcycle/analysis/frequency/radau_iia.hpp"
 

@@ -6,9 +6,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "limcycle/analysis/dense_elimination.hpp"
 #include "limcycle/analysis/dual.hpp"
 #include "limcycle/analysis/frequency/composite_force.hpp"
-#include "limcycle/analysis/dense_elimination.hpp"
 #include "limcycle/analysis/motion/rodas5p_tableau.hpp"
 #include "limcycle/models/elements.hpp"
 

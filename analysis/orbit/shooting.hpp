@@ -9,12 +9,12 @@ namespace limcycle {
 struct ShootingOptions {
   double rtol = 3e-12;       ///< of the integration; the answer is no better than this
   double tolerance = 1e-10;  ///< on the scaled residual |P(x) - x| of the return map
-  /// Of the derivative of the map that the multipliers come from (a second one, ten times as loose, tells their error); 0:
-  /// neither multipliers nor a verdict on stability are wanted.
+  /// Of the derivative of the map that the multipliers come from (a second one, ten times as loose, tells their error);
+  /// 0: neither multipliers nor a verdict on stability are wanted.
   double derivative_rtol = 1e-10;
   int resolution = 1000;  ///< least number of steps in the recorded period
-  int warm_maps = 4;         ///< plain maps before the first Newton step (0: start from the guess itself)
-  int max_maps = 400;        ///< budget
+  int warm_maps = 4;      ///< plain maps before the first Newton step (0: start from the guess itself)
+  int max_maps = 400;     ///< budget
   long max_steps_per_map = 200000;
   double longest_map = infinite;  ///< s: a motion that has not come back by then does not
   int returns = 1;                ///< crossings of the section in one period, see returns_of
