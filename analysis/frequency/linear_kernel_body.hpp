@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+
 #include "limcycle/analysis/frequency/linear_kernel.hpp"
 #include "limcycle/analysis/lanes/pack.hpp"
 
@@ -191,8 +193,9 @@ class LinearPass {
       sine[0] += sine[i];
       cosine[0] += cosine[i];
     }
-    (sine[0] * law_.unit).store(sums + 2 * lanes * order);
-    (cosine[0] * law_.unit).store(sums + 2 * lanes * order + lanes);
+    double* const at = sums + std::ptrdiff_t{2} * lanes * order;
+    (sine[0] * law_.unit).store(at);
+    (cosine[0] * law_.unit).store(at + lanes);
   }
 
   P frequency_, peak_, period_, start_;
