@@ -37,7 +37,7 @@ double difference(const DescribingFunction& one, const DescribingFunction& refer
 
 class Study {
  public:
-  Study(const Element<double>& element, std::vector<DfPoint> points, const DfPrecisionOptions& options)
+  Study(const Element<double>& element, const std::vector<DfPoint>& points, const DfPrecisionOptions& options)
       : element_(element), options_(options) {
     for (const DfPoint& point : points) add_reference(point);
   }
@@ -168,9 +168,9 @@ std::vector<DfPoint> representative_points(const std::vector<double>& amplitudes
   return points;
 }
 
-DfPrecision df_precision(const Element<double>& element, std::vector<DfPoint> points,
+DfPrecision df_precision(const Element<double>& element, const std::vector<DfPoint>& points,
                          const DfPrecisionOptions& options) {
-  return Study(element, std::move(points), options).run();
+  return Study(element, points, options).run();
 }
 
 }  // namespace limcycle

@@ -36,7 +36,7 @@ std::vector<DfPoint> representative_points(const std::vector<double>& amplitudes
                                            const std::vector<double>& frequencies);
 
 /// Points where the element has no describing function are left out, with a note. Empty results: no point is left.
-DfPrecision df_precision(const Element<double>& element, std::vector<DfPoint> points,
+DfPrecision df_precision(const Element<double>& element, const std::vector<DfPoint>& points,
                          const DfPrecisionOptions& options = {});
 
 }  // namespace limcycle
