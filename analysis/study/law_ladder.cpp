@@ -127,9 +127,9 @@ class Builder {
   LawRung multi_state() const {
     LawRung rung{"multi-state", {}, {}};
     if (missing(rung, {&t_.Fc, &t_.sigma0})) return rung;
-    std::vector<double> k;
+    std::vector<double> k(static_cast<std::size_t>(sliders));
     for (int i = 0; i < sliders; ++i)
-      k.push_back(*t_.sigma0 * std::ldexp(1.0, sliders - 1 - i) / (std::ldexp(1.0, sliders) - 1.0));
+      k[static_cast<std::size_t>(i)] = *t_.sigma0 * std::ldexp(1.0, sliders - 1 - i) / (std::ldexp(1.0, sliders) - 1.0);
     const std::string springs = std::to_string(sliders) + " sliders of equal share, stiffness 8:4:2:1, sum sigma0";
     if (!t_.vs) {
       MaxwellSlip<double> law;
