@@ -125,8 +125,8 @@ void append_point(std::string& out, const DfPoint& point, const DescribingFuncti
   }
   add("],\"dissipation\":", known(result.dissipation));
   add(",\"error\":", known(result.error));
-  out.append(",\"method\":\"").append(result.method);
-  out.append("\",\"status\":\"").append(to_string(result.status)).append("\"}");
+  out.append(R"(,"method":")").append(result.method);
+  out.append(R"(","status":")").append(to_string(result.status)).append(R"("})");
 }
 
 }  // namespace
