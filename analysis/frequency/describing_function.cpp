@@ -7,13 +7,13 @@
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 #include "limcycle/analysis/erased_element.hpp"
 #include "limcycle/analysis/frequency/df_kernel.hpp"
 #include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/frequency/fft_route.hpp"
 #include "limcycle/analysis/frequency/quadrature_route.hpp"
+#include "limcycle/analysis/on_threads.hpp"
 
 namespace limcycle {
 
@@ -131,23 +131,21 @@ class TableRun {
            const std::function<bool()>& stop, const std::function<void(std::size_t)>& progress)
       : points_(points), options_(options), law_(element), stop_(stop), progress_(progress), results_(points.size()) {
     if (options.method == DfMethod::automatic) kernel_ = DfKernel::of(element, options);
-    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    threads_ = options.threads > 0 ? options.threads : cores;
+    threads_ = thread_count(options.threads);
     // Large enough to fill the lanes with points of like meshes, small enough to share out.
-    const std::size_t shares = 8 * static_cast<std::size_t>(threads_);
+    const std::size_t shares = 8 * threads_;
     unit_ = std::clamp((points.size() + shares - 1) / shares, std::size_t{kernel_ ? 512U : 1U},
                        std::size_t{kernel_ ? 4096U : 16U});
     computed_.assign((points.size() + unit_ - 1) / unit_, 0);
   }
 
   std::vector<DescribingFunction> run() {
-    {
-      std::vector<std::jthread> others;
-      const std::size_t useful = std::min<std::size_t>(static_cast<std::size_t>(threads_), computed_.size());
-      for (std::size_t i = 1; i < useful; ++i) others.emplace_back([this] { work(); });
-      work();
-    }
-    if (failure_) std::rethrow_exception(failure_);
+    on_threads(
+        std::min(threads_, computed_.size()), [this] { work(); },
+        [this] {
+          const std::lock_guard lock(guard_);
+          stopped_ = true;
+        });
     std::size_t whole = 0;
     for (const std::size_t count : computed_) {
       whole += count;
@@ -159,13 +157,7 @@ class TableRun {
 
  private:
   void work() {
-    try {
-      for (std::size_t unit = next(); unit < computed_.size(); unit = next()) compute(unit);
-    } catch (...) {
-      const std::lock_guard lock(guard_);
-      if (!failure_) failure_ = std::current_exception();
-      stopped_ = true;
-    }
+    for (std::size_t unit = next(); unit < computed_.size(); unit = next()) compute(unit);
   }
 
   std::size_t next() {
@@ -225,7 +217,7 @@ class TableRun {
   std::optional<DfKernel> kernel_;
   const std::function<bool()>& stop_;
   const std::function<void(std::size_t)>& progress_;
-  int threads_ = 1;
+  std::size_t threads_ = 1;
   std::size_t unit_ = 1;
   std::vector<DescribingFunction> results_;
 
@@ -233,7 +225,6 @@ class TableRun {
   std::vector<std::size_t> computed_;  ///< of each unit
   std::size_t next_ = 0, done_ = 0;
   bool stopped_ = false;
-  std::exception_ptr failure_;
 };
 
 }  // namespace

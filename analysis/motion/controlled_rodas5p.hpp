@@ -40,29 +40,13 @@ class ControlledRodas5p {
   /// The same with the new state in xout, which a failed step leaves alone; xout may be x.
   template <class System>
   Result try_step(System&& system, const State& x, double& t, State& xout, double& dt) {
-    dt = admit(x, dt);
-    if (retries(x, t)) {
-      stepper_.repeat_step(system, new_x_, dt, error_);
-    } else {
-      stepper_.do_step(system, x, t, new_x_, dt, error_);
-    }
-    const Result result = judge(x, t, dt);
-    if (result == Result::success) xout = new_x_;
-    return result;
+    return attempt(system, x, t, xout, dt, [&] { stepper_.do_step(system, x, t, new_x_, dt, error_); });
   }
 
   /// The same with the rate at (x, t) given, as Odeint's explicit steppers take it.
   template <class System>
   Result try_step(System&& system, const State& x, const State& dxdt, double& t, State& xout, double& dt) {
-    dt = admit(x, dt);
-    if (retries(x, t)) {
-      stepper_.repeat_step(system, new_x_, dt, error_);
-    } else {
-      stepper_.do_step(system, x, dxdt, t, new_x_, dt, error_);
-    }
-    const Result result = judge(x, t, dt);
-    if (result == Result::success) xout = new_x_;
-    return result;
+    return attempt(system, x, t, xout, dt, [&] { stepper_.do_step(system, x, dxdt, t, new_x_, dt, error_); });
   }
 
   /// Forgets the step before. Call it whenever the system changes (mode, parameters) or the state jumps: after a
@@ -83,6 +67,20 @@ class ControlledRodas5p {
   const Rodas5p& stepper() const { return stepper_; }
 
  private:
+  /// A step, by `first` unless it is one that has just failed.
+  template <class System, class First>
+  Result attempt(System& system, const State& x, double& t, State& xout, double& dt, const First& first) {
+    dt = admit(x, dt);
+    if (retries(x, t)) {
+      stepper_.repeat_step(system, new_x_, dt, error_);
+    } else {
+      first();
+    }
+    const Result result = judge(x, t, dt);
+    if (result == Result::success) xout = new_x_;
+    return result;
+  }
+
   double admit(const State& x, double dt) const;
   bool retries(const State& x, double t) const;
   Result judge(const State& x, double& t, double& dt);

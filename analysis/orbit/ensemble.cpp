@@ -6,8 +6,8 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
+#include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/orbit/ensemble_work.hpp"
 
 namespace limcycle {
@@ -278,14 +278,7 @@ EnsembleRun run_ensemble(std::span<const EnsembleMember> members, const Ensemble
       while (const auto member = work.take(group)) SingleRun(work, *member).run();
     }
   };
-  const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  {
-    std::vector<std::jthread> others;
-    for (int i = 1; i < (options.threads > 0 ? options.threads : cores); ++i)
-      others.emplace_back([&] { work.share(march); });
-    work.share(march);
-  }
-  work.rethrow();
+  on_threads(thread_count(options.threads), march, [&work] { work.end(); });
   return {std::move(work.results()), work.occupancy()};
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <exception>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -57,19 +56,10 @@ class EnsembleWork {
   }
   double occupancy() const { return tried_ > 0 ? static_cast<double>(useful_) / static_cast<double>(tried_) : 1.0; }
 
-  /// One thread's share; an exception ends the run and is kept.
-  template <class F>
-  void share(const F& work) {
-    try {
-      work();
-    } catch (...) {
-      const std::lock_guard lock(guard_);
-      if (!failure_) failure_ = std::current_exception();
-      stopped_ = true;
-    }
-  }
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
+  /// No more members are handed out.
+  void end() {
+    const std::lock_guard lock(guard_);
+    stopped_ = true;
   }
 
  private:
@@ -79,7 +69,6 @@ class EnsembleWork {
   std::vector<EnsembleResult> results_;
   std::mutex guard_;
   bool stopped_ = false;
-  std::exception_ptr failure_;
   long useful_ = 0, tried_ = 0;
 };
 

@@ -4,11 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <exception>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
 
+#include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
@@ -32,33 +30,15 @@ double width(const std::vector<double>& values) {
 
 void in_parallel(std::size_t count, const ExperimentOptions& options, std::string_view what,
                  const std::function<void(std::size_t)>& work) {
-  const auto cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t threads =
-      std::min(count, options.threads > 0 ? static_cast<std::size_t>(options.threads) : std::size_t{cores});
   std::atomic<std::size_t> next = 0, done = 0;
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto worker = [&] {
+  on_threads(std::min(count, thread_count(options.threads)), [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       if (options.stop && options.stop()) return;
-      try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        return;
-      }
+      work(i);
       const std::size_t finished = ++done;
       if (options.progress) options.progress(static_cast<double>(finished) / static_cast<double>(count), what);
     }
-  };
-  if (threads <= 1) {
-    worker();
-  } else {
-    std::vector<std::jthread> pool;
-    for (std::size_t k = 0; k < threads; ++k) pool.emplace_back(worker);
-  }
-  if (failure) std::rethrow_exception(failure);
+  });
 }
 
 void run_by_law(Experiment& experiment, const ExperimentOptions& options,
