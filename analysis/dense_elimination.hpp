@@ -8,7 +8,8 @@ namespace limcycle {
 
 /// Solves in place an m x m system with `right` right-hand sides, stored row-major as m rows of m + right numbers; the
 /// solutions take the place of the right-hand sides. Gaussian elimination with row pivoting; meant for the few unknowns
-/// of one collocation panel, where a library call costs more than the work. False if a pivot vanishes or is not finite.
+/// of one collocation panel, where a library call costs more than the work. Zeros below a pivot and above the diagonal
+/// cost nothing. False if a pivot vanishes or is not finite.
 inline bool eliminate(std::vector<double>& system, std::size_t m, std::size_t right) {
   const std::size_t width = m + right;
   const auto row = [&](std::size_t i) { return system.data() + i * width; };
@@ -24,18 +25,21 @@ inline bool eliminate(std::vector<double>& system, std::size_t m, std::size_t ri
     const double inverse = 1.0 / diagonal;
     for (std::size_t i = k + 1; i < m; ++i) {
       double* const lower = row(i);
+      if (lower[k] == 0.0) continue;
       const double factor = lower[k] * inverse;
       for (std::size_t j = k + 1; j < width; ++j) lower[j] -= factor * upper[j];
     }
   }
   for (std::size_t k = m; k-- > 0;) {
     double* const own = row(k);
-    const double inverse = 1.0 / own[k];
-    for (std::size_t r = m; r < width; ++r) {
-      double sum = own[r];
-      for (std::size_t j = k + 1; j < m; ++j) sum -= own[j] * row(j)[r];
-      own[r] = sum * inverse;
+    for (std::size_t j = k + 1; j < m; ++j) {
+      if (own[j] == 0.0) continue;
+      const double factor = own[j];
+      const double* const below = row(j);
+      for (std::size_t r = m; r < width; ++r) own[r] -= factor * below[r];
     }
+    const double inverse = 1.0 / own[k];
+    for (std::size_t r = m; r < width; ++r) own[r] *= inverse;
   }
   return true;
 }

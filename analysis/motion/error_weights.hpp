@@ -27,6 +27,13 @@ struct ErrorWeights {
   /// Throws std::invalid_argument unless there is one tolerance for each of n components.
   void require_size(std::size_t n) const;
 
+  /// The same for another relative tolerance, the absolute ones in proportion.
+  ErrorWeights scaled_to(double other_rtol) const {
+    ErrorWeights other{other_rtol, atol};
+    for (double& value : other.atol) value *= other_rtol / rtol;
+    return other;
+  }
+
   /// Largest weighted error, max_i |error[i]| / (atol[i] + rtol max(|x_old[i]|, |x_new[i]|)); a step is good if this is
   /// at most 1. +infinity if any component of the error or of x_new is NaN or infinite, so that `norm <= 1` and
   /// `norm > 1` both reject such a step (an infinite x_new would otherwise get an infinite allowance).

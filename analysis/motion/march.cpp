@@ -80,8 +80,10 @@ StepperKind choose_stepper(const Loop& loop, double rtol, bool driven) {
   });
   const auto moduli = pole_moduli(loop);
   if (bristle || (!moduli.empty() && moduli.back() > 200.0 * moduli.front())) return StepperKind::rodas5p;
-  return rtol < 1e-8 ? StepperKind::fehlberg78 : StepperKind::dopri5;
+  return explicit_stepper(rtol);
 }
+
+StepperKind explicit_stepper(double rtol) { return rtol < 1e-8 ? StepperKind::fehlberg78 : StepperKind::dopri5; }
 
 void Step::interpolate(double theta, State& x) const {
   const double h = t1 - t0, left = 1.0 - theta;
@@ -115,7 +117,14 @@ void March::begin(State x, double t, std::optional<Section> section) {
   section_ = std::move(section);
   armed_ = false;
   fresh_ = true;
+  step_.switched.reset();
+  step_.on_section = false;
   event_times_.clear();
+}
+
+void March::reset() {
+  dt_ = 0.0;
+  steps_ = events_ = 0;
 }
 
 /// Hairer, Norsett, Wanner I (1993), section II.4: a first step that changes the state by a hundredth of itself.

@@ -23,6 +23,8 @@ std::string_view to_string(StepperKind kind);
 /// linear part, else an explicit one of Odeint: of order 8 for tight tolerances, of order 5 for loose ones.
 /// `driven`: signals of time act from outside, so that matrix exponentials do not apply.
 StepperKind choose_stepper(const Loop& loop, double rtol, bool driven = false);
+/// That of Odeint's that suits a tolerance.
+StepperKind explicit_stepper(double rtol);
 
 /// A surface C X = level in the space of the linear states, crossed in one direction (+1 upwards, -1 downwards).
 struct Section {
@@ -69,18 +71,25 @@ class March {
   /// Starts at (x, t) in the field's present modes. `section`: also stop at its crossings; a start on it does not
   /// count.
   void begin(State x, double t, std::optional<Section> section = {});
+  /// Forgets the run before, counts and step size included, so that the next one is what it would be in a new march.
+  void reset();
   /// One accepted step, not beyond t_end. Anything but converged means that the march cannot go on.
   Status step(double t_end);
 
   const Step& last() const { return step_; }
+  /// The state at a share of the last step, unless that ended with a switch: by a whole step of the method.
+  void within(double share, State& x) {
+    x.resize(x_.size());
+    repeat(share * (step_.t1 - step_.t0), x);
+  }
   const State& x() const { return x_; }
   double t() const { return t_; }
   long steps() const { return steps_; }
   long events() const { return events_; }
   StepperKind kind() const { return kind_; }
   void limit_step(double dt_max) { dt_max_ = dt_max; }
-  /// Compute Step::transition from now on (autonomous loops only).
-  void track() { tracks_ = true; }
+  /// Compute Step::transition from now on, or no more (autonomous loops only).
+  void track(bool wanted = true) { tracks_ = wanted; }
 
  private:
   struct Stepper;  ///< one of Odeint's controlled steppers, our own, or the exact flow

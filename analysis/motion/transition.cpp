@@ -21,9 +21,11 @@ Eigen::MatrixXd transition(LoopField& field, const Step& step) {
        {(16.0 - s6) / 36.0, (16.0 + s6) / 36.0, 1.0 / 9.0}}};
   const auto n = static_cast<Index>(field.size());
   const double h = step.t1 - step.t0;
-  // Row-major, the right sides [I; I; I] beside it; unknowns and rows stage by stage.
+  // Row-major, the right sides [I; I; I] beside it. Unknowns and rows component by component, the stages of each in a
+  // row, so that components which hardly depend on each other leave zeros.
   const Index m = 3 * n, width = m + n;
-  std::vector<double> system(static_cast<std::size_t>(m * width), 0.0);
+  thread_local std::vector<double> system;
+  system.assign(static_cast<std::size_t>(m * width), 0.0);
   const auto at = [&](Index row, Index column) -> double& {
     return system[static_cast<std::size_t>(row * width + column)];
   };
@@ -33,20 +35,22 @@ Eigen::MatrixXd transition(LoopField& field, const Step& step) {
     const auto stage = static_cast<std::size_t>(j);
     step.interpolate(c[stage], x);
     field.jacobian(x, J, step.t0 + c[stage] * h, time);
-    for (Index i = 0; i < 3; ++i)
-      for (Index row = 0; row < n; ++row)
-        for (Index column = 0; column < n; ++column)
-          at(i * n + row, j * n + column) = -h * a[static_cast<std::size_t>(i)][stage] * J(row, column);
-    for (Index row = 0; row < n; ++row) {
-      at(j * n + row, j * n + row) += 1.0;
-      at(j * n + row, m + row) = 1.0;
-    }
+    for (Index row = 0; row < n; ++row)
+      for (Index column = 0; column < n; ++column) {
+        const double change = -h * J(row, column);
+        if (change == 0.0) continue;
+        for (Index i = 0; i < 3; ++i) at(3 * row + i, 3 * column + j) = a[static_cast<std::size_t>(i)][stage] * change;
+      }
+  }
+  for (Index row = 0; row < m; ++row) {
+    at(row, row) += 1.0;
+    at(row, m + row / 3) = 1.0;
   }
   MatrixXd result(n, n);
   if (!eliminate(system, static_cast<std::size_t>(m), static_cast<std::size_t>(n)))
     return MatrixXd::Constant(n, n, NAN);
   for (Index row = 0; row < n; ++row)
-    for (Index column = 0; column < n; ++column) result(row, column) = at(2 * n + row, m + column);
+    for (Index column = 0; column < n; ++column) result(row, column) = at(3 * row + 2, m + column);
   return result;
 }
 

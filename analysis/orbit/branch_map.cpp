@@ -1,6 +1,7 @@
 #include "limcycle/analysis/orbit/branch_map.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -14,6 +15,13 @@ using Eigen::VectorXd;
 
 constexpr long steps_a_map = 200000;
 constexpr std::size_t loops_kept = 6;  // a corrector step and its differences use three
+
+std::size_t states_of(const Loop& loop) {
+  auto count = static_cast<std::size_t>(loop.states());
+  for (const auto& element : loop.elements)
+    count += static_cast<std::size_t>(std::visit([](const auto& e) { return e.states(); }, element));
+  return count;
+}
 
 }  // namespace
 
@@ -39,51 +47,80 @@ double ParameterScale::slope(double s) const {
   return (logarithmic_ ? p(s) * std::log(to_ / from_) : to_ - from_) / length;
 }
 
-std::shared_ptr<const Loop> BranchMap::loop(double s) {
-  for (const auto& [at, loop] : recent_)
-    if (at == s) return loop;
-  const auto made = family_(scale_.p(s));
-  auto loop = made ? std::make_shared<const Loop>(*made) : nullptr;
+BranchMap::Prepared& BranchMap::prepared(double s) {
+  const auto known = std::ranges::find(recent_, s, &Prepared::s);
+  if (known != recent_.end()) return *known;
   if (recent_.size() == loops_kept) recent_.erase(recent_.begin());
-  recent_.emplace_back(s, loop);
-  return loop;
+  auto made = family_(scale_.p(s));
+  recent_.push_back({s, made ? std::make_shared<const Loop>(std::move(*made)) : nullptr, nullptr});
+  return recent_.back();
+}
+
+std::shared_ptr<const Loop> BranchMap::loop(double s) { return prepared(s).loop; }
+
+void BranchMap::set_frame(Frame frame) {
+  frame_ = std::move(frame);
+  for (auto& loop : recent_) loop.map.reset();
 }
 
 BranchMap::Value BranchMap::at(const VectorXd& u, double s, bool with_derivative, double rtol) {
   Value value;
-  const auto loop = this->loop(s);
-  const auto half = loop && frame_.half ? symmetry(*loop) : std::nullopt;
-  const bool fits = loop && static_cast<std::size_t>(frame_.chart.scale.size()) == frame_.origin.x.size() &&
-                    (!frame_.half || half) && LoopField(*loop).size() == frame_.origin.x.size();
-  if (!fits) {
+  Prepared& here = prepared(s);
+  if (here.loop && !here.map) {
+    auto half = frame_.half ? symmetry(*here.loop) : std::nullopt;
+    const bool fits = static_cast<std::size_t>(frame_.chart.scale.size()) == frame_.origin.x.size() &&
+                      (!frame_.half || half) && states_of(*here.loop) == frame_.origin.x.size();
+    ReturnMap::Options options{rtol, steps_a_map, stop_};
+    options.trace = true;
+    if (fits) here.map = std::make_unique<ReturnMap>(*here.loop, frame_.section, std::move(half), options);
+  }
+  if (!here.map) {
     value.valid = false;
     value.status = Status::not_finite;
     return value;
   }
-  ReturnMap map(*loop, frame_.section, half, {rtol, steps_a_map, stop_, with_derivative});
+  here.map->set_rtol(rtol);
+  here.map->set_derivative(with_derivative);
   value.start = {frame_.chart.lift(frame_.origin.x, u), frame_.origin.modes};
-  const auto result = map(value.start);
+  value.motion = (*here.map)(value.start);
   ++maps_;
-  value.status = result.status;
-  if (result.status != Status::converged) return value;
-  value.time = result.time;
-  value.largest = result.largest;
-  value.r = frame_.chart.coordinates(result.state.x, value.start.x);
-  if (!with_derivative) return value;
-  if (result.derivative.size() == 0) {
-    value.status = Status::stalled;  // a switch is touched, not crossed: there is no derivative
-    return value;
-  }
-  value.D = frame_.chart.restricted(result.derivative);
+  value.status = value.motion.status;
+  if (value.status != Status::converged) return value;
+  value.r = frame_.chart.coordinates(value.motion.state.x, value.start.x);
+  value.time = value.motion.time;
+  const double low = value.motion.extremes.low, high = value.motion.extremes.high;
+  const auto& reflection = here.map->reflection();
+  const double middle = reflection ? (frame_.section.C * reflection->centre).value() : 0.5 * (low + high);
+  value.amplitude = std::max(high - middle, middle - low);
+  if (with_derivative) differentiate(value, high - middle >= middle - low);
   return value;
 }
 
-std::optional<VectorXd> BranchMap::slope(const VectorXd& u, double s, double step, const VectorXd& here) {
-  const Value plus = at(u, s + step, false), minus = at(u, s - step, false);
+/// `upper`: of a half period, that the amplitude is met above the middle.
+void BranchMap::differentiate(Value& value, bool upper) const {
+  const auto& motion = value.motion;
+  if (motion.derivative.size() == 0) {
+    value.status = Status::stalled;  // a switch is touched, not crossed: there is no derivative
+    return;
+  }
+  const auto& chart = frame_.chart;
+  const MatrixXd lift = chart.scale.asDiagonal() * chart.basis;
+  value.D = chart.restricted(motion.derivative);
+  value.time_slope = motion.time_gradient * lift;
+  if (!frame_.half)
+    value.amplitude_slope = 0.5 * (motion.high_gradient - motion.low_gradient) * lift;
+  else
+    value.amplitude_slope = (upper ? motion.high_gradient : -motion.low_gradient) * lift;
+  if (!value.D.allFinite() || !value.time_slope.allFinite() || !value.amplitude_slope.allFinite())
+    value.status = Status::not_finite;
+}
+
+std::optional<VectorXd> BranchMap::slope(const VectorXd& u, double s, double step, const VectorXd& here, double rtol) {
+  const Value plus = at(u, s + step, false, rtol), minus = at(u, s - step, false, rtol);
   bool ahead = plus.status == Status::converged, behind = minus.status == Status::converged;
   if (ahead && behind) {
     const double forward = (plus.r - here).norm(), backward = (minus.r - here).norm();
-    constexpr double noise = 1e-6;
+    const double noise = std::max(1e-6, 100.0 * rtol);
     if (forward < 20.0 * backward + noise && backward < 20.0 * forward + noise)
       return (plus.r - minus.r) / (2.0 * step);
     ahead = forward < backward;
@@ -91,7 +128,7 @@ std::optional<VectorXd> BranchMap::slope(const VectorXd& u, double s, double ste
   }
   if (!ahead && !behind) return std::nullopt;
   const double side = ahead ? step : -step;
-  const Value near = at(u, s + 0.5 * side, false), middle = at(u, s, false);
+  const Value near = at(u, s + 0.5 * side, false, rtol), middle = at(u, s, false, rtol);
   if (near.status != Status::converged || middle.status != Status::converged) return std::nullopt;
   const VectorXd& far = ahead ? plus.r : minus.r;
   return (4.0 * near.r - far - 3.0 * middle.r) / side;  // one-sided, of second order too

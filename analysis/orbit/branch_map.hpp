@@ -30,6 +30,7 @@ class ParameterScale {
 
 /// What a branch of cycles is solved from: R(u, s) = P(u; s) - u = 0, with P the (half) return map of the loop at s in
 /// coordinates u on a section that stays the same along a stretch of the branch. Costs one map each, dR/ds two.
+/// What a map needs to know of a loop is kept for the last few values of s.
 class BranchMap {
  public:
   struct Frame {
@@ -42,10 +43,12 @@ class BranchMap {
     Status status = Status::converged;
     bool valid = true;  ///< false: there is no loop at this s (then status is not_finite)
     Eigen::VectorXd r;
-    Eigen::MatrixXd D;  ///< dP/du, if it was asked for
-    double time = 0.0;  ///< of the (half) period
+    double time = 0.0, amplitude = 0.0;  ///< of the (half) period; of y, from the motion to the image
     LoopState start;
-    State largest;
+    ReturnMap::Result motion;  ///< from there to its image, with its trace
+    // Only if they were asked for:
+    Eigen::MatrixXd D;                               ///< dP/du
+    Eigen::RowVectorXd time_slope, amplitude_slope;  ///< over u
   };
 
   BranchMap(LoopFamily family, ParameterScale scale, double rtol, std::function<bool()> stop)
@@ -54,26 +57,35 @@ class BranchMap {
   /// Null where the case is not valid.
   std::shared_ptr<const Loop> loop(double s);
   const ParameterScale& scale() const { return scale_; }
-  void set_frame(Frame frame) { frame_ = std::move(frame); }
+  void set_frame(Frame frame);
   const Frame& frame() const { return frame_; }
   Eigen::Index dimension() const { return frame_.chart.basis.cols(); }
   double rtol() const { return rtol_; }
+  void set_rtol(double rtol) { rtol_ = rtol; }
   long maps() const { return maps_; }
   bool stopped() const { return stop_ && stop_(); }
 
-  Value at(const Eigen::VectorXd& u, double s, bool with_derivative) { return at(u, s, with_derivative, rtol_); }
   Value at(const Eigen::VectorXd& u, double s, bool with_derivative, double rtol);
   /// dR/ds by central differences; one-sided where the other side is not valid, has no map or jumps (`here`: R at
   /// (u, s), by which that is seen). Empty if neither side will do.
-  std::optional<Eigen::VectorXd> slope(const Eigen::VectorXd& u, double s, double step, const Eigen::VectorXd& here);
+  std::optional<Eigen::VectorXd> slope(const Eigen::VectorXd& u, double s, double step, const Eigen::VectorXd& here,
+                                       double rtol);
 
  private:
+  struct Prepared {
+    double s = 0.0;
+    std::shared_ptr<const Loop> loop;
+    std::unique_ptr<ReturnMap> map;  ///< of the present frame; null where it does not fit
+  };
+  Prepared& prepared(double s);
+  void differentiate(Value& value, bool upper) const;
+
   LoopFamily family_;
   ParameterScale scale_;
   double rtol_;
   std::function<bool()> stop_;
   Frame frame_;
-  std::vector<std::pair<double, std::shared_ptr<const Loop>>> recent_;
+  std::vector<Prepared> recent_;
   long maps_ = 0;
 };
 

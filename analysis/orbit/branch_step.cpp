@@ -15,15 +15,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double loose_factor = 30.0;  ///< the second integration tolerance, for the error
+constexpr double loose_factor = 100.0;  ///< of the second integration tolerance, for derivatives and errors
+constexpr double caution = 3.0;         ///< errors go about with the tolerance; this much more is stated
+constexpr double tightest = 3e-13;
+constexpr double near_switch = 2e-3;  ///< share of the period in which the section should not meet a switch
 constexpr long steps_a_map = 200000;
 
 /// [DP - I, dR/ds; normal].
-MatrixXd bordered(const MatrixXd& D, const VectorXd& slope, const VectorXd& normal) {
-  const Index m = D.rows();
+MatrixXd bordered(const BranchJacobian& jacobian, const VectorXd& normal) {
+  const Index m = jacobian.D.rows();
   MatrixXd J(m + 1, m + 1);
-  J.topLeftCorner(m, m) = D - MatrixXd::Identity(m, m);
-  J.topRightCorner(m, 1) = slope;
+  J.topLeftCorner(m, m) = jacobian.D - MatrixXd::Identity(m, m);
+  J.topRightCorner(m, 1) = jacobian.slope;
   J.bottomRows(1) = normal.transpose();
   return J;
 }
@@ -44,89 +47,166 @@ VectorXd joined(const VectorXd& u, double s) {
   return w;
 }
 
-/// Does an element switch within this share of the period of the moment at which the orbit is on the section? There the
-/// map is a different function on either side.
-bool switches_near(const Loop& loop, const LoopState& start, double time) {
-  constexpr double share = 2e-3;
-  LoopField field(loop);
-  field.modes() = start.modes;
-  March march(field, StepperKind::automatic, loop_weights(loop, 1e-8));
-  march.begin(start.x, 0.0);
-  while (march.t() < time) {
-    if (march.steps() > steps_a_map || march.step(time) != Status::converged) return true;
-    const double at = march.t() / time;
-    if (march.last().switched && (at < share || at > 1.0 - share)) return true;
-  }
-  return false;
+/// Broyden's update of rank one: what the step did to R, which was `before`, is now what the Jacobian says.
+void learn(BranchJacobian& jacobian, const VectorXd& step, const VectorXd& before, const VectorXd& r) {
+  const Index m = r.size();
+  const VectorXd du = step.head(m);
+  const VectorXd missed = (r - before - jacobian.D * du + du - jacobian.slope * step(m)) / step.squaredNorm();
+  jacobian.D += missed * du.transpose();
+  jacobian.slope += missed * step(m);
+}
+
+bool nearly_neutral(const BranchSpot& spot) {
+  return std::ranges::any_of(spot.multipliers, [](auto value) { return std::abs(std::abs(value) - 1.0) < 3e-3; });
 }
 
 }  // namespace
 
-/// A step in s that moves the image by about 1e-4 of the orbit: small against the distance to where the branch ends,
-/// large against the noise of the integration.
-double BranchSolver::slope_step(const VectorXd& slope) const {
+double BranchSolver::loose_rtol() const { return std::min(loose_factor * map_.rtol(), 3e-6); }
+
+/// A step in s that moves the image by about 1e-4 of the orbit, more with a loose integration: small against the
+/// distance to where the branch ends, large against the noise of the integration.
+double BranchSolver::slope_step(const VectorXd& slope, double rtol) const {
   const double size = slope.size() > 0 ? slope.norm() : 1.0;
-  return std::clamp(1e-4 / std::max(size, 1e-3), 1e-9, 1e-3);
+  return std::clamp(std::clamp(std::sqrt(rtol), 1e-4, 1e-3) / std::max(size, 1e-3), 1e-9, 1e-3);
 }
 
-std::optional<BranchSpot> BranchSolver::solve(const VectorXd& w, const VectorXd& normal, const VectorXd& slope) {
+bool BranchSolver::fail(const BranchMap::Value& value) {
+  failure_ = value.status == Status::converged ? Status::not_finite : value.status;
+  invalid_ = !value.valid;
+  return false;
+}
+
+std::optional<BranchSpot> BranchSolver::solve(const VectorXd& w, const VectorXd& normal, const BranchJacobian& near,
+                                              Derivatives derivatives) {
   BranchSpot spot;
   spot.w = w;
-  spot.slope = slope;
-  const Index m = map_.dimension();
-  const double tolerance = 30.0 * map_.rtol();
-  double last = infinite;
-  failure_ = Status::stalled;
-  invalid_ = false;
-  for (spot.iterations = 0; spot.iterations < 12; ++spot.iterations) {
-    spot.value = map_.at(spot.u(), spot.s(), true);
-    if (spot.value.status != Status::converged || !spot.value.D.allFinite()) {
-      failure_ = spot.value.status == Status::converged ? Status::not_finite : spot.value.status;
-      invalid_ = !spot.value.valid;
-      return std::nullopt;
-    }
-    const VectorXd b = joined(spot.value.r, normal.dot(spot.w - w));
-    const bool floor = b.norm() < 100.0 * tolerance && b.norm() > 0.5 * last;
-    if (b.norm() < tolerance || floor) return complete(spot, normal) ? std::optional(std::move(spot)) : std::nullopt;
-    if (b.norm() > 0.3 * last) {
-      if (b.norm() > 2.0 * last || spot.iterations > 6) return std::nullopt;
-      const auto fresh = map_.slope(spot.u(), spot.s(), slope_step(spot.slope), spot.value.r);
-      if (!fresh) return std::nullopt;
-      spot.slope = *fresh;
-    }
-    last = b.norm();
-    const VectorXd step = bordered(spot.value.D, spot.slope, normal).fullPivLu().solve(-b);
-    if (!step.allFinite() || step.head(m).norm() > 1.0) return std::nullopt;
-    spot.w += step;
+  BranchJacobian jacobian = near;
+  while (true) {
+    if (!converge(spot, normal, jacobian) || !complete(spot, normal, jacobian, derivatives)) return std::nullopt;
+    if (spot.orbit_error <= accuracy_ || map_.rtol() <= tightest) break;
+    map_.set_rtol(std::max(std::clamp(0.5 * accuracy_ / spot.orbit_error, 0.03, 0.5) * map_.rtol(), tightest));
+    jacobian = spot.jacobian;
   }
-  return std::nullopt;
+  if (!fill_cycle(spot)) return std::nullopt;
+  return spot;
 }
 
-bool BranchSolver::complete(BranchSpot& spot, const VectorXd& normal) {
+/// Newton from spot.w in the plane across `normal`, until what is left can be taken into account as a small deviation
+/// (see polish). The Jacobian may be old, or empty.
+bool BranchSolver::converge(BranchSpot& spot, const VectorXd& normal, BranchJacobian& jacobian) {
+  const VectorXd w = spot.w;
   const Index m = map_.dimension();
-  const auto slope = map_.slope(spot.u(), spot.s(), slope_step(spot.slope), spot.value.r);
-  const auto loose = map_.at(spot.u(), spot.s(), false, loose_factor * map_.rtol());
-  if (!slope || loose.status != Status::converged) {
-    failure_ = loose.status == Status::converged ? Status::stalled : loose.status;
-    invalid_ = !slope;
-    return false;
+  const double tolerance = std::max(3.0 * map_.rtol(), accuracy_);
+  double last = infinite;
+  int refreshed = 0;
+  VectorXd step, before;
+  failure_ = Status::stalled;
+  invalid_ = false;
+  for (int i = 0; i < 14; ++i, ++spot.iterations) {
+    spot.value = map_.at(spot.u(), spot.s(), false, map_.rtol());
+    if (spot.value.status != Status::converged) return fail(spot.value);
+    const VectorXd& r = spot.value.r;
+    const VectorXd b = joined(r, normal.dot(spot.w - w));
+    if (b.norm() < tolerance || (b.norm() < 100.0 * tolerance && b.norm() > 0.5 * last)) return true;
+    if (i > 0) learn(jacobian, step, before, r);
+    const bool poor = b.norm() > 0.3 * last;
+    if (poor && (b.norm() > 100.0 * last || refreshed > 3)) return false;
+    if (jacobian.D.size() == 0 || poor) {
+      if (!differentiate(spot, loose_rtol(), Derivatives::rough, jacobian)) return false;
+      ++refreshed;
+    }
+    step = bordered(jacobian, normal).fullPivLu().solve(-b);
+    const bool wild = !step.allFinite() || step.head(m).norm() > 1.0;
+    if (wild && refreshed == 0) {  // the Jacobian was too old
+      if (!differentiate(spot, loose_rtol(), Derivatives::rough, jacobian)) return false;
+      ++refreshed;
+      step = bordered(jacobian, normal).fullPivLu().solve(-b);
+    }
+    if (!step.allFinite() || step.head(m).norm() > 1.0) return false;
+    last = b.norm();
+    before = r;
+    spot.w += step;
   }
-  spot.slope = *slope;
-  const auto J = bordered(spot.value.D, spot.slope, normal).fullPivLu();
-  spot.tangent = J.solve(VectorXd::Unit(m + 1, m));
-  if (!spot.tangent.allFinite() || spot.tangent.norm() == 0.0) return false;
-  spot.tangent.normalize();
-  spot.multipliers = sorted_multipliers(spot.value.D);
-  const auto across = bordered(spot.value.D, spot.slope, spot.tangent).fullPivLu();
-  const VectorXd error = across.solve(joined(loose.r - spot.value.r, 0.0)).cwiseAbs() +
-                         across.solve(joined(spot.value.r, 0.0)).cwiseAbs() +
-                         VectorXd::Constant(m + 1, 1e-13 * across.inverse().cwiseAbs().rowwise().sum().maxCoeff());
-  spot.s_error = error(m);
-  spot.orbit_error = std::max({error.head(m).norm(), std::abs(loose.time / spot.value.time - 1.0), map_.rtol()});
+  return false;
+}
+
+/// Derivatives at the spot, integrated at `rtol`, and the map there. Rough ones take dR/ds on one side, if that agrees
+/// with what was known.
+std::optional<BranchMap::Value> BranchSolver::differentiate(const BranchSpot& spot, double rtol, Derivatives wanted,
+                                                            BranchJacobian& jacobian) {
+  auto linear = map_.at(spot.u(), spot.s(), true, rtol);
+  if (linear.status != Status::converged) {
+    fail(linear);
+    return std::nullopt;
+  }
+  const double step = slope_step(jacobian.slope, rtol);
+  std::optional<VectorXd> slope;
+  if (wanted == Derivatives::rough && jacobian.slope.size() > 0) {
+    const auto ahead = map_.at(spot.u(), spot.s() + step, false, rtol);
+    if (ahead.status == Status::converged) slope = (ahead.r - linear.r) / step;
+    if (slope && (*slope - jacobian.slope).norm() > 0.3 * jacobian.slope.norm()) slope.reset();
+  }
+  if (!slope) slope = map_.slope(spot.u(), spot.s(), step, linear.r, rtol);
+  if (!slope) {
+    invalid_ = true;
+    return std::nullopt;
+  }
+  jacobian = {linear.D, *slope};
+  return linear;
+}
+
+bool BranchSolver::complete(BranchSpot& spot, const VectorXd& normal, const BranchJacobian& near,
+                            Derivatives derivatives) {
+  const Index m = map_.dimension();
+  spot.jacobian.slope = near.slope;
+  const auto loose = differentiate(spot, loose_rtol(), Derivatives::rough, spot.jacobian);
+  const auto conclude = [&] {
+    spot.tangent = bordered(spot.jacobian, normal).fullPivLu().solve(VectorXd::Unit(m + 1, m));
+    if (!spot.tangent.allFinite() || spot.tangent.norm() == 0.0) return false;
+    spot.tangent.normalize();
+    spot.multipliers = sorted_multipliers(spot.jacobian.D);
+    return true;
+  };
+  if (!loose || !conclude()) return false;
+  // What decides on an event must not hang on rough derivatives.
+  if (derivatives == Derivatives::precise || nearly_neutral(spot) || std::abs(spot.tangent(m)) < 0.02)
+    if (!differentiate(spot, map_.rtol(), Derivatives::precise, spot.jacobian) || !conclude()) return false;
+  polish(spot, *loose);
   return true;
 }
 
-bool BranchSolver::measure_spot(BranchSpot& spot) {
+/// Takes what is left of R into account as a small deviation, in the tight solution and in the loose one; their
+/// difference tells the errors. Along the branch itself a point may lie where it likes: so at this s, but across the
+/// branch where it turns back.
+void BranchSolver::polish(BranchSpot& spot, const BranchMap::Value& loose) const {
+  const Index m = map_.dimension();
+  const bool turns = std::abs(spot.tangent(m)) < 0.1;
+  const auto across = bordered(spot.jacobian, turns ? spot.tangent : VectorXd::Unit(m + 1, m)).fullPivLu();
+  const VectorXd left = across.solve(joined(-spot.value.r, 0.0)), other = across.solve(joined(-loose.r, 0.0));
+  const auto corrected = [&](const BranchMap::Value& value, const VectorXd& by) {
+    return std::pair(value.time + loose.time_slope * by.head(m), value.amplitude + loose.amplitude_slope * by.head(m));
+  };
+  const auto [time, amplitude] = corrected(spot.value, left);
+  const auto [loose_time, loose_amplitude] = corrected(loose, other);
+  const double second_order = 10.0 * left.squaredNorm() + 1e-4 * left.norm();
+  const double share = std::min(1.0, caution * map_.rtol() / loose_rtol());  // of the difference of the two
+  spot.w += left;
+  spot.value.start.x = map_.frame().chart.lift(map_.frame().origin.x, spot.u());
+  spot.value.time = time;
+  spot.value.amplitude = amplitude;
+  spot.left = second_order;
+  const double floor = 1e-13 * across.inverse().cwiseAbs().rowwise().sum().maxCoeff();
+  spot.s_error = share * std::abs(other(m) - left(m)) + second_order + floor;
+  if (!turns) {
+    const VectorXd moved = bordered(spot.jacobian, spot.tangent).fullPivLu().solve(joined(loose.r - spot.value.r, 0.0));
+    spot.s_error += share * std::abs(moved(m));
+  }
+  const double difference = std::max(std::abs(loose_time / time - 1.0), std::abs(loose_amplitude / amplitude - 1.0));
+  spot.orbit_error = std::max(share * difference + second_order + floor, 0.1 * map_.rtol());
+}
+
+bool BranchSolver::fill_cycle(BranchSpot& spot) {
   const auto loop = map_.loop(spot.s());
   Cycle& cycle = spot.cycle;
   const bool half = map_.frame().half;
@@ -135,9 +215,11 @@ bool BranchSolver::measure_spot(BranchSpot& spot) {
   cycle.half_wave_symmetric = half;
   cycle.start = spot.value.start;
   cycle.period = half ? 2.0 * spot.value.time : spot.value.time;
-  cycle.residual = spot.value.r.norm();
-  if (record(*loop, cycle.start, cycle.period, map_.rtol(), 1000, cycle.trace) != Status::converged) return false;
+  cycle.residual = spot.left;
+  cycle.trace = spot.value.motion.trace;
+  if (half) append_reflected(*loop, symmetry(*loop)->centre, cycle.trace);
   measure(*loop, cycle);
+  cycle.amplitude = spot.value.amplitude;
   // The chart measures in units of the states on the orbit; the amplitude is that of y alone.
   cycle.error = spot.orbit_error;
   cycle.multipliers = spot.multipliers;
@@ -164,7 +246,7 @@ bool BranchSolver::place_frame(const LoopState& start, const Trace& trace, doubl
     if (onto.status != Status::converged) return false;
     round = map(onto.state);
     if (round.status != Status::converged) return false;
-    if (!switches_near(*loop, onto.state, round.time)) break;
+    if (round.switch_distance > near_switch) break;
   }
   frame.origin = onto.state;
   frame.chart = SectionChart(frame.section, round.largest, typical_sizes(*loop));
@@ -184,12 +266,7 @@ std::optional<BranchSpot> BranchSolver::begin(const Cycle& cycle, double s) {
     if (const auto near = map_.loop(s + side); near && !symmetry(*near)) half = false;
   if (!place_frame(cycle.start, trace, s, half)) return std::nullopt;
   const Index m = map_.dimension();
-  const VectorXd fixed = VectorXd::Unit(m + 1, m);
-  const auto slope = map_.slope(VectorXd::Zero(m), s, slope_step({}), VectorXd::Zero(m));
-  if (!slope) return std::nullopt;
-  auto spot = solve(joined(VectorXd::Zero(m), s), fixed, *slope);
-  if (!spot || !measure_spot(*spot)) return std::nullopt;
-  return spot;
+  return solve(joined(VectorXd::Zero(m), s), VectorXd::Unit(m + 1, m), {});
 }
 
 std::optional<BranchSpot> BranchSolver::reframe(const BranchSpot& spot, const BranchSpot* before, double direction) {
@@ -213,9 +290,7 @@ std::optional<BranchSpot> BranchSolver::reframe(const BranchSpot& spot, const Br
     if (!(normal.norm() > 0.0)) return give_up();
     normal.normalize();
   }
-  const auto slope = map_.slope(VectorXd::Zero(m), spot.s(), slope_step(spot.slope), VectorXd::Zero(m));
-  if (!slope) return give_up();
-  auto moved = solve(joined(VectorXd::Zero(m), spot.s()), normal, *slope);
+  auto moved = solve(joined(VectorXd::Zero(m), spot.s()), normal, {});
   if (!moved) return give_up();
   moved->cycle = spot.cycle;
   return moved;
@@ -227,10 +302,10 @@ bool BranchSolver::frame_is_worn(const BranchSpot& spot) const {
   const double place = (frame.section.level - 0.5 * (low + high)) / (high - low);
   if (!(place > 0.07 && place < 0.22)) return true;
   for (Index i = 0; i < frame.chart.scale.size(); ++i) {
-    const double ratio = spot.value.largest[static_cast<std::size_t>(i)] / frame.chart.scale(i);
+    const double ratio = spot.value.motion.largest[static_cast<std::size_t>(i)] / frame.chart.scale(i);
     if (ratio > 2.0 || (ratio < 0.5 && ratio > 1e-3)) return true;
   }
-  return switches_near(*map_.loop(spot.s()), spot.value.start, spot.value.time);
+  return spot.value.motion.switch_distance < near_switch;
 }
 
 }  // namespace limcycle

@@ -8,39 +8,47 @@
 
 namespace limcycle {
 
+/// Derivatives of the map, at a point of the branch or near it.
+struct BranchJacobian {
+  Eigen::MatrixXd D;      ///< dP/du; empty: not known
+  Eigen::VectorXd slope;  ///< dR/ds
+};
+
 /// A solved point of a branch: w = (u, s) with the direction of the branch there.
 struct BranchSpot {
-  Eigen::VectorXd w, tangent;                     ///< tangent of length 1; its last component is ds
-  Eigen::VectorXd slope;                          ///< dR/ds
-  BranchMap::Value value;                         ///< with dP/du
+  Eigen::VectorXd w, tangent;  ///< tangent of length 1; its last component is ds
+  BranchJacobian jacobian;
+  BranchMap::Value value;                         ///< at w
   std::vector<std::complex<double>> multipliers;  ///< of the (half) map, largest first
+  double left = 0.0;                              ///< what may be left of R
   double s_error = 0.0;      ///< by the disagreement of two integration tolerances, at fixed arclength
   double orbit_error = 0.0;  ///< the same for u and the period, relative
-  Cycle cycle;               ///< filled by measure_spot()
+  Cycle cycle;
   int iterations = 0;
 
   double s() const { return w(w.size() - 1); }
   Eigen::VectorXd u() const { return w.head(w.size() - 1); }
 };
 
-/// Solves the points of a branch.
+/// Solves the points of a branch. The integration is as tight as `accuracy` needs, by the estimated errors.
 class BranchSolver {
  public:
-  explicit BranchSolver(BranchMap& map) : map_(map) {}
+  BranchSolver(BranchMap& map, double accuracy) : map_(map), accuracy_(accuracy) {}
 
-  /// The point of the branch in the plane through `w` across `normal`: Newton on the bordered system, and there the
-  /// tangent (along `normal`), the multipliers and the errors. Empty if it does not contract; failure() says why.
-  std::optional<BranchSpot> solve(const Eigen::VectorXd& w, const Eigen::VectorXd& normal,
-                                  const Eigen::VectorXd& slope);
+  /// How well the derivatives at a solved point must be known: to step on, or to find where they pass through a value.
+  enum class Derivatives { rough, precise };
 
-  /// Fills the cycle of a solved point; false if it cannot be recorded.
-  bool measure_spot(BranchSpot& spot);
+  /// The point of the branch in the plane through `w` across `normal`: Newton on the bordered system with the Jacobian
+  /// of a point nearby (improved by Broyden's updates, computed anew where that does not contract); there the tangent
+  /// (along `normal`), the multipliers, the errors and the cycle. Empty if it does not contract; failure() says why.
+  std::optional<BranchSpot> solve(const Eigen::VectorXd& w, const Eigen::VectorXd& normal, const BranchJacobian& near,
+                                  Derivatives derivatives = Derivatives::rough);
 
   /// Puts the frame of the map onto the orbit of `spot`, whose cycle has its trace. `before`: the spot before it, for
   /// the direction; else `direction` is the sign of ds. Empty if the orbit is not found again.
   std::optional<BranchSpot> reframe(const BranchSpot& spot, const BranchSpot* before, double direction);
 
-  /// The first frame, from a cycle at s.
+  /// The first frame, from a cycle at s, and the point there.
   std::optional<BranchSpot> begin(const Cycle& cycle, double s);
 
   /// Has the orbit moved or changed its size so much that the frame no longer suits it?
@@ -51,11 +59,19 @@ class BranchSolver {
   bool invalid() const { return invalid_; }  ///< it left the values that are valid
 
  private:
-  bool complete(BranchSpot& spot, const Eigen::VectorXd& normal);
+  bool converge(BranchSpot& spot, const Eigen::VectorXd& normal, BranchJacobian& jacobian);
+  bool complete(BranchSpot& spot, const Eigen::VectorXd& normal, const BranchJacobian& near, Derivatives derivatives);
+  std::optional<BranchMap::Value> differentiate(const BranchSpot& spot, double rtol, Derivatives wanted,
+                                                BranchJacobian& jacobian);
+  void polish(BranchSpot& spot, const BranchMap::Value& loose) const;
+  bool fill_cycle(BranchSpot& spot);
+  bool fail(const BranchMap::Value& value);
   bool place_frame(const LoopState& start, const Trace& trace, double s, bool half);
-  double slope_step(const Eigen::VectorXd& slope) const;
+  double slope_step(const Eigen::VectorXd& slope, double rtol) const;
+  double loose_rtol() const;
 
   BranchMap& map_;
+  double accuracy_;
   Status failure_ = Status::converged;
   bool invalid_ = false;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "limcycle/analysis/orbit/branch_end.hpp"
 
@@ -15,6 +16,7 @@ constexpr double smallest_share = 1e-5;  ///< of the largest amplitude: below, t
 constexpr double longest_share = 1e5;    ///< of the shortest period: above, the period is going to infinity
 constexpr double largest_share = 1e5;    ///< of the first amplitude: above, the amplitude is going to infinity
 constexpr double sharpest_turn = 0.96;   ///< cosine of the angle that the tangent may turn by in a step
+constexpr std::size_t most_passed = 6;   ///< points that predict the next one
 constexpr int longest_crawl = 10;        ///< points in tiny steps along a very unstable cycle
 
 /// One direction of a branch, from a solved first spot.
@@ -24,6 +26,7 @@ class Walk {
       : map_(map), solver_(solver), options_(options), now_(std::move(first)), s0_(now_.s()) {
     if (now_.tangent(now_.tangent.size() - 1) * direction < 0.0) now_.tangent = -now_.tangent;
     start_ = now_.cycle;
+    pass(true);
     take(now_);
   }
 
@@ -55,19 +58,51 @@ class Walk {
     ended_ = true;
   }
 
+  /// Where the branch should be after a step h: along the tangent, or on the polynomial through the last points that
+  /// agrees best with the one through a point less.
+  VectorXd predicted(double h) const {
+    VectorXd best = now_.w + h * now_.tangent, shorter = best;
+    double agreement = infinite;
+    const auto count = std::ssize(passed_);
+    for (Index points = 2; points <= count; ++points) {
+      VectorXd longer = VectorXd::Zero(now_.w.size());
+      for (Index i = count - points; i < count; ++i) {
+        double weight = 1.0;
+        for (Index j = count - points; j < count; ++j)
+          if (j != i) weight *= (length_ + h - at(j).first) / (at(i).first - at(j).first);
+        longer += weight * at(i).second;
+      }
+      const double difference = (longer - shorter).norm();
+      if (difference < agreement && points > 2) {
+        agreement = difference;
+        best = longer;
+      }
+      shorter = longer;
+    }
+    return best;
+  }
+  const std::pair<double, VectorXd>& at(Index i) const { return passed_[static_cast<std::size_t>(i)]; }
+
+  /// Remembers where the branch was, in one frame.
+  void pass(bool new_frame) {
+    if (new_frame) passed_.clear();
+    if (!passed_.empty()) length_ += (now_.w - passed_.back().second).norm();
+    if (passed_.size() == most_passed) passed_.pop_front();
+    passed_.emplace_back(length_, now_.w);
+  }
+
   /// One step along the tangent; h becomes the next one. False: it must be shorter.
   bool step(double& h) {
-    auto next = solver_.solve(now_.w + h * now_.tangent, now_.tangent, now_.slope);
+    auto next = solver_.solve(predicted(h), now_.tangent, now_.jacobian);
     if (!next) return false;
     const double moved = (next->w - now_.w).norm();
     const double turn = next->tangent.dot(now_.tangent);
     if ((turn < sharpest_turn || moved > 1.5 * h) && h > 100.0 * options_.min_step) return false;
     if (next->s() < 0.0 || next->s() > ParameterScale::length) return false;
-    if (!solver_.measure_spot(*next)) return false;
     const int iterations = next->iterations;
     if (!accept(std::move(*next), h)) return ended_;
     if (iterations <= 4 && turn > 0.97) h *= 1.6;
-    if (iterations >= 6 || turn < 0.9) h *= 0.7;
+    if (iterations >= 7 || turn < 0.9) h *= 0.7;
     return true;
   }
 
@@ -86,8 +121,8 @@ class Walk {
     VectorXd w = now_.w + (border - now_.s()) / ds(now_) * now_.tangent;
     w(w.size() - 1) = border;
     const VectorXd fixed = (ds(now_) < 0.0 ? -1.0 : 1.0) * VectorXd::Unit(w.size(), w.size() - 1);
-    auto last = solver_.solve(w, fixed, now_.slope);
-    if (!last || last->tangent.dot(now_.tangent) < 0.5 || !solver_.measure_spot(*last)) return false;
+    auto last = solver_.solve(w, fixed, now_.jacobian);
+    if (!last || last->tangent.dot(now_.tangent) < 0.5) return false;
     last->w(w.size() - 1) = border;
     if (accept(std::move(*last), 1.0) && !ended_) end_here("the end of the range is reached");
     return true;
@@ -104,6 +139,7 @@ class Walk {
     if (closes(now_, next)) return false;
     const BranchSpot before = std::move(now_);
     now_ = std::move(next);
+    pass(false);
     take(now_);
     if (options_.progress) options_.progress(now_.s() / ParameterScale::length);
     const Cycle& cycle = now_.cycle;
@@ -111,7 +147,10 @@ class Walk {
         cycle.amplitude > largest_share * start_.amplitude || crawls(before))
       give_up(true);
     if (ended_ || !solver_.frame_is_worn(now_)) return !ended_;
-    if (auto moved = solver_.reframe(now_, &before, ds(now_))) now_ = std::move(*moved);
+    if (auto moved = solver_.reframe(now_, &before, ds(now_))) {
+      now_ = std::move(*moved);
+      pass(true);
+    }
     return true;
   }
 
@@ -159,7 +198,7 @@ class Walk {
       const VectorXd chord = b.w - a.w;
       const VectorXd along = chord.dot(a.tangent) * a.tangent;
       const VectorXd guess = a.w + at * along + at * at * (chord - along);
-      auto spot = solver_.solve(guess, a.tangent, a.slope);
+      auto spot = solver_.solve(guess, a.tangent, a.jacobian, BranchSolver::Derivatives::precise);
       if (!spot) return std::nullopt;
       const double value = g(*spot);
       best = std::move(spot);
@@ -208,7 +247,7 @@ class Walk {
 
   bool fold(const BranchSpot& a, const BranchSpot& b) {
     auto spot = locate(a, b, [](const BranchSpot& at) { return ds(at); });
-    if (!spot || !solver_.measure_spot(*spot)) return false;
+    if (!spot) return false;
     const std::size_t before = outside(a), after = outside(b);
     const std::string side = before < after ? "; the cycle is less stable beyond it" : "";
     // Off the extremum by d sigma, the parameter is off by ds * d sigma / 2, of which the first factor is left over.
@@ -225,7 +264,7 @@ class Walk {
       return rank <= at.multipliers.size() ? std::log(std::max(std::abs(at.multipliers[rank - 1]), 1e-12)) : -30.0;
     };
     auto spot = locate(a, b, radius);
-    if (!spot || !solver_.measure_spot(*spot)) return false;
+    if (!spot) return false;
     const std::complex<double> mu = spot->multipliers[rank - 1];
     std::string what = "a pair of complex multipliers crosses the unit circle (onto a torus)";
     if (std::abs(mu.imag()) < 1e-6)
@@ -259,8 +298,8 @@ class Walk {
     if (!near(b.cycle.period, start_.period) || !near(b.cycle.amplitude, start_.amplitude)) return false;
     VectorXd w = a.w + (s0_ - a.s()) / (b.s() - a.s()) * (b.w - a.w);
     const Index m = w.size() - 1;
-    auto spot = solver_.solve(w, (b.s() < a.s() ? -1.0 : 1.0) * VectorXd::Unit(m + 1, m), a.slope);
-    if (!spot || !solver_.measure_spot(*spot)) return false;
+    auto spot = solver_.solve(w, (b.s() < a.s() ? -1.0 : 1.0) * VectorXd::Unit(m + 1, m), a.jacobian);
+    if (!spot) return false;
     const double tolerance = 1e-6 + 10.0 * (spot->cycle.error + start_.error);
     if (std::abs(spot->cycle.period / start_.period - 1.0) > tolerance ||
         std::abs(spot->cycle.amplitude / start_.amplitude - 1.0) > tolerance)
@@ -294,6 +333,8 @@ class Walk {
   BranchSolver& solver_;
   const ContinuationOptions& options_;
   BranchSpot now_;
+  std::deque<std::pair<double, VectorXd>> passed_;  ///< arclength and place of the last points in this frame
+  double length_ = 0.0;
   Cycle start_;
   double s0_;
   Branch branch_;

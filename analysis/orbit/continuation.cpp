@@ -50,9 +50,10 @@ Branch continue_cycle(const LoopFamily& family, const Cycle& start, double p0, c
   const double s0 = scale.s(p0);
   if (!(s0 >= 0.0 && s0 <= ParameterScale::length))
     throw std::invalid_argument("the start of a branch must lie in its range, got " + std::to_string(p0));
-  const double rtol = std::clamp(3e-3 * options.accuracy, 3e-13, 1e-8);
+  // Made tighter where the estimated errors ask for it; loose runs lose a cycle with stick.
+  const double rtol = std::clamp(options.accuracy, 3e-13, 1e-7);
   BranchMap map(family, scale, rtol, options.stop);
-  BranchSolver solver(map);
+  BranchSolver solver(map, options.accuracy);
   const auto first = solver.begin(start, s0);
   Branch whole;
   if (!first) {

@@ -20,6 +20,13 @@ struct Cubic01 {
   /// Coefficients of the derivative s0 + b u + c u^2.
   double b() const { return 6.0 * (y1 - y0) - 4.0 * s0 - 2.0 * s1; }
   double c() const { return 3.0 * (s0 + s1) - 6.0 * (y1 - y0); }
+  /// Where the derivative is zero, if it has opposite signs at the ends.
+  double turn() const {
+    const double root = std::sqrt(std::max(0.0, b() * b() - 4.0 * c() * s0));
+    const double q = -0.5 * (b() + (b() < 0.0 ? -root : root));
+    const double one = q / c(), other = s0 / q;
+    return std::clamp(one > 0.0 && one < 1.0 ? one : other, 0.0, 1.0);
+  }
 };
 
 Cubic01 piece(const std::vector<double>& t, const std::vector<double>& y, const std::vector<double>& rate,
@@ -101,42 +108,85 @@ void append(Trace& trace, LoopField& field, const State& x, const State& dx, dou
   trace.output.push_back(field.output(i));
 }
 
+void append(Trace& trace, LoopField& field, const March& march) {
+  if (march.last().switched) append(trace, field, march.last().x1, march.last().dx1, march.t());  // rates may jump
+  State dx;
+  field.rate(march.x(), dx, march.t());
+  append(trace, field, march.x(), dx, march.t());
+}
+
 Status record(const Loop& loop, const LoopState& from, double duration, double rtol, int resolution, Trace& trace) {
   LoopField field(loop);
   field.modes() = from.modes;
   March march(field, StepperKind::automatic, loop_weights(loop, rtol));
   march.begin(from.x, 0.0);
   march.limit_step(duration / resolution);
-  State dx;
-  field.rate(from.x, dx, 0.0);
-  append(trace, field, from.x, dx, 0.0);
+  append(trace, field, march);
   while (march.t() < duration) {
     const Status status = march.step(duration);
     if (status != Status::converged) return status;
-    if (march.last().switched)
-      append(trace, field, march.last().x1, march.last().dx1, march.t());  // rates may jump here
-    field.rate(march.x(), dx, march.t());
-    append(trace, field, march.x(), dx, march.t());
+    append(trace, field, march);
     if (march.steps() > 2000000) return Status::max_iterations;
   }
   return Status::converged;
 }
 
+void append_reflected(const Loop& loop, const Eigen::VectorXd& centre, Trace& trace) {
+  const Port& port = loop.ports[element_of_interest(loop)];
+  const double y_middle = loop.C_y.dot(centre.transpose());
+  const double input_middle = (port.C * centre + port.c * loop.external).value();
+  const double half = trace.t.back();
+  const std::size_t count = trace.t.size();
+  for (std::size_t i = 1; i < count; ++i) {
+    trace.t.push_back(half + trace.t[i]);
+    trace.y.push_back(2.0 * y_middle - trace.y[i]);
+    trace.rate.push_back(-trace.rate[i]);
+    trace.input.push_back(2.0 * input_middle - trace.input[i]);
+    trace.velocity.push_back(-trace.velocity[i]);
+    trace.output.push_back(-trace.output[i]);
+  }
+}
+
+void LocatedExtremes::include(double y, double at) {
+  if (y < low) {
+    low = y;
+    low_at = at;
+  }
+  if (y > high) {
+    high = y;
+    high_at = at;
+  }
+}
+
+void LocatedExtremes::include(LoopField& field, March& march, std::size_t index) {
+  const Step& step = march.last();
+  const double h = step.t1 - step.t0;
+  const auto at = static_cast<double>(index);
+  const Cubic01 cubic{field.y(step.x0), field.y(step.x1), h * field.y_rate(step.dx0), h * field.y_rate(step.dx1)};
+  include(cubic.y0, at);
+  include(cubic.y1, at + 1.0);
+  if (cubic.s0 * cubic.s1 >= 0.0) return;
+  const double share = cubic.turn();
+  double y = cubic.at(share);
+  if (!step.switched) {
+    State x, dx;
+    march.within(share, x);
+    field.rate(x, dx, step.t0 + share * h);
+    const double rate = h * field.y_rate(dx), bend = cubic.b() + 2.0 * cubic.c() * share;
+    const double left = bend != 0.0 ? 0.5 * rate * rate / bend : 0.0;
+    y = field.y(x) - (std::abs(left) < std::abs(cubic.y1 - cubic.y0) ? left : 0.0);
+  }
+  include(y, at + share);
+}
+
 Extremes extremes(const Trace& trace) {
-  Extremes found{trace.y.front(), trace.y.front()};
-  const auto include = [&](double y) {
-    found.low = std::min(found.low, y);
-    found.high = std::max(found.high, y);
-  };
-  for (const double y : trace.y) include(y);
+  const auto [low, high] = std::ranges::minmax(trace.y);
+  Extremes found{low, high};
   for (std::size_t i = 0; i + 1 < trace.t.size(); ++i) {
     const Cubic01 cubic = piece(trace.t, trace.y, trace.rate, i);
     if (cubic.s0 * cubic.s1 >= 0.0) continue;
-    const double b = cubic.b(), c = cubic.c();
-    const double root = std::sqrt(std::max(0.0, b * b - 4.0 * c * cubic.s0));
-    const double q = -0.5 * (b + (b < 0.0 ? -root : root));
-    for (const double u : {q / c, cubic.s0 / q})
-      if (u > 0.0 && u < 1.0) include(cubic.at(u));
+    const double y = cubic.at(cubic.turn());
+    found = {std::min(found.low, y), std::max(found.high, y)};
   }
   return found;
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "limcycle/analysis/cycle.hpp"
 #include "limcycle/analysis/motion/march.hpp"
 
@@ -10,10 +12,25 @@ Status record(const Loop& loop, const LoopState& from, double duration, double r
 /// Appends one state to a trace. `field` must be in the modes of that state.
 void append(Trace& trace, LoopField& field, const State& x, const State& dx, double t);
 
-/// Extremes of y over a trace, each refined by the cubic through values and rates.
+/// Appends where a march is, and what was there before a switch.
+void append(Trace& trace, LoopField& field, const March& march);
+
+/// Completes the trace of half a period by its reflection at the state `centre`.
+void append_reflected(const Loop& loop, const Eigen::VectorXd& centre, Trace& trace);
+
+/// Extremes of y along a march, and where they were met: the number of the step and the share of it.
+struct LocatedExtremes {
+  double low = infinite, high = -infinite;
+  double low_at = 0.0, high_at = 0.0;
+  void include(double y, double at = 0.0);
+  /// Those over the last step, number `index`. Within a step they are as good as the method: the cubic tells where, a
+  /// step of the method there (and what its rate says is left) how much. A step that ends with a switch has the cubic.
+  void include(LoopField& field, March& march, std::size_t index);
+};
 struct Extremes {
   double low = 0.0, high = 0.0;
 };
+/// Extremes of y over a trace, each refined by the cubic through values and rates.
 Extremes extremes(const Trace& trace);
 
 /// Harmonics 0..H of the input of the element of interest over one period, b + j a for b sin(n w t) + a cos(n w t), the

@@ -45,32 +45,64 @@ std::optional<Reflection> symmetry(const Loop& loop) {
 }
 
 ReturnMap::ReturnMap(const Loop& loop, Section section, std::optional<Reflection> half, Options options)
-    : loop_(&loop), field_(loop), section_(std::move(section)), half_(std::move(half)), options_(std::move(options)) {}
+    : loop_(&loop),
+      typical_(typical_sizes(loop)),
+      weights_(loop_weights(loop, options.rtol)),
+      kind_(choose_stepper(loop, options.rtol)),
+      field_(std::make_unique<LoopField>(loop)),
+      section_(std::move(section)),
+      half_(std::move(half)),
+      options_(std::move(options)) {}
+
+/// A march as the options want it; kept, since what it prepares costs as much as a short map.
+March& ReturnMap::march() {
+  StepperKind kind = kind_;
+  if (kind != StepperKind::exact && kind != StepperKind::rodas5p) {
+    // The variational equations follow the interpolated step: that of a method of low order, whose steps are short.
+    kind = options_.derivative ? StepperKind::rodas5p : explicit_stepper(options_.rtol);
+  }
+  if (!march_ || march_->kind() != kind || march_rtol_ != options_.rtol) {
+    march_.reset();
+    march_.emplace(*field_, kind, weights_.scaled_to(options_.rtol));
+    march_rtol_ = options_.rtol;
+  }
+  march_->reset();
+  march_->track(options_.derivative);
+  return *march_;
+}
 
 ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
   Result result;
-  field_.modes() = from.modes;
-  // The variational equations follow the interpolated step: that of a method of low order, whose steps are short.
-  const bool exact = choose_stepper(*loop_, options_.rtol) == StepperKind::exact;
-  const auto kind = options_.derivative && !exact ? StepperKind::rodas5p : StepperKind::automatic;
-  March march(field_, kind, loop_weights(*loop_, options_.rtol));
-  if (options_.derivative) march.track();
+  field_->modes() = from.modes;
+  March& march = this->march();
   march.begin(from.x, 0.0, target);
   result.largest.assign(from.x.size(), 0.0);
+  if (options_.trace) append(result.trace, *field_, march);
+  double first_switch = infinite, last_switch = -infinite;
   do {
     if (options_.stop && options_.stop()) result.status = Status::interrupted;
     if (march.steps() > options_.max_steps || march.t() >= options_.longest) result.status = Status::max_iterations;
     if (result.status == Status::converged) result.status = march.step(options_.longest);
-    if (options_.derivative && result.status == Status::converged) result.factors.push_back(march.last().transition);
+    if (result.status != Status::converged) break;
+    if (options_.derivative) result.factors.push_back(march.last().transition);
+    if (options_.trace) {
+      result.extremes.include(*field_, march, static_cast<std::size_t>(march.steps() - 1));
+      append(result.trace, *field_, march);
+    }
+    if (march.last().switched) {
+      first_switch = std::min(first_switch, march.t());
+      last_switch = march.t();
+    }
     for (std::size_t i = 0; i < result.largest.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const double centre = half_ && k < half_->centre.size() ? half_->centre(k) : 0.0;
       result.largest[i] = std::max(result.largest[i], std::abs(march.x()[i] - centre));
     }
-  } while (result.status == Status::converged && !march.last().on_section);
+  } while (!march.last().on_section);
   steps_ += march.steps();
-  result.state = {march.x(), field_.modes()};
+  result.state = {march.x(), field_->modes()};
   result.time = march.t();
+  result.switch_distance = std::min(first_switch, result.time - last_switch) / result.time;
   if (options_.derivative && result.status == Status::converged) close_derivative(result, from, target);
   return result;
 }
@@ -81,18 +113,28 @@ void ReturnMap::close_derivative(Result& result, const LoopState& from, const Se
     if (factor.size() == 0) return result.factors.clear();
   const auto n = static_cast<Eigen::Index>(from.x.size());
   State rate_start, rate_end;
-  field_.rate(result.state.x, rate_end, 0.0);
-  field_.modes() = from.modes;
-  field_.rate(from.x, rate_start, 0.0);
+  field_->rate(result.state.x, rate_end, 0.0);
+  field_->modes() = from.modes;
+  field_->rate(from.x, rate_start, 0.0);
   const Eigen::Map<const Eigen::VectorXd> f0(rate_start.data(), n), f1(rate_end.data(), n);
   Eigen::RowVectorXd normal = Eigen::RowVectorXd::Zero(n);
   normal.head(target.C.size()) = target.C;
   const double crossing = normal * f1;
   Eigen::MatrixXd whole = Eigen::MatrixXd::Identity(n, n);
-  for (const auto& factor : result.factors) whole = (factor * whole).eval();
-  const State typical = typical_sizes(*loop_);
+  // An extreme moves with the state there; the moment at which it is met has no part in it, as y stands still.
+  const auto extreme = [&](double at, std::size_t step, const Eigen::MatrixXd& next, Eigen::RowVectorXd& gradient) {
+    const double share = at - static_cast<double>(step);
+    if (options_.trace && share >= 0.0 && share <= 1.0)
+      gradient = loop_->C_y * ((1.0 - share) * whole + share * next).topRows(loop_->states());
+  };
+  for (std::size_t k = 0; k < result.factors.size(); ++k) {
+    const Eigen::MatrixXd next = result.factors[k] * whole;
+    extreme(result.extremes.low_at, k, next, result.low_gradient);
+    extreme(result.extremes.high_at, k, next, result.high_gradient);
+    whole = next;
+  }
   const Eigen::VectorXd size = Eigen::Map<const Eigen::VectorXd>(result.largest.data(), n)
-                                   .cwiseMax(1e-6 * Eigen::Map<const Eigen::VectorXd>(typical.data(), n));
+                                   .cwiseMax(1e-6 * Eigen::Map<const Eigen::VectorXd>(typical_.data(), n));
   result.flow_defect = (whole * f0 - f1).cwiseQuotient(size).norm() / f1.cwiseQuotient(size).norm();
   result.time_gradient = -normal * whole / crossing;
   result.derivative = whole + f1 * result.time_gradient;
@@ -105,6 +147,9 @@ ReturnMap::Result ReturnMap::operator()(const LoopState& from) {
   for (int k = 1; k < options_.returns && all.status == Status::converged; ++k) {
     Result next = once(all.state);
     for (std::size_t i = 0; i < next.largest.size(); ++i) next.largest[i] = std::max(next.largest[i], all.largest[i]);
+    next.extremes.include(all.extremes.low);
+    next.extremes.include(all.extremes.high);
+    next.trace = {};
     next.time += all.time;
     if (all.factors.empty() || next.factors.empty()) {
       next.factors.clear();

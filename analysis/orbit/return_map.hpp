@@ -1,10 +1,12 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "limcycle/analysis/cycle.hpp"
 #include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/status.hpp"
 
 namespace limcycle {
@@ -34,17 +36,22 @@ class ReturnMap {
     bool derivative = false;
     double longest = infinite;  ///< time after which a motion that has not come back is given up, s
     int returns = 1;            ///< crossings of the section that make one map: several for a motion of unequal swings
+    bool trace = false;         ///< record the motion: Result::trace and extremes
   };
   struct Result {
     Status status = Status::converged;
     LoopState state;    ///< on the section
     double time = 0.0;  ///< of the (half) period
     State largest;  ///< largest |state| met, per component (linear states from the centre of the reflection, if any)
+    double switch_distance = infinite;  ///< of the section from the nearest switch, share of `time`
+    LocatedExtremes extremes;           ///< of y, only with Options::trace
+    Trace trace;                        ///< the same, if there is one return: in the steps of the integration
 
     // Only with `derivative`, and only if every switch was crossed transversally (else empty):
-    Eigen::MatrixXd derivative;            ///< d(state)/d(from), over all states; its image is tangent to the section
-    Eigen::RowVectorXd time_gradient;      ///< d(time)/d(from)
-    std::vector<Eigen::MatrixXd> factors;  ///< step by step, the first acts first, before the projection
+    Eigen::MatrixXd derivative;        ///< d(state)/d(from), over all states; its image is tangent to the section
+    Eigen::RowVectorXd time_gradient;  ///< d(time)/d(from)
+    Eigen::RowVectorXd low_gradient, high_gradient;  ///< d(extremes)/d(from), if they were wanted too (one return)
+    std::vector<Eigen::MatrixXd> factors;            ///< step by step, the first acts first, before the projection
     double flow_defect = 0.0;  ///< how well the unprojected derivative carries the rate at the start to that at the
                                ///< end, relative: the error of the trivial multiplier 1
   };
@@ -63,14 +70,21 @@ class ReturnMap {
   long steps() const { return steps_; }
   void set_rtol(double rtol) { options_.rtol = rtol; }
   void set_derivative(bool derivative) { options_.derivative = derivative; }
+  void set_trace(bool trace) { options_.trace = trace; }
 
  private:
   Result run(const LoopState& from, const Section& target);
   Result once(const LoopState& from);
+  March& march();
   void close_derivative(Result& result, const LoopState& from, const Section& target);
 
   const Loop* loop_;
-  LoopField field_;
+  State typical_;
+  ErrorWeights weights_;
+  StepperKind kind_;
+  std::unique_ptr<LoopField> field_;
+  std::optional<March> march_;  ///< for the tolerance and the kind of the last map
+  double march_rtol_ = 0.0;
   Section section_;
   std::optional<Reflection> half_;
   Options options_;

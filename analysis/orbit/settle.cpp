@@ -175,7 +175,7 @@ class Settling {
   State dx_;
   std::optional<Cycle> candidate_;
   double mismatch_ = 0.0;
-  std::size_t next_try_ = 7;
+  std::size_t next_try_ = 5;
   bool decided_ = false;
 };
 

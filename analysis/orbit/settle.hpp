@@ -13,7 +13,7 @@ enum class Outcome { rest, sliding, cycle, divergence, undecided };
 std::string_view to_string(Outcome outcome);
 
 struct SettleOptions {
-  double rtol = 1e-8;
+  double rtol = 1e-7;              ///< of the simulation; looser ones may break stiction early
   double amplitude_floor = 1e-9;   ///< swings of y below this have died out
   double amplitude_ceiling = 1e6;  ///< |y| beyond this has diverged
   long max_steps = 60000;          ///< the horizon: steps, not seconds, so that it follows the loop's own time scales

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/floquet.hpp"
@@ -15,20 +16,30 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double loose_factor = 100.0;  ///< of the second integration tolerance, for derivatives and errors
+constexpr double loosest = 1e-6;        ///< beyond, a cycle with stick may be lost
+constexpr double caution = 3.0;         ///< errors go about with the tolerance; this much more is stated
+constexpr double tightest = 1e-13;
+
 /// Newton on the return map.
 class Shooter {
  public:
   Shooter(const Loop& loop, ReturnMap map, const ShootingOptions& options)
-      : map_(std::move(map)), options_(options), first_(loop.states()), typical_(typical_sizes(loop)) {}
+      : map_(std::move(map)), options_(options), first_(loop.states()), typical_(typical_sizes(loop)) {
+    map_.set_trace(true);  // the extremes are wanted everywhere
+  }
 
   Status warm_up(const LoopState& guess) {
     auto result = map_.approach(guess);
     Status status = result.status;
     state_ = result.state;
-    for (int i = 0; i < std::max(options_.warm_maps, 1) && status == Status::converged; ++i) {
+    double change = infinite;
+    for (int i = 0; i < std::max(options_.warm_maps, 1) && status == Status::converged && change > 1e-6; ++i) {
       result = map(state_);
       status = result.status;
-      if (status == Status::converged && options_.warm_maps > 0) state_ = result.state;
+      if (status != Status::converged || options_.warm_maps == 0) continue;
+      change = SectionChart(map_.section(), result.largest, typical_).coordinates(result.state.x, state_.x).norm();
+      state_ = result.state;
     }
     largest_ = result.largest;
     return status;
@@ -45,7 +56,8 @@ class Shooter {
     while (r.norm() > tolerance) {
       if (maps_ > options_.max_maps) return Status::max_iterations;
       if (jacobian_.size() == 0) {
-        if (const Status status = linearise(std::max(rtol, 1e-8)); status != Status::converged) return status;
+        const double loose = std::max(rtol, std::min(loose_factor * rtol, loosest));
+        if (const Status status = linearise(std::max(loose, 1e-8)); status != Status::converged) return status;
         fresh = true;
       }
       if (newton(image, r, fresh)) {
@@ -69,6 +81,27 @@ class Shooter {
     residual_ = r.norm();
     time_ = image.time;
     largest_ = image.largest;
+    amplitude_ = amplitude(image);
+    trace_ = std::move(image.trace);
+    return Status::converged;
+  }
+
+  /// Relative difference in period and amplitude between the solution and that of a looser integration, which is close
+  /// enough for the derivative of the map to lead there.
+  Status compare(double loose, double& difference) {
+    if (map_.options().returns > 1 || (!is_linear_at(loose) && linearise(loose) != Status::converged))
+      return compare_anew(loose, difference);
+    const VectorXd step = newton_step(chart_->coordinates(linear_.state.x, linear_at_.x));
+    const VectorXd moved = chart_->scale.cwiseProduct(chart_->basis * step);
+    const double time = linear_.time + linear_.time_gradient.dot(moved);
+    double size = amplitude(linear_);
+    if (!map_.half())
+      size += 0.5 * (linear_.high_gradient - linear_.low_gradient).dot(moved);
+    else if (linear_.extremes.high + linear_.extremes.low > 2.0 * middle())
+      size += linear_.high_gradient.dot(moved);
+    else
+      size -= linear_.low_gradient.dot(moved);
+    difference = std::max(std::abs(time / time_ - 1.0), std::abs(size / amplitude_ - 1.0));
     return Status::converged;
   }
 
@@ -77,6 +110,8 @@ class Shooter {
     const double kept = map_.options().rtol;
     map_.set_rtol(rtol);
     map_.set_derivative(true);
+    linear_at_ = state_;
+    linear_rtol_ = rtol;
     linear_ = map(state_);
     map_.set_rtol(kept);
     map_.set_derivative(false);
@@ -85,6 +120,11 @@ class Shooter {
     jacobian_ = chart_->restricted(linear_.derivative);
     find_kept();
     return Status::converged;
+  }
+
+  /// Is the derivative already known, at this tolerance and close enough?
+  bool is_linear_at(double rtol) const {
+    return std::abs(linear_rtol_ / rtol - 1.0) < 1e-9 && chart_->coordinates(linear_at_.x, state_.x).norm() < 1e-5;
   }
 
   /// See Cycle::remembered; states that are zero and stay so remember nothing.
@@ -114,24 +154,17 @@ class Shooter {
 
   const LoopState& state() const { return state_; }
   double period() const { return map_.half() ? 2.0 * time_ : time_; }
+  double amplitude() const { return amplitude_; }
+  const Trace& trace() const { return trace_; }
   double residual_size() const { return residual_; }
-  bool half() const { return map_.half(); }
+  const std::optional<Reflection>& reflection() const { return map_.reflection(); }
   int maps() const { return maps_; }
 
  private:
   /// One damped Newton step from state_ with residual r; moves there and returns true if the residual falls enough: to
   /// a third with an old Jacobian, at all with a fresh one (which is worth shorter steps).
   bool newton(ReturnMap::Result& image, VectorXd& r, bool fresh) {
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> system;
-    system.setThreshold(1e-7);
-    // What is kept stays as it is. In the chart the element states come last, as in the state.
-    MatrixXd matrix = MatrixXd::Zero(r.size() + kept_.cols(), r.size());
-    matrix.topRows(r.size()) = jacobian_ - MatrixXd::Identity(r.size(), r.size());
-    matrix.bottomRightCorner(kept_.cols(), kept_.rows()) = kept_.transpose();
-    system.compute(matrix);
-    VectorXd right = VectorXd::Zero(matrix.rows());
-    right.head(r.size()) = r;
-    const VectorXd step = -system.solve(right);
+    const VectorXd step = newton_step(r);
     LoopState trial = state_;
     double damping = 1.0;
     for (int halvings = 0; halvings < (fresh ? 6 : 1); ++halvings, damping *= 0.5) {
@@ -150,6 +183,35 @@ class Shooter {
       return true;
     }
     return false;
+  }
+
+  VectorXd newton_step(const VectorXd& r) const {
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> system;
+    system.setThreshold(1e-7);
+    // What is kept stays as it is. In the chart the element states come last, as in the state.
+    MatrixXd matrix = MatrixXd::Zero(r.size() + kept_.cols(), r.size());
+    matrix.topRows(r.size()) = jacobian_ - MatrixXd::Identity(r.size(), r.size());
+    matrix.bottomRightCorner(kept_.cols(), kept_.rows()) = kept_.transpose();
+    system.compute(matrix);
+    VectorXd right = VectorXd::Zero(matrix.rows());
+    right.head(r.size()) = r;
+    return -system.solve(right);
+  }
+
+  /// compare() by solving again at the loose tolerance.
+  Status compare_anew(double loose, double& difference) {
+    const auto kept = std::tuple(state_, time_, amplitude_, residual_, trace_);
+    const Status status = solve(loose, std::max(options_.tolerance, 0.1 * loose));
+    const double time = time_, size = amplitude_;
+    std::tie(state_, time_, amplitude_, residual_, trace_) = kept;
+    difference = std::max(std::abs(time / time_ - 1.0), std::abs(size / amplitude_ - 1.0));
+    return status;
+  }
+
+  double middle() const { return (map_.section().C * map_.reflection()->centre).value(); }
+  double amplitude(const ReturnMap::Result& motion) const {
+    const double low = motion.extremes.low, high = motion.extremes.high;
+    return map_.half() ? std::max(high - middle(), middle() - low) : 0.5 * (high - low);
   }
 
   /// Finds the combinations of element states that the map keeps, whatever the state is, and with a half map those that
@@ -186,8 +248,11 @@ class Shooter {
   std::optional<SectionChart> chart_;
   LoopState state_;
   ReturnMap::Result linear_;
+  LoopState linear_at_;
+  double linear_rtol_ = 0.0;
+  Trace trace_;
   MatrixXd jacobian_;
-  double residual_ = infinite, time_ = 0.0;
+  double residual_ = infinite, time_ = 0.0, amplitude_ = 0.0;
   int maps_ = 0, stuck_ = 0;
 };
 
@@ -199,26 +264,32 @@ ShootingResult failed(Status status, const Shooter& shooter, std::string why) {
   return result;
 }
 
-/// Fills the cycle from the solved map; false if the recording fails. Two resolutions tell the error of the extremes.
+/// Fills the cycle from the solved map; recorded anew if the map has taken fewer steps. False if that fails.
 bool describe(const Loop& loop, const Shooter& shooter, double rtol, int resolution, Cycle& cycle) {
   cycle.period = shooter.period();
   cycle.residual = shooter.residual_size();
-  cycle.half_wave_symmetric = shooter.half();
+  cycle.half_wave_symmetric = shooter.reflection().has_value();
   cycle.start = shooter.state();
-  cycle.trace = {};
-  if (record(loop, cycle.start, cycle.period, rtol, resolution, cycle.trace) != Status::converged) return false;
+  const int parts = cycle.half_wave_symmetric ? 2 : 1;
+  cycle.trace = shooter.trace();
+  const double duration = cycle.period / parts;
+  if (parts * std::ssize(cycle.trace.t) < resolution) {
+    cycle.trace = {};
+    if (record(loop, cycle.start, duration, rtol, resolution / parts, cycle.trace) != Status::converged) return false;
+  }
+  if (cycle.half_wave_symmetric) append_reflected(loop, shooter.reflection()->centre, cycle.trace);
   measure(loop, cycle);
+  cycle.amplitude = shooter.amplitude();
   return true;
 }
 
 /// Multipliers at two tolerances, whose disagreement is their error, and the verdict they allow.
 void judge(Shooter& shooter, ShootingResult& result, bool exact, double rtol) {
-  if (!(rtol > 0.0)) return;
   Cycle& cycle = result.cycle;
   std::vector<std::complex<double>> rough;
   double trivial = 0.0;
   if (!exact) {
-    if (shooter.linearise(10.0 * rtol) != Status::converged) return;
+    if (!shooter.is_linear_at(10.0 * rtol) && shooter.linearise(10.0 * rtol) != Status::converged) return;
     rough = shooter.multipliers(trivial);
   }
   if (shooter.linearise(rtol) != Status::converged) return;
@@ -228,11 +299,28 @@ void judge(Shooter& shooter, ShootingResult& result, bool exact, double rtol) {
   if (!exact && rough.size() != cycle.multipliers.size()) return;  // the two disagree on what is kept
   for (std::size_t i = 0; i < rough.size(); ++i)
     result.multiplier_error = std::max(result.multiplier_error, std::abs(rough[i] - cycle.multipliers[i]));
-  if (shooter.half())
+  if (shooter.reflection())
     for (auto& value : cycle.multipliers) value *= value;
   const double largest = cycle.multipliers.empty() ? 0.0 : std::abs(cycle.multipliers.front());
   if (result.trivial_error < 0.1 && std::abs(largest - 1.0) > 4.0 * result.multiplier_error)
     cycle.stable = largest < 1.0;
+}
+
+/// Solves at rtol and, if an accuracy is wanted, ever tighter until it is reached by the estimate. On return `rtol` is
+/// the last one, and `error` the estimate.
+Status refine(Shooter& shooter, const ShootingOptions& options, double& rtol, double& error) {
+  double tolerance = options.tolerance;
+  while (true) {
+    if (const Status status = shooter.solve(rtol, tolerance); status != Status::converged) return status;
+    const double loose = std::max(rtol, std::min(loose_factor * rtol, loosest));
+    double difference = 0.0;
+    if (const Status status = shooter.compare(loose, difference); status != Status::converged) return status;
+    error = std::max({std::min(1.0, caution * rtol / loose) * difference, shooter.residual_size(), 0.1 * rtol});
+    if (options.accuracy == 0.0 || error <= options.accuracy || rtol <= tightest) return Status::converged;
+    const double by = std::clamp(0.5 * options.accuracy / error, 0.03, 0.5);
+    rtol = std::max(by * rtol, tightest);
+    tolerance *= by;
+  }
 }
 
 }  // namespace
@@ -261,37 +349,33 @@ int returns_of(const Section& section, const Trace& trace) {
 
 ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& section, bool half,
                      const ShootingOptions& options) {
-  const double loose = 30.0 * options.rtol, coarse = std::max(1e-7, loose);
+  const double coarse = std::clamp(loose_factor * options.rtol, 1e-7, loosest);
   const bool exact = choose_stepper(loop, options.rtol) == StepperKind::exact;
   std::optional<Reflection> reflection;
   if (half) reflection = symmetry(loop);
-  Shooter shooter(loop,
-                  {loop,
-                   section,
-                   reflection,
-                   {coarse, options.max_steps_per_map, options.stop, false, options.longest_map, options.returns}},
-                  options);
+  ReturnMap::Options map{coarse, options.max_steps_per_map, options.stop};
+  map.longest = options.longest_map;
+  map.returns = options.returns;
+  Shooter shooter(loop, {loop, section, reflection, map}, options);
   Status status = shooter.warm_up(guess);
   if (status != Status::converged) return failed(status, shooter, "the motion did not return to the section");
-  if (!exact && coarse > loose) status = shooter.solve(coarse, 30.0 * coarse);
-  const double tolerance = exact ? 1e-13 : options.tolerance;
-  if (status == Status::converged) status = shooter.solve(loose, tolerance);
+  if (!exact && coarse > options.rtol) status = shooter.solve(coarse, 30.0 * coarse);
   if (status != Status::converged) return failed(status, shooter, "no fixed point of the return map was reached");
-  Cycle rough;
-  if (!describe(loop, shooter, loose, options.resolution / 2, rough))
-    return failed(Status::stalled, shooter, "the cycle could not be followed");
 
-  status = shooter.solve(options.rtol, tolerance);
-  if (status != Status::converged) return failed(status, shooter, "the fixed point was lost at the tight tolerance");
   ShootingResult result;
   Cycle& cycle = result.cycle;
-  if (!describe(loop, shooter, options.rtol, options.resolution, cycle))
+  double rtol = options.rtol;
+  status = exact ? shooter.solve(rtol, 1e-13) : refine(shooter, options, rtol, cycle.error);
+  if (exact) cycle.error = std::max(shooter.residual_size(), 1e-13);
+  if (status != Status::converged) return failed(status, shooter, "the fixed point was lost at the tight tolerance");
+  if (!describe(loop, shooter, rtol, options.resolution, cycle))
     return failed(Status::stalled, shooter, "the cycle could not be followed");
   cycle.method = exact ? "exact" : "shooting";
-  const double floor = exact ? 1e-13 : 10.0 * options.rtol;
-  cycle.error = std::max({std::abs(cycle.period / rough.period - 1.0),
-                          std::abs(cycle.amplitude / rough.amplitude - 1.0), cycle.residual, floor});
-  judge(shooter, result, exact, options.derivative_rtol);
+  if (options.derivative_rtol > 0.0) {
+    judge(shooter, result, exact, options.derivative_rtol);
+    constexpr double tight = 1e-10;
+    if (!exact && !cycle.stable && options.derivative_rtol > tight) judge(shooter, result, exact, tight);
+  }
   result.status = Status::converged;
   result.maps = shooter.maps();
   return result;

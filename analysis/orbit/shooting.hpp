@@ -9,8 +9,11 @@ namespace limcycle {
 struct ShootingOptions {
   double rtol = 3e-12;       ///< of the integration; the answer is no better than this
   double tolerance = 1e-10;  ///< on the scaled residual |P(x) - x| of the return map
+  /// Wanted relative error of period and amplitude: while the estimate is larger the integration is made tighter (and
+  /// the tolerance on the residual with it). 0: rtol is what is wanted.
+  double accuracy = 0.0;
   /// Of the derivative of the map that the multipliers come from (a second one, ten times as loose, tells their error);
-  /// 0: neither multipliers nor a verdict on stability are wanted.
+  /// tighter if that leaves the stability open. 0: neither multipliers nor a verdict on stability are wanted.
   double derivative_rtol = 1e-10;
   int resolution = 1000;  ///< least number of steps in the recorded period
   int warm_maps = 4;      ///< plain maps before the first Newton step (0: start from the guess itself)
@@ -43,8 +46,8 @@ int returns_of(const Section& section, const Trace& trace);
 /// damped Newton with the exact derivative of the map (variational equations and saltation), kept as long as it
 /// contracts, with plain maps as the fallback. Where the derivative of P - x is singular (a family of cycles, a neutral
 /// direction) the step of least norm is taken, which is the bordered solution. Coarse integration first; the answer is
-/// solved for at two tight tolerances, whose disagreement is the error estimate. Finds unstable cycles as well (with
-/// warm_maps = 0).
+/// compared with that of an integration a hundred times as loose, which is the error estimate. Finds unstable cycles as
+/// well (with warm_maps = 0).
 ///
 /// Multipliers: eigenvalues of the product of the step derivatives (product_eigenvalues), so that those which contract
 /// strongly are right too. No verdict on stability if the largest is within four times its error of 1, the error being

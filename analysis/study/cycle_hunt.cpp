@@ -12,8 +12,10 @@ CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const Sear
   const double unit = output_per_input(loop);
   settle_.amplitude_floor = unit * box.amplitude_min;
   settle_.amplitude_ceiling = 1e4 * unit * box.amplitude_max;
-  settle_.shooting.rtol = std::clamp(3e-4 * options.accuracy, 1e-13, 1e-9);
-  settle_.shooting.tolerance = 30.0 * settle_.shooting.rtol;
+  settle_.shooting.accuracy = options.accuracy;
+  settle_.shooting.rtol = std::clamp(options.accuracy, 1e-13, 1e-8);
+  settle_.shooting.tolerance = 0.1 * settle_.shooting.rtol;
+  settle_.shooting.derivative_rtol = std::clamp(10.0 * options.accuracy, 1e-10, 1e-7);
   settle_.stop = settle_.shooting.stop = options.stop;
 }
 
