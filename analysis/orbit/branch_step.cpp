@@ -203,7 +203,7 @@ void BranchSolver::polish(BranchSpot& spot, const BranchMap::Value& loose) const
     spot.s_error += share * std::abs(moved(m));
   }
   const double difference = std::max(std::abs(loose_time / time - 1.0), std::abs(loose_amplitude / amplitude - 1.0));
-  spot.orbit_error = std::max(share * difference + second_order + floor, 0.1 * map_.rtol());
+  spot.orbit_error = std::max(share * difference + second_order + floor, map_.rtol());
 }
 
 bool BranchSolver::fill_cycle(BranchSpot& spot) {

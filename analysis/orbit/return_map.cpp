@@ -124,7 +124,10 @@ void ReturnMap::close_derivative(Result& result, const LoopState& from, const Se
   // An extreme moves with the state there; the moment at which it is met has no part in it, as y stands still.
   const auto extreme = [&](double at, std::size_t step, const Eigen::MatrixXd& next, Eigen::RowVectorXd& gradient) {
     const double share = at - static_cast<double>(step);
-    if (options_.trace && share >= 0.0 && share <= 1.0)
+    if (!options_.trace || share < 0.0 || share > 1.0) return;
+    if (at == 0.0 || at == static_cast<double>(result.factors.size()))  // on the section
+      gradient = Eigen::RowVectorXd::Zero(n);
+    else
       gradient = loop_->C_y * ((1.0 - share) * whole + share * next).topRows(loop_->states());
   };
   for (std::size_t k = 0; k < result.factors.size(); ++k) {

@@ -315,7 +315,7 @@ Status refine(Shooter& shooter, const ShootingOptions& options, double& rtol, do
     const double loose = std::max(rtol, std::min(loose_factor * rtol, loosest));
     double difference = 0.0;
     if (const Status status = shooter.compare(loose, difference); status != Status::converged) return status;
-    error = std::max({std::min(1.0, caution * rtol / loose) * difference, shooter.residual_size(), 0.1 * rtol});
+    error = std::max({std::min(1.0, caution * rtol / loose) * difference, shooter.residual_size(), rtol});
     if (options.accuracy == 0.0 || error <= options.accuracy || rtol <= tightest) return Status::converged;
     const double by = std::clamp(0.5 * options.accuracy / error, 0.03, 0.5);
     rtol = std::max(by * rtol, tightest);

@@ -282,3 +282,24 @@ TEST_CASE("a period is had for less: loose tolerances, rough multipliers or none
   for (std::size_t i = 0; i < best.multipliers.size(); ++i)
     CHECK(std::abs(rough.cycle.multipliers[i] - best.multipliers[i]) < 4.0 * rough.multiplier_error);
 }
+
+TEST_CASE("the accuracy that is asked for is reached, by an estimate that holds") {
+  Cubic<double> cubic;
+  cubic.coefficient = 5.0 / 3.0;
+  const Loop loops[] = {servo(lugre()), belt(lugre()), forward(cubic, {1.0, 0.0}, {1.0, -5.0, 1.0})};
+  for (const Loop& loop : loops) {
+    const Cycle best = cycle_of(loop);
+    for (const double accuracy : {1e-6, 1e-8, 1e-10}) {
+      ShootingOptions options;
+      options.accuracy = accuracy;
+      options.rtol = std::min(accuracy, 1e-8);
+      options.tolerance = 0.1 * options.rtol;
+      const auto shot = shoot(loop, best.start, choose_section(loop, best.trace), best.half_wave_symmetric, options);
+      REQUIRE(shot.status == Status::converged);
+      CAPTURE(best.period, accuracy, shot.cycle.error);
+      CHECK(shot.cycle.error <= accuracy);
+      CHECK(std::abs(shot.cycle.period / best.period - 1.0) <= shot.cycle.error + best.error);
+      CHECK(std::abs(shot.cycle.amplitude / best.amplitude - 1.0) <= shot.cycle.error + best.error);
+    }
+  }
+}
