@@ -1,10 +1,11 @@
 #include "limcycle/analysis/motion/loop_field.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -222,7 +223,7 @@ Eigen::VectorXd LoopField::outputs_by_superposition(const State& x) {
       sweep(x);
       reach_.col(k) = (hold_residual() - base) / side(k);
     }
-    outputs = reach_.fullPivLu().solve(-base);
+    outputs = solve_fully_pivoted(reach_, -base);
     const Eigen::VectorXd found = outputs.unaryExpr([](double w) { return w < 0.0 ? -1.0 : 1.0; });
     if (found == side) break;
     side = found;
@@ -247,7 +248,7 @@ void LoopField::solve_held(const State& x) {
     }
     const Eigen::VectorXd free = hold_residual();
     const Eigen::VectorXd outputs =
-        m == 1 ? Eigen::VectorXd(-free / reach_(0, 0)) : Eigen::VectorXd(reach_.fullPivLu().solve(-free));
+        m == 1 ? Eigen::VectorXd(-free / reach_(0, 0)) : Eigen::VectorXd(solve_fully_pivoted(reach_, -free));
     for (Index k = 0; k < m; ++k) {
       const std::size_t i = holding_[static_cast<std::size_t>(k)];
       w_[i] = outputs(k);
@@ -318,7 +319,7 @@ void LoopField::solve_with_drive(const State& x) {
   const Eigen::VectorXd base = held_and_drive(x, Eigen::VectorXd::Zero(m));
   reach_.resize(m, m);
   for (Index k = 0; k < m; ++k) reach_.col(k) = held_and_drive(x, Eigen::VectorXd::Unit(m, k)) - base;
-  held_and_drive(x, reach_.fullPivLu().solve(-base));
+  held_and_drive(x, solve_fully_pivoted(reach_, -base));
 }
 
 void LoopField::rate(const State& x, State& dx, double t) {

@@ -1,5 +1,6 @@
-#include <Eigen/LU>
 #include <algorithm>
+
+#include "limcycle/models/linear/dense.hpp"
 
 #include "limcycle/analysis/motion/loop_field.hpp"
 
@@ -89,7 +90,7 @@ void LoopField::held_gradient(const State& x) {
     hold_row(holding_[static_cast<std::size_t>(k)], row);
     rhs.row(k) = -row * free;
   }
-  const Eigen::MatrixXd outputs = reach_.fullPivLu().solve(rhs);
+  const Eigen::MatrixXd outputs = solve_columns_fully_pivoted(reach_, rhs);
   for (Index k = 0; k < m; ++k)
     w_gradient_.row(static_cast<Index>(holding_[static_cast<std::size_t>(k)])) = outputs.row(k);
   if (!followed_) return;
@@ -116,7 +117,7 @@ void LoopField::held_and_drive_gradient(const State& x) {
   }
   drive_gradient();
   rhs.row(m) = -drive_gradient_;
-  const Eigen::MatrixXd unknowns = reach_.fullPivLu().solve(rhs);
+  const Eigen::MatrixXd unknowns = solve_columns_fully_pivoted(reach_, rhs);
   for (Index k = 0; k < m; ++k)
     w_gradient_.row(static_cast<Index>(holding_[static_cast<std::size_t>(k)])) = unknowns.row(k);
   drive_gradient_ = unknowns.row(m);

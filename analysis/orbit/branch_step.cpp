@@ -7,6 +7,7 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/orbit/shooting.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -30,7 +31,7 @@ MatrixXd bordered(const MatrixXd& D, const VectorXd& slope, const VectorXd& norm
 
 std::vector<std::complex<double>> sorted_multipliers(const MatrixXd& D) {
   if (D.size() == 0) return {};
-  const Eigen::VectorXcd values = D.eigenvalues();
+  const Eigen::VectorXcd values = eigenvalues(D);
   std::vector<std::complex<double>> result(values.begin(), values.end());
   std::ranges::sort(result, [](auto a, auto b) {
     return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
@@ -95,7 +96,7 @@ std::optional<BranchSpot> BranchSolver::solve(const VectorXd& w, const VectorXd&
       spot.slope = *fresh;
     }
     last = b.norm();
-    const VectorXd step = bordered(spot.value.D, spot.slope, normal).fullPivLu().solve(-b);
+    const VectorXd step = solve_fully_pivoted(bordered(spot.value.D, spot.slope, normal), -b);
     if (!step.allFinite() || step.head(m).norm() > 1.0) return std::nullopt;
     spot.w += step;
   }

@@ -8,6 +8,7 @@
 #include "limcycle/analysis/orbit/floquet.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/orbit/section_chart.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -122,16 +123,13 @@ class Shooter {
   /// One damped Newton step from state_ with residual r; moves there and returns true if the residual falls enough: to
   /// a third with an old Jacobian, at all with a fresh one (which is worth shorter steps).
   bool newton(ReturnMap::Result& image, VectorXd& r, bool fresh) {
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> system;
-    system.setThreshold(1e-7);
     // What is kept stays as it is. In the chart the element states come last, as in the state.
     MatrixXd matrix = MatrixXd::Zero(r.size() + kept_.cols(), r.size());
     matrix.topRows(r.size()) = jacobian_ - MatrixXd::Identity(r.size(), r.size());
     matrix.bottomRightCorner(kept_.cols(), kept_.rows()) = kept_.transpose();
-    system.compute(matrix);
     VectorXd right = VectorXd::Zero(matrix.rows());
     right.head(r.size()) = r;
-    const VectorXd step = -system.solve(right);
+    const VectorXd step = -least_squares(matrix, right, 1e-7);
     LoopState trial = state_;
     double damping = 1.0;
     for (int halvings = 0; halvings < (fresh ? 6 : 1); ++halvings, damping *= 0.5) {
