@@ -8,22 +8,8 @@
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
-namespace {
 
 using Eigen::Index;
-
-int states_of(const Element<double>& element) {
-  return std::visit([](const auto& e) { return e.states(); }, element);
-}
-
-/// The same element on another scalar.
-template <class To>
-Element<To> recast_element(const Element<double>& element) {
-  return std::visit(
-      []<template <class> class Kind>(const Kind<double>& e) -> Element<To> { return recast<Kind, To>(e); }, element);
-}
-
-}  // namespace
 
 LoopField::Sparse::Sparse(const Eigen::RowVectorXd& row) {
   for (Index i = 0; i < row.size(); ++i)
@@ -39,13 +25,10 @@ LoopField::LoopField(const Loop& loop)
       w_(ne_, 0.0),
       inputs_(ne_) {
   size_ = n_;
-  std::size_t most = 0;
   for (const auto& element : loop.elements) {
-    const auto own = static_cast<std::size_t>(states_of(element));
     first_state_.push_back(size_);
-    size_ += own;
-    most = std::max(most, own);
-    dual_elements_.push_back(recast_element<DualS>(element));
+    slopes_.emplace_back(element);
+    size_ += static_cast<std::size_t>(slopes_.back().states());
   }
   for (Index i = 0; i < loop.states(); ++i) {
     A_.emplace_back(loop.A.row(i));
@@ -67,8 +50,6 @@ LoopField::LoopField(const Loop& loop)
     const double size = (loop.ports[i].C_v.cwiseAbs() * column.cwiseAbs()).value();
     drive_reach_ = reach < -1e-12 * size ? reach : 0.0;
   }
-  dual_z_.resize(most);
-  dual_dz_.resize(most);
   dX_.resize(n_);
   E_ext_.resize(n_);
   ext_ = loop.external;
@@ -291,10 +272,8 @@ void LoopField::find_inputs(const State& x) {
   for (std::size_t i = 0; i < ne_; ++i) {
     const SparsePort& port = ports_[i];
     inputs_[i].v = port.C_v.dot(x.data()) + port.D_v.dot(w_.data()) + port.c_v.dot(ext_.data());
-    if (plain_)
-      inputs_[i].drive = plain_->drive(i, plain_dx_, w_[i], ext_rate_);
-    else if (has_follower_[i])  // friction that is more than compensated holds nothing, even where the forces would
-                                // balance
+    if (has_follower_[i])  // friction that is more than compensated holds nothing, even where the forces would
+                           // balance
       inputs_[i].drive = drive_with_follower(i, x);
     else if (held(i) == Held::nothing && i != asks_drive_)  // which has it from its turn
       inputs_[i].drive = drive_of(i);
