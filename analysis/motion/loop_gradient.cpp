@@ -1,10 +1,8 @@
-#include <algorithm>
-
+#include "limcycle/analysis/motion/loop_field.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
-#include "limcycle/analysis/motion/loop_field.hpp"
-
 namespace limcycle {
+
 using Eigen::Index;
 
 /// Gradients of the input and its rate of element i over the loop's state and time.
