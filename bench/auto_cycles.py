@@ -25,9 +25,9 @@ PROBLEMS = (
 
 def build(problem, work, start):
     program = work / problem["name"]
-    source = HERE / "auto" / (problem["name"] + ".f90")
+    sources = [str(HERE / "auto" / name) for name in (problem["name"] + ".f90", "unused.f90")]
     objects = sorted(str(path) for path in LIBRARY.glob("*.o"))
-    subprocess.run(["gfortran", "-O3", "-march=native", "-fopenmp", str(source), *objects, "-o", str(program)], check=True)
+    subprocess.run(["gfortran", "-O3", "-march=native", "-fopenmp", *sources, *objects, "-o", str(program)], check=True)
     with open(work / (problem["name"] + ".dat"), "w", encoding="ascii") as orbit:
         subprocess.run([start, problem["orbit"]], check=True, stdout=orbit)
     return program

@@ -30,17 +30,11 @@ void print_orbit(System system, Vector y, const Vector& units, double period, in
 
 void servo_orbit() {
   bench::Servo<double> servo(1e5);
-  const auto rate = [&](const Vector& y, Vector& d, double) { servo.rate(y, d); };
-  const auto jacobian = [&](const Vector& y, Matrix& J, double, Vector& dfdt) {
-    J.clear();
-    dfdt.clear();
-    servo.jacobian(y, [&](std::size_t i, std::size_t j, double value) { J(i, j) = value; });
-  };
   Vector y(4);
   for (std::size_t i = 0; i < 4; ++i) y[i] = bench::Servo<double>::start[i];
   Vector units(4, 1.0);
   units[2] = servo.vs;
-  print_orbit(std::make_pair(rate, jacobian), y, units, 24.436786455993, 12);
+  print_orbit(bench::stiff_system<Vector, Matrix>(servo), y, units, 24.436786455993, 12);
 }
 
 void van_der_pol_orbit() {

@@ -19,16 +19,11 @@ using Servo = bench::Servo<double>;
 double rosenbrock(Servo servo, double tolerance) {
   using Vector = ublas::vector<double>;
   using Matrix = ublas::matrix<double>;
-  const auto rate = [&](const Vector& y, Vector& d, double) { servo.rate(y, d); };
-  const auto jacobian = [&](const Vector& y, Matrix& J, double, Vector& dfdt) {
-    J.clear();
-    dfdt.clear();
-    servo.jacobian(y, [&](std::size_t i, std::size_t j, double value) { J(i, j) = value; });
-  };
   Vector y(4);
   for (std::size_t i = 0; i < 4; ++i) y[i] = Servo::start[i];
   odeint::rosenbrock4_controller<odeint::rosenbrock4<double>> stepper(tolerance, tolerance);
-  odeint::integrate_adaptive(stepper, std::make_pair(rate, jacobian), y, 0.0, bench::ensemble_duration, 1e-6);
+  odeint::integrate_adaptive(stepper, bench::stiff_system<Vector, Matrix>(servo), y, 0.0, bench::ensemble_duration,
+                             1e-6);
   return y[1];
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace bench {
 
@@ -68,5 +69,18 @@ struct Servo {
     put(3, 3, sigma0 * by_f);
   }
 };
+
+/// Right side and Jacobian as Odeint's rosenbrock4 wants them, for uBLAS vectors and matrices. The servo must outlive
+/// them.
+template <class Vector, class Matrix, class Real>
+auto stiff_system(Servo<Real>& servo) {
+  const auto rate = [&servo](const Vector& y, Vector& d, Real) { servo.rate(y, d); };
+  const auto jacobian = [&servo](const Vector& y, Matrix& J, Real, Vector& dfdt) {
+    J.clear();
+    dfdt.clear();
+    servo.jacobian(y, [&J](std::size_t i, std::size_t j, Real value) { J(i, j) = value; });
+  };
+  return std::make_pair(rate, jacobian);
+}
 
 }  // namespace bench

@@ -52,17 +52,11 @@ Positions rosenbrock(double sigma0, double tolerance) {
   using Vector = ublas::vector<double>;
   using Matrix = ublas::matrix<double>;
   Servo servo(sigma0);
-  const auto rate = [&](const Vector& y, Vector& d, double) { servo.rate(y, d); };
-  const auto jacobian = [&](const Vector& y, Matrix& J, double, Vector& dfdt) {
-    J.clear();
-    dfdt.clear();
-    servo.jacobian(y, [&](std::size_t i, std::size_t j, double value) { J(i, j) = value; });
-  };
   Vector y(4);
   std::copy(std::begin(Servo::start), std::end(Servo::start), y.begin());
   Positions run;
   run.x = at_samples(odeint::make_dense_output<odeint::rosenbrock4<double>>(tolerance, tolerance),
-                     std::make_pair(rate, jacobian), y);
+                     bench::stiff_system<Vector, Matrix>(servo), y);
   run.evaluations = servo.evaluations;
   return run;
 }

@@ -35,17 +35,10 @@ std::vector<double> rosenbrock(double sigma0, Real tolerance) {
   using Matrix = ublas::matrix<Real>;
   bench::Servo<Real> servo(static_cast<Real>(sigma0));
   servo.most_evaluations = 1L << 60;
-  const auto rate = [&](const Vector& y, Vector& d, Real) { servo.rate(y, d); };
-  const auto jacobian = [&](const Vector& y, Matrix& J, Real, Vector& dfdt) {
-    J.clear();
-    dfdt.clear();
-    servo.jacobian(
-        y, [&](int i, int j, Real value) { J(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) = value; });
-  };
   Vector y(4);
   for (std::size_t i = 0; i < 4; ++i) y[i] = bench::Servo<Real>::start[i];
   odeint::rosenbrock4_controller<odeint::rosenbrock4<Real>> stepper(tolerance, tolerance);
-  return land_on_samples(stepper, std::make_pair(rate, jacobian), y, Real(1e-6));
+  return land_on_samples(stepper, bench::stiff_system<Vector, Matrix>(servo), y, Real(1e-6));
 }
 
 std::vector<double> fehlberg(double sigma0, Real tolerance) {

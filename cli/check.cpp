@@ -1,10 +1,10 @@
 #include "limcycle/reports/check.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/output.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -18,7 +18,7 @@ void describe_poles(const Loop& loop, CheckSummary& summary) {
     summary.stable = true;
     return;
   }
-  const Eigen::VectorXcd poles = loop.A.eigenvalues();
+  const Eigen::VectorXcd poles = eigenvalues(loop.A);
   summary.slowest_pole = poles.real().maxCoeff();
   // A pole at zero comes out as rounding of the others, a repeated one as the root of it.
   const double fastest = poles.cwiseAbs().maxCoeff();

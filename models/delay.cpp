@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "limcycle/models/linear/dense.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -193,7 +195,7 @@ Eigen::VectorXd with_constant_history(const TimeDomainLoop& from, const Eigen::V
   all.head(n) = X;
   if (more > 0)
     all.tail(more) =
-        from.loop.A.bottomRightCorner(more, more).partialPivLu().solve(-from.loop.A.bottomLeftCorner(more, n) * X);
+        solve(MatrixXd(from.loop.A.bottomRightCorner(more, more)), -from.loop.A.bottomLeftCorner(more, n) * X);
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limcycle/models/assemble.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -47,7 +48,7 @@ Eigen::VectorXd steady_motion(const Loop& loop, double rate) {
     rows.row(i) /= size;
     pull(i) /= size;
   }
-  return rows.completeOrthogonalDecomposition().solve(-pull);
+  return least_squares(rows, -pull);
 }
 
 /// Measures the states from the steadily moving point X_r t of a ramp reference.
@@ -155,7 +156,7 @@ Resolvent respond(const Loop& loop, std::complex<double> s) {
   const Index n = loop.states();
   Eigen::MatrixXcd M = s * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<std::complex<double>>();
   if (loop.delay > 0.0) M -= shift * loop.A_delayed.cast<std::complex<double>>();
-  return {M.partialPivLu().solve(loop.B.cast<std::complex<double>>()), shift};
+  return {solve_columns(M, loop.B.cast<std::complex<double>>()), shift};
 }
 
 }  // namespace
@@ -229,7 +230,7 @@ Eigen::VectorXd Loop::mean_point(const Eigen::VectorXd& mean_outputs, const Eige
   for (int i = 0; i < 60 && X.allFinite(); ++i) {
     const Pull pull = pull_at(*this, X, swings);
     const Eigen::VectorXd rate = still * X + given + pull.force;
-    const Eigen::VectorXd step = (still + pull.slope).completeOrthogonalDecomposition().solve(-rate);
+    const Eigen::VectorXd step = least_squares(still + pull.slope, -rate);
     X += step;
     if (i == 0) first = X;
     if (!pull.any || step.norm() <= 1e-15 * X.norm()) break;

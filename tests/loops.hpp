@@ -84,4 +84,23 @@ inline Loop forward(Element<double> element, std::vector<double> numerator, std:
   return build_loop(parts);
 }
 
+/// A pendulum that rubs on a turning shaft, and its loop.
+inline FroudePendulum froude_pendulum(double shaft_speed) {
+  FroudePendulum p;
+  p.mass = 5.0;
+  p.arm = 0.2;
+  p.inertia = 0.25;
+  p.damping = 0.005;
+  p.shaft_radius = 0.02;
+  p.shaft_speed = shaft_speed;
+  return p;
+}
+
+inline LoopParts parts_of(const FroudePendulum& p, const LuGre<double>& law = lugre()) {
+  LoopParts parts;
+  parts.plant = p;
+  parts.friction = law;
+  return parts;
+}
+
 }  // namespace limcycle::test

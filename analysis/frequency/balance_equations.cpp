@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/models/linear/dense.hpp"
+
 namespace limcycle {
 
 namespace {
@@ -31,7 +33,7 @@ BalanceEquations::BalanceEquations(const Loop& loop, bool half_wave) : loop_(loo
     null_.resize(n, 0);
     left_null_.resize(n, 0);
   } else {
-    pseudo_inverse_ = still_.completeOrthogonalDecomposition().pseudoInverse();
+    pseudo_inverse_ = limcycle::pseudo_inverse(still_);
     null_ = lu.kernel().colwise().normalized();
     left_null_ = transposed.kernel().colwise().normalized();
   }
@@ -75,7 +77,7 @@ VectorXd BalanceEquations::closest_free(const VectorXd& mean_outputs, const Vect
     rows.row(k) = port.C + port.C_delayed;
   }
   const VectorXd missing = inputs - means(mean_outputs, none).inputs;
-  return (rows * null_).completeOrthogonalDecomposition().solve(missing);
+  return least_squares(rows * null_, missing);
 }
 
 void BalanceEquations::set_reference(const BalancePoint& point, const BalanceOutputs& outputs) {

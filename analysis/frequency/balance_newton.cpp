@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/models/linear/dense.hpp"
+
 namespace limcycle {
 
 namespace {
@@ -58,8 +60,8 @@ class Newton {
   VectorXd direction(const BalanceSolution& now) {
     Eigen::MatrixXd J;
     if (!equations_.jacobian(now.point, now.outputs, J)) return VectorXd::Zero(u_.size());
-    if (equations_.free_parts() > 0) return -J.completeOrthogonalDecomposition().solve(r_);
-    return -J.partialPivLu().solve(r_);
+    if (equations_.free_parts() > 0) return -least_squares(J, r_);
+    return -solve(J, r_);
   }
 
   /// Goes along the step as far as the residual falls. False: it does not.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/models/linear/dense.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -96,7 +98,7 @@ std::optional<RationalResponse> RationalResponse::of(const Loop& loop) {
   const Port& port = loop.ports[0];
   if (!port.D.isZero(0.0)) return std::nullopt;
   RationalResponse G;
-  G.scale_ = middle_of(loop.A.eigenvalues());
+  G.scale_ = middle_of(eigenvalues(loop.A));
   const Eigen::MatrixXd A = loop.A / G.scale_;
   const Eigen::VectorXd B = loop.B.col(0) / G.scale_;
   G.numerator_.assign(static_cast<std::size_t>(n), 0.0);

@@ -1,6 +1,6 @@
 #include "limcycle/analysis/frequency/root_cell.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -196,8 +196,9 @@ CellAssessment assess(const CellKnowledge& cell) {
   }
   Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
   for (const Complex f : cell.values) moments += as_vector(f) * as_vector(f).transpose();
-  // eigenvalues ascend, so the first vector is the direction in which the values spread least about zero
-  const Eigen::Vector2d thin = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moments).eigenvectors().col(0);
+  // the direction in which the values spread least about zero: across the larger principal axis
+  const double axis = 0.5 * std::atan2(2.0 * moments(0, 1), moments(0, 0) - moments(1, 1));
+  const Eigen::Vector2d thin(-std::sin(axis), std::cos(axis));
   for (const Complex f : cell.values) out.thickness = std::max(out.thickness, std::abs(thin.dot(as_vector(f))));
   choose_directions(c, cell, thin, out);
   if (nearly_linear(cell, c, out)) return out;

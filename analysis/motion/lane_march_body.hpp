@@ -6,6 +6,16 @@
 #include "limcycle/analysis/motion/lane_march.hpp"
 #include "limcycle/analysis/motion/rodas5p_tableau.hpp"
 
+// One function holds a whole step, so that its numbers stay in registers. Under sanitizers, which watch every access,
+// the compiler would need twelve minutes for that; the same source out of line, seconds.
+#ifdef __SANITIZE_ADDRESS__
+#define LIMCYCLE_LANE_INLINE
+#define LIMCYCLE_LANE_FLATTEN
+#else
+#define LIMCYCLE_LANE_INLINE [[gnu::always_inline]]
+#define LIMCYCLE_LANE_FLATTEN [[gnu::flatten]]
+#endif
+
 namespace limcycle {
 
 /// The tableau without library types, whose functions portable sources share.
@@ -31,7 +41,7 @@ class LaneMarch {
   explicit LaneMarch(LaneBatch& batch) : batch_(batch), rows_(reinterpret_cast<P*>(batch.rows)) {}
 
   /// Flattened: the laws are inlined, or they would be copied for every stage.
-  [[gnu::flatten]] void run() {
+  LIMCYCLE_LANE_FLATTEN void run() {
     if (batch_.fresh) begin();
     while (!step()) {
     }
@@ -46,20 +56,20 @@ class LaneMarch {
   P& row(int r) { return rows_[r]; }
   static P one_if(const Mask& mask) { return select(mask, P(1.0), P(0.0)); }
 
-  [[gnu::always_inline]] P output(const P* x) {
+  LIMCYCLE_LANE_INLINE P output(const P* x) {
     P y = row(at.C_y()) * x[0];
 #pragma GCC unroll 8
     for (int i = 1; i < n; ++i) y += row(at.C_y() + i) * x[i];
     return y;
   }
-  [[gnu::always_inline]] P velocity(const P* x) {
+  LIMCYCLE_LANE_INLINE P velocity(const P* x) {
     P v = row(LaneRows::speed_outside);
 #pragma GCC unroll 8
     for (int i = 0; i < n; ++i) v += row(at.C_v() + i) * x[i];
     return v;
   }
   /// Rates of the linear states under the output w.
-  [[gnu::always_inline]] void linear_rates(const P* x, const P& w, P* dx) {
+  LIMCYCLE_LANE_INLINE void linear_rates(const P* x, const P& w, P* dx) {
 #pragma GCC unroll 8
     for (int i = 0; i < n; ++i) {
       dx[i] = row(at.outside() + i) + row(at.B() + i) * w;
@@ -68,7 +78,7 @@ class LaneMarch {
     }
   }
 
-  [[gnu::always_inline]] void rates(const P* x, P* dx) {
+  LIMCYCLE_LANE_INLINE void rates(const P* x, P* dx) {
     Input<P> in;
     in.v = velocity(x);
     const auto law = Law::template law<P>(rows_ + LaneRows::law, batch_.curve);
@@ -79,7 +89,7 @@ class LaneMarch {
   }
 
   /// Rates and slopes at the present state.
-  [[gnu::always_inline]] void linearise() {
+  LIMCYCLE_LANE_INLINE void linearise() {
     using S = Slope<P>;
     const P* x = rows_ + at.state();
     P* dx = rows_ + at.rate();
@@ -127,7 +137,7 @@ class LaneMarch {
 
   /// (I/(gamma h) - J) k = r. The diagonal entry of z, 1/(gamma h) + decay, is positive whatever the state is, so that
   /// z can be eliminated first; the n linear states are left, whose matrix is inverted with row pivoting.
-  [[gnu::always_inline]] void factorise(Attempt& a) {
+  LIMCYCLE_LANE_INLINE void factorise(Attempt& a) {
     const P diagonal = a.inverse_h * (1.0 / rodas5p::gamma);
     a.z_inverse = 1.0 / (diagonal + row(LaneRows::slopes + 1));
     a.z_by_v = row(LaneRows::slopes);
@@ -143,7 +153,7 @@ class LaneMarch {
     invert<P, n>(a.inverse);
   }
 
-  [[gnu::always_inline]] void solve(const Attempt& a, const P (&right)[N], P (&k)[N]) {
+  LIMCYCLE_LANE_INLINE void solve(const Attempt& a, const P (&right)[N], P (&k)[N]) {
     P reduced[n];
     const P from_z = a.w_by_z * right[n];
 #pragma GCC unroll 8
@@ -160,7 +170,7 @@ class LaneMarch {
   }
 
   template <int s>
-  [[gnu::always_inline]] void stage(Attempt& a) {
+  LIMCYCLE_LANE_INLINE void stage(Attempt& a) {
     const P* x0 = rows_ + at.state();
     P rate[N];
     if constexpr (s == 0) {
@@ -190,7 +200,7 @@ class LaneMarch {
   }
 
   /// Largest weighted error; infinite where anything is no number.
-  [[gnu::always_inline]] P error(const Attempt& a) {
+  LIMCYCLE_LANE_INLINE P error(const Attempt& a) {
     P worst(0.0), sum(0.0);
 #pragma GCC unroll 8
     for (int i = 0; i < N; ++i) {
@@ -203,7 +213,7 @@ class LaneMarch {
   }
 
   /// The next step, as StepSizeControl: powers of the errors by their logarithms.
-  [[gnu::always_inline]] void choose_step(const P& h, const P& error, const Mask& good) {
+  LIMCYCLE_LANE_INLINE void choose_step(const P& h, const P& error, const Mask& good) {
     constexpr double least_log_error = -4.605170185988091;  // ln 0.01
     const P log_error = log(error), bounded = max(log_error, P(least_log_error));
     P &old_h = row(LaneRows::old_step), &old_error = row(LaneRows::old_error), &rejected = row(LaneRows::rejected);
@@ -222,7 +232,7 @@ class LaneMarch {
   }
 
   /// One attempt in every lane; whether there was an event.
-  [[gnu::always_inline]] bool step() {
+  LIMCYCLE_LANE_INLINE bool step() {
     Attempt a;
     ++batch_.attempts;
     const P t = row(LaneRows::time), wanted = row(LaneRows::step), left = row(LaneRows::end) - t;
@@ -247,7 +257,7 @@ class LaneMarch {
   }
 
   /// Goes to the end of the step where it is good, and looks what happened.
-  [[gnu::always_inline]] bool move(const Attempt& a, const P& t1, const P& weighted, const Mask& good) {
+  LIMCYCLE_LANE_INLINE bool move(const Attempt& a, const P& t1, const P& weighted, const Mask& good) {
     const P t = row(LaneRows::time);
     const P y0 = output(rows_ + at.state()), y1 = output(a.x), speed0 = output(rows_ + at.rate());
     row(LaneRows::time) = select(good, t1, t);
@@ -315,3 +325,6 @@ constexpr LaneKernels lane_kernels() {
 }
 
 }  // namespace limcycle
+
+#undef LIMCYCLE_LANE_INLINE
+#undef LIMCYCLE_LANE_FLATTEN

@@ -1,28 +1,15 @@
 #include "limcycle/analysis/motion/loop_field.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "limcycle/models/linear/dense.hpp"
+
 namespace limcycle {
-namespace {
 
 using Eigen::Index;
-
-int states_of(const Element<double>& element) {
-  return std::visit([](const auto& e) { return e.states(); }, element);
-}
-
-/// The same element on another scalar.
-template <class To>
-Element<To> recast_element(const Element<double>& element) {
-  return std::visit(
-      []<template <class> class Kind>(const Kind<double>& e) -> Element<To> { return recast<Kind, To>(e); }, element);
-}
-
-}  // namespace
 
 LoopField::Sparse::Sparse(const Eigen::RowVectorXd& row) {
   for (Index i = 0; i < row.size(); ++i)
@@ -38,13 +25,10 @@ LoopField::LoopField(const Loop& loop)
       w_(ne_, 0.0),
       inputs_(ne_) {
   size_ = n_;
-  std::size_t most = 0;
   for (const auto& element : loop.elements) {
-    const auto own = static_cast<std::size_t>(states_of(element));
     first_state_.push_back(size_);
-    size_ += own;
-    most = std::max(most, own);
-    dual_elements_.push_back(recast_element<DualS>(element));
+    slopes_.emplace_back(element);
+    size_ += static_cast<std::size_t>(slopes_.back().states());
   }
   for (Index i = 0; i < loop.states(); ++i) {
     A_.emplace_back(loop.A.row(i));
@@ -66,8 +50,6 @@ LoopField::LoopField(const Loop& loop)
     const double size = (loop.ports[i].C_v.cwiseAbs() * column.cwiseAbs()).value();
     drive_reach_ = reach < -1e-12 * size ? reach : 0.0;
   }
-  dual_z_.resize(most);
-  dual_dz_.resize(most);
   dX_.resize(n_);
   E_ext_.resize(n_);
   ext_ = loop.external;
@@ -222,7 +204,7 @@ Eigen::VectorXd LoopField::outputs_by_superposition(const State& x) {
       sweep(x);
       reach_.col(k) = (hold_residual() - base) / side(k);
     }
-    outputs = reach_.fullPivLu().solve(-base);
+    outputs = solve_fully_pivoted(reach_, -base);
     const Eigen::VectorXd found = outputs.unaryExpr([](double w) { return w < 0.0 ? -1.0 : 1.0; });
     if (found == side) break;
     side = found;
@@ -247,7 +229,7 @@ void LoopField::solve_held(const State& x) {
     }
     const Eigen::VectorXd free = hold_residual();
     const Eigen::VectorXd outputs =
-        m == 1 ? Eigen::VectorXd(-free / reach_(0, 0)) : Eigen::VectorXd(reach_.fullPivLu().solve(-free));
+        m == 1 ? Eigen::VectorXd(-free / reach_(0, 0)) : Eigen::VectorXd(solve_fully_pivoted(reach_, -free));
     for (Index k = 0; k < m; ++k) {
       const std::size_t i = holding_[static_cast<std::size_t>(k)];
       w_[i] = outputs(k);
@@ -290,10 +272,8 @@ void LoopField::find_inputs(const State& x) {
   for (std::size_t i = 0; i < ne_; ++i) {
     const SparsePort& port = ports_[i];
     inputs_[i].v = port.C_v.dot(x.data()) + port.D_v.dot(w_.data()) + port.c_v.dot(ext_.data());
-    if (plain_)
-      inputs_[i].drive = plain_->drive(i, plain_dx_, w_[i], ext_rate_);
-    else if (has_follower_[i])  // friction that is more than compensated holds nothing, even where the forces would
-                                // balance
+    if (has_follower_[i])  // friction that is more than compensated holds nothing, even where the forces would
+                           // balance
       inputs_[i].drive = drive_with_follower(i, x);
     else if (held(i) == Held::nothing && i != asks_drive_)  // which has it from its turn
       inputs_[i].drive = drive_of(i);
@@ -318,7 +298,7 @@ void LoopField::solve_with_drive(const State& x) {
   const Eigen::VectorXd base = held_and_drive(x, Eigen::VectorXd::Zero(m));
   reach_.resize(m, m);
   for (Index k = 0; k < m; ++k) reach_.col(k) = held_and_drive(x, Eigen::VectorXd::Unit(m, k)) - base;
-  held_and_drive(x, reach_.fullPivLu().solve(-base));
+  held_and_drive(x, solve_fully_pivoted(reach_, -base));
 }
 
 void LoopField::rate(const State& x, State& dx, double t) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "limcycle/analysis/cycle.hpp"
-#include "limcycle/analysis/dual.hpp"
+#include "limcycle/analysis/motion/element_slopes.hpp"
 #include "limcycle/analysis/motion/plain_field.hpp"
 #include "limcycle/analysis/motion/state.hpp"
 #include "limcycle/models/loop.hpp"
@@ -70,8 +70,6 @@ class LoopField {
   std::size_t first_state(std::size_t i) const { return first_state_[i]; }
 
  private:
-  using DualS = Dual<4>;
-
   void evaluate(const State& x, double t);
   void sweep(const State& x);
   void solve_held(const State& x);
@@ -108,7 +106,7 @@ class LoopField {
   std::size_t size_ = 0;
   std::size_t n_ = 0, ne_ = 0;
   std::vector<std::size_t> first_state_;
-  std::vector<Element<DualS>> dual_elements_;
+  std::vector<ElementSlopes> slopes_;
   std::vector<bool> has_follower_;
   std::vector<Mode> modes_;
   ExternalSignals signals_;
@@ -139,7 +137,6 @@ class LoopField {
   double drive_reach_ = 0.0;               ///< of its output on the rate of its velocity; < 0, or 0 if it has none
   bool coupled_ = false;                   ///< its drive is solved for together with the holding outputs
   Eigen::RowVectorXd drive_gradient_;
-  std::vector<DualS> dual_z_, dual_dz_, dual_g_;
   Eigen::RowVectorXd input_gradient_, rate_gradient_;
   std::vector<Input<double>> inputs_;
   Eigen::MatrixXd reach_;  ///< rates of the held signals per unit of the holding outputs; of held_and_drive()

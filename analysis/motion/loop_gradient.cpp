@@ -1,20 +1,9 @@
-#include <Eigen/LU>
-#include <algorithm>
-
 #include "limcycle/analysis/motion/loop_field.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
-namespace {
 
 using Eigen::Index;
-
-/// Value seeded as variable k of a batch of four that begins at `first`.
-template <class D>
-D seeded(double value, int k, int first) {
-  return k >= first && k < first + 4 ? D::variable(value, k - first) : D(value);
-}
-
-}  // namespace
 
 /// Gradients of the input and its rate of element i over the loop's state and time.
 void LoopField::input_gradients(std::size_t i) {
@@ -45,35 +34,17 @@ void LoopField::element_gradient(std::size_t i, const State& x) {
   input_gradients(i);
   const auto row = static_cast<Index>(i), n = static_cast<Index>(n_), own = static_cast<Index>(first_state_[i]);
   const bool solved = held(i) != Held::nothing || loop_->ports[i].selection_of, driven = i == asks_drive_ && !solved;
-  const auto spread = [&](auto&& target, int seed, int nz, double factor) {
-    if (seed == 0) target += factor * input_gradient_;
-    if (seed == 1) target += factor * rate_gradient_;
-    if (seed >= 2 && seed < 2 + nz) target(own + seed - 2) += factor;
-    if (seed == 2 + nz && factor != 0.0) target += factor * drive_gradient_;
+  const auto& slopes = slopes_[i].response(inputs_[i], modes_[i], x.data() + first_state_[i], driven, !solved);
+  const Index nz = slopes_[i].states();
+  const auto spread = [&](auto&& target, Index from) {
+    target.setZero();
+    target += slopes(from, 0) * input_gradient_;
+    target += slopes(from, 1) * rate_gradient_;
+    for (Index k = 0; k < nz; ++k) target(own + k) += slopes(from, 2 + k);
+    if (driven && slopes(from, 2 + nz) != 0.0) target += slopes(from, 2 + nz) * drive_gradient_;
   };
-  if (!solved) w_gradient_.row(row).setZero();
-  std::visit(
-      [&](const auto& e) {
-        const int nz = e.states();
-        const std::span<DualS> z(dual_z_.data(), static_cast<std::size_t>(nz)), dz(dual_dz_.data(), z.size());
-        const int seeds = 2 + nz + (driven ? 1 : 0);
-        if (nz > 0) z_gradient_.middleRows(own - n, nz).setZero();
-        for (int first = 0; first < seeds; first += 4) {  // four seeds at a time
-          const Input<DualS> in{seeded<DualS>(inputs_[i].x, 0, first), seeded<DualS>(inputs_[i].v, 1, first),
-                                driven ? seeded<DualS>(inputs_[i].drive, 2 + nz, first) : DualS(inputs_[i].drive)};
-          for (std::size_t k = 0; k < z.size(); ++k)
-            z[k] = seeded<DualS>(x[first_state_[i] + k], 2 + static_cast<int>(k), first);
-          const DualS out = solved ? DualS(0.0) : e.output(in, modes_[i], z);
-          if (nz > 0) e.rate(in, modes_[i], z, dz);
-          for (int k = first; k < std::min(seeds, first + 4); ++k) {
-            const auto s = static_cast<std::size_t>(k - first);
-            if (!solved) spread(w_gradient_.row(row), k, nz, out.d[s]);
-            for (std::size_t j = 0; j < z.size(); ++j)
-              spread(z_gradient_.row(own - n + static_cast<Index>(j)), k, nz, dz[j].d[s]);
-          }
-        }
-      },
-      dual_elements_[i]);
+  if (!solved) spread(w_gradient_.row(row), 0);
+  for (Index j = 0; j < nz; ++j) spread(z_gradient_.row(own - n + j), 1 + j);
 }
 
 /// The same linear system as solve_held(), for the gradients; what depends on the holding outputs then follows.
@@ -89,7 +60,7 @@ void LoopField::held_gradient(const State& x) {
     hold_row(holding_[static_cast<std::size_t>(k)], row);
     rhs.row(k) = -row * free;
   }
-  const Eigen::MatrixXd outputs = reach_.fullPivLu().solve(rhs);
+  const Eigen::MatrixXd outputs = solve_columns_fully_pivoted(reach_, rhs);
   for (Index k = 0; k < m; ++k)
     w_gradient_.row(static_cast<Index>(holding_[static_cast<std::size_t>(k)])) = outputs.row(k);
   if (!followed_) return;
@@ -116,7 +87,7 @@ void LoopField::held_and_drive_gradient(const State& x) {
   }
   drive_gradient();
   rhs.row(m) = -drive_gradient_;
-  const Eigen::MatrixXd unknowns = reach_.fullPivLu().solve(rhs);
+  const Eigen::MatrixXd unknowns = solve_columns_fully_pivoted(reach_, rhs);
   for (Index k = 0; k < m; ++k)
     w_gradient_.row(static_cast<Index>(holding_[static_cast<std::size_t>(k)])) = unknowns.row(k);
   drive_gradient_ = unknowns.row(m);
@@ -141,7 +112,7 @@ void LoopField::jacobian(const State& x, Eigen::MatrixXd& J, double t, State& df
   evaluate(x, t);
   if (plain_ && !signals_) {
     dfdt.assign(size_, 0.0);
-    return plain_->jacobian(x, modes_, inputs_, J);
+    return plain_->jacobian(x, modes_, inputs_, slopes_, J);
   }
   output_gradients(x);
   const auto size = static_cast<Index>(size_), n = static_cast<Index>(n_);
@@ -165,34 +136,16 @@ Eigen::RowVectorXd LoopField::guard_gradient(const State& x, std::size_t i, std:
   input_gradients(i);
   const auto own = static_cast<Index>(first_state_[i]);
   Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(static_cast<Index>(size_) + 1);
-  std::visit(
-      [&]<class E>(const E& e) {
-        if constexpr (HasModes<E, DualS>) {
-          const int nz = e.states();
-          dual_g_.resize(static_cast<std::size_t>(e.guards(modes_[i])));
-          for (int first = 0; first < 3 + nz; first += 4) {
-            const Input<DualS> in{seeded<DualS>(inputs_[i].x, 0, first), seeded<DualS>(inputs_[i].v, 1, first),
-                                  seeded<DualS>(inputs_[i].drive, 2, first)};
-            for (int k = 0; k < nz; ++k)
-              dual_z_[static_cast<std::size_t>(k)] =
-                  seeded<DualS>(x[first_state_[i] + static_cast<std::size_t>(k)], 3 + k, first);
-            e.guard(in, modes_[i], std::span<const DualS>(dual_z_.data(), static_cast<std::size_t>(nz)), dual_g_);
-            for (int k = first; k < std::min(3 + nz, first + 4); ++k) {
-              const double slope = dual_g_[guard].d[static_cast<std::size_t>(k - first)];
-              if (k == 0) gradient += slope * input_gradient_;
-              if (k == 1) gradient += slope * rate_gradient_;
-              if (k == 2 && slope != 0.0) {
-                if (i == asks_drive_ && held(i) == Held::nothing)
-                  gradient += slope * drive_gradient_;
-                else
-                  gradient += slope * w_gradient_.row(static_cast<Index>(i));
-              }
-              if (k >= 3) gradient(own + k - 3) += slope;
-            }
-          }
-        }
-      },
-      dual_elements_[i]);
+  const auto& slopes = slopes_[i].guard(inputs_[i], modes_[i], x.data() + first_state_[i], guard);
+  gradient += slopes(0, 0) * input_gradient_;
+  gradient += slopes(0, 1) * rate_gradient_;
+  if (const double by_drive = slopes(0, 2); by_drive != 0.0) {
+    if (i == asks_drive_ && held(i) == Held::nothing)
+      gradient += by_drive * drive_gradient_;
+    else
+      gradient += by_drive * w_gradient_.row(static_cast<Index>(i));
+  }
+  for (Index k = 0; k < slopes_[i].states(); ++k) gradient(own + k) += slopes(0, 3 + k);
   return gradient.head(static_cast<Index>(size_));
 }
 
@@ -201,31 +154,15 @@ Eigen::MatrixXd LoopField::reset_gradient(const State& x, std::size_t i, std::si
   input_gradients(i);
   const auto size = static_cast<Index>(size_), own = static_cast<Index>(first_state_[i]);
   Eigen::MatrixXd gradient = Eigen::MatrixXd::Identity(size, size);
-  std::visit(
-      [&]<class E>(const E& e) {
-        if constexpr (HasModes<E, DualS>) {
-          const int nz = e.states();
-          if (nz == 0) return;
-          gradient.middleRows(own, nz).setZero();
-          for (int first = 0; first < 2 + nz; first += 4) {
-            const Input<DualS> in{seeded<DualS>(inputs_[i].x, 0, first), seeded<DualS>(inputs_[i].v, 1, first),
-                                  DualS(inputs_[i].drive)};
-            for (int k = 0; k < nz; ++k)
-              dual_z_[static_cast<std::size_t>(k)] =
-                  seeded<DualS>(x[first_state_[i] + static_cast<std::size_t>(k)], 2 + k, first);
-            const std::span<DualS> z(dual_z_.data(), static_cast<std::size_t>(nz));
-            e.next(in, modes_[i], z, static_cast<int>(guard));
-            for (int j = 0; j < nz; ++j)
-              for (int k = first; k < std::min(2 + nz, first + 4); ++k) {
-                const double slope = z[static_cast<std::size_t>(j)].d[static_cast<std::size_t>(k - first)];
-                if (k == 0) gradient.row(own + j) += slope * input_gradient_.head(size);
-                if (k == 1) gradient.row(own + j) += slope * rate_gradient_.head(size);
-                if (k >= 2) gradient(own + j, own + k - 2) += slope;
-              }
-          }
-        }
-      },
-      dual_elements_[i]);
+  const auto& slopes = slopes_[i].reset(inputs_[i], modes_[i], x.data() + first_state_[i], guard);
+  const Index nz = slopes_[i].states();
+  for (Index j = 0; j < nz; ++j) {
+    auto target = gradient.row(own + j);
+    target.setZero();
+    target += slopes(j, 0) * input_gradient_.head(size);
+    target += slopes(j, 1) * rate_gradient_.head(size);
+    for (Index k = 0; k < nz; ++k) target(own + k) += slopes(j, 2 + k);
+  }
   return gradient;
 }
 

@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <cmath>
 
 #include "limcycle/analysis/motion/loop_field.hpp"

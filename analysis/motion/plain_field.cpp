@@ -26,12 +26,6 @@ double respond(const Element<double>& any, const Input<double>& in, Mode mode, s
   return w;
 }
 
-double dot(const std::vector<double>& row, const double* x) {
-  double sum = 0.0;
-  for (std::size_t j = 0; j < row.size(); ++j) sum += row[j] * x[j];
-  return sum;
-}
-
 }  // namespace
 
 bool PlainField::applies(const Loop& loop) {
@@ -48,12 +42,11 @@ bool PlainField::applies(const Loop& loop) {
 
 PlainField::PlainField(const Loop& loop) : n_(static_cast<std::size_t>(loop.states())), E_(loop.E) {
   for (const auto column : loop.A.colwise()) A_.insert(A_.end(), column.begin(), column.end());
-  std::size_t size = n_, most = 0;
+  std::size_t size = n_;
   for (std::size_t i = 0; i < loop.elements.size(); ++i) {
     const Port& port = loop.ports[i];
     const auto column = loop.B.col(static_cast<Index>(i));
     Part part{&loop.elements[i],
-              {},
               nullptr,
               size,
               0,
@@ -63,24 +56,16 @@ PlainField::PlainField(const Loop& loop) : n_(static_cast<std::size_t>(loop.stat
               numbers(port.D.head(static_cast<Index>(i))),
               numbers(port.D_v.head(static_cast<Index>(i))),
               port.c,
-              port.c_v,
-              0.0};
+              port.c_v};
     std::visit(
-        [&]<template <class> class Kind>(const Kind<double>& element) {
-          part.dual = recast<Kind, DualS>(element);
-          part.respond = &respond<Kind<double>>;
+        [&]<class E>(const E& element) {
+          part.respond = &respond<E>;
           part.states = static_cast<std::size_t>(element.states());
         },
         loop.elements[i]);
-    const double reach = (port.C_v * column).value(), whole = (port.C_v.cwiseAbs() * column.cwiseAbs()).value();
-    part.reach = reach < -1e-12 * whole ? reach : 0.0;
     size += part.states;
-    most = std::max(most, part.states);
     parts_.push_back(std::move(part));
   }
-  dual_z_.resize(most);
-  dual_dz_.resize(most);
-  slopes_.setZero(static_cast<Index>(most) + 1, static_cast<Index>(most) + 2);
   w_gradient_.setZero(static_cast<Index>(size), std::ssize(parts_));
   input_gradient_.setZero(static_cast<Index>(size));
   rate_gradient_.setZero(static_cast<Index>(size));
@@ -147,40 +132,8 @@ void PlainField::rate(const State& x, std::span<const Mode> modes, std::span<Inp
   }
 }
 
-double PlainField::drive(std::size_t i, const State& dx, double w, const External& ext_rate) const {
-  const Part& part = parts_[i];
-  const double without = dot(part.C_v, dx.data()) + part.c_v.dot(ext_rate) - part.reach * w;
-  if (part.reach == 0.0) return without >= 0.0 ? infinite : -infinite;
-  return -without / part.reach;
-}
-
-/// Fills slopes_, by dual numbers, four variables at a time.
-void PlainField::differentiate(const Part& part, Mode mode, const Input<double>& in, const State& x) {
-  const auto seeded = [](double value, std::size_t variable, std::size_t first) {
-    return variable >= first && variable < first + 4 ? DualS::variable(value, static_cast<int>(variable - first))
-                                                     : DualS(value);
-  };
-  const std::span<DualS> z(dual_z_.data(), part.states), dz(dual_dz_.data(), part.states);
-  std::visit(
-      [&](const auto& element) {
-        for (std::size_t first = 0; first < 2 + part.states; first += 4) {
-          const Input<DualS> at{seeded(in.x, 0, first), seeded(in.v, 1, first), DualS(in.drive)};
-          for (std::size_t k = 0; k < part.states; ++k) z[k] = seeded(x[part.first + k], 2 + k, first);
-          const DualS out = element.output(at, mode, z);
-          if (part.states > 0) element.rate(at, mode, z, dz);
-          for (std::size_t k = first; k < std::min(2 + part.states, first + 4); ++k) {
-            const auto column = static_cast<Index>(k);
-            slopes_(0, column) = out.d[k - first];
-            for (std::size_t j = 0; j < part.states; ++j)
-              slopes_(static_cast<Index>(j) + 1, column) = dz[j].d[k - first];
-          }
-        }
-      },
-      part.dual);
-}
-
 void PlainField::jacobian(const State& x, std::span<const Mode> modes, std::span<const Input<double>> inputs,
-                          Eigen::MatrixXd& J) {
+                          std::span<ElementSlopes> slopes, Eigen::MatrixXd& J) {
   const std::size_t size = x.size();
   J.resize(static_cast<Index>(size), static_cast<Index>(size));
   double* const out = J.data();
@@ -188,7 +141,7 @@ void PlainField::jacobian(const State& x, std::span<const Mode> modes, std::span
     for (std::size_t r = 0; r < size; ++r) out[j * size + r] = r < n_ && j < n_ ? A_[j * n_ + r] : 0.0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Part& part = parts_[i];
-    differentiate(part, modes[i], inputs[i], x);
+    const auto& by_input = slopes[i].response(inputs[i], modes[i], x.data() + part.first);
     double* const by_x = input_gradient_.data();
     double* const by_v = rate_gradient_.data();
     for (std::size_t j = 0; j < size; ++j) {
@@ -203,7 +156,7 @@ void PlainField::jacobian(const State& x, std::span<const Mode> modes, std::span
     for (std::size_t j = 0; j < size; ++j) {
       const bool own = j >= part.first && j < part.first + part.states;
       const auto slope = [&](Index row) {
-        const double* const at = &slopes_(row, 0);
+        const double* const at = &by_input(row, 0);
         return at[0] * by_x[j] + at[1] * by_v[j] + (own ? at[2 + j - part.first] : 0.0);
       };
       const double w = slope(0);

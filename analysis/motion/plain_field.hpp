@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "limcycle/analysis/dual.hpp"
+#include "limcycle/analysis/motion/element_slopes.hpp"
 #include "limcycle/analysis/motion/state.hpp"
 #include "limcycle/models/loop.hpp"
 
@@ -22,41 +22,32 @@ class PlainField {
   /// Rates dx, outputs w and the inputs they come from. Cost of the linear part: n (n + 2 n_e) multiplications.
   void rate(const State& x, std::span<const Mode> modes, std::span<Input<double>> inputs, std::span<double> w,
             State& dx) const;
-  /// d(dx)/dx, exact. `inputs` must be those at x.
-  void jacobian(const State& x, std::span<const Mode> modes, std::span<const Input<double>> inputs, Eigen::MatrixXd& J);
-  /// The output that would hold the rate of element i's input, at the rates dx and the output w of that element;
-  /// +-infinite where none does.
-  double drive(std::size_t i, const State& dx, double w, const External& ext_rate) const;
+  /// d(dx)/dx, exact. `inputs` must be those at x; `slopes` belong to the elements of the loop, in order.
+  void jacobian(const State& x, std::span<const Mode> modes, std::span<const Input<double>> inputs,
+                std::span<ElementSlopes> slopes, Eigen::MatrixXd& J);
 
  private:
-  using DualS = Dual<4>;
   using Respond = double (*)(const Element<double>& element, const Input<double>& in, Mode mode,
                              std::span<const double> z, std::span<double> dz);
 
   /// One element, with its ports as whole rows: such loops have few states.
   struct Part {
     const Element<double>* element;
-    Element<DualS> dual;
     Respond respond;
     std::size_t first = 0, states = 0;      ///< of its own states in the state of the loop
     std::vector<double> B, C, C_v, D, D_v;  ///< B by linear states, D by elements before
     Eigen::RowVector4d c, c_v;
-    double reach = 0.0;                              ///< of its output on the rate of its velocity
     double input_outside = 0.0, rate_outside = 0.0;  ///< c ext, c_v ext
   };
   template <std::size_t N>
   void rate_sized(const State& x, std::span<const Mode> modes, std::span<Input<double>> inputs, std::span<double> w,
                   State& dx) const;
-  void differentiate(const Part& part, Mode mode, const Input<double>& in, const State& x);
 
   std::size_t n_;
   std::vector<double> A_;        ///< by columns
   std::vector<double> outside_;  ///< E ext
   Eigen::Matrix<double, Eigen::Dynamic, 4> E_;
   std::vector<Part> parts_;
-  std::vector<DualS> dual_z_, dual_dz_;
-  /// Of the present element: derivatives of its output, then of each of its rates, by x, v and its own states.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes_;
   Eigen::MatrixXd w_gradient_;  ///< of the outputs, by columns
   Eigen::VectorXd input_gradient_, rate_gradient_;
 };

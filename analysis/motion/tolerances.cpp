@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "limcycle/models/linear/dense.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -19,7 +21,7 @@ Scales scales_of(const Element<double>& element) {
 std::vector<double> pole_moduli(const Loop& loop) {
   std::vector<double> found;
   if (loop.states() == 0) return found;
-  const Eigen::VectorXd moduli = loop.tangent().eigenvalues().cwiseAbs();
+  const Eigen::VectorXd moduli = eigenvalues(loop.tangent()).cwiseAbs();
   for (const double modulus : moduli)
     if (modulus > 1e-9 * moduli.maxCoeff()) found.push_back(modulus);
   std::ranges::sort(found);

@@ -7,6 +7,7 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/orbit/shooting.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -33,7 +34,7 @@ MatrixXd bordered(const BranchJacobian& jacobian, const VectorXd& normal) {
 
 std::vector<std::complex<double>> sorted_multipliers(const MatrixXd& D) {
   if (D.size() == 0) return {};
-  const Eigen::VectorXcd values = D.eigenvalues();
+  const Eigen::VectorXcd values = eigenvalues(D);
   std::vector<std::complex<double>> result(values.begin(), values.end());
   std::ranges::sort(result, [](auto a, auto b) {
     return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
@@ -116,12 +117,12 @@ bool BranchSolver::converge(BranchSpot& spot, const VectorXd& normal, BranchJaco
       if (!differentiate(spot, loose_rtol(), Derivatives::rough, jacobian)) return false;
       ++refreshed;
     }
-    step = bordered(jacobian, normal).fullPivLu().solve(-b);
+    step = solve_fully_pivoted(bordered(jacobian, normal), -b);
     const bool wild = !step.allFinite() || step.head(m).norm() > 1.0;
     if (wild && refreshed == 0) {  // the Jacobian was too old
       if (!differentiate(spot, loose_rtol(), Derivatives::rough, jacobian)) return false;
       ++refreshed;
-      step = bordered(jacobian, normal).fullPivLu().solve(-b);
+      step = solve_fully_pivoted(bordered(jacobian, normal), -b);
     }
     if (!step.allFinite() || step.head(m).norm() > 1.0) return false;
     last = b.norm();
@@ -162,7 +163,7 @@ bool BranchSolver::complete(BranchSpot& spot, const VectorXd& normal, const Bran
   spot.jacobian.slope = near.slope;
   const auto loose = differentiate(spot, loose_rtol(), Derivatives::rough, spot.jacobian);
   const auto conclude = [&] {
-    spot.tangent = bordered(spot.jacobian, normal).fullPivLu().solve(VectorXd::Unit(m + 1, m));
+    spot.tangent = solve_fully_pivoted(bordered(spot.jacobian, normal), VectorXd::Unit(m + 1, m));
     if (!spot.tangent.allFinite() || spot.tangent.norm() == 0.0) return false;
     spot.tangent.normalize();
     spot.multipliers = sorted_multipliers(spot.jacobian.D);
@@ -182,8 +183,10 @@ bool BranchSolver::complete(BranchSpot& spot, const VectorXd& normal, const Bran
 void BranchSolver::polish(BranchSpot& spot, const BranchMap::Value& loose) const {
   const Index m = map_.dimension();
   const bool turns = std::abs(spot.tangent(m)) < 0.1;
-  const auto across = bordered(spot.jacobian, turns ? spot.tangent : VectorXd::Unit(m + 1, m)).fullPivLu();
-  const VectorXd left = across.solve(joined(-spot.value.r, 0.0)), other = across.solve(joined(-loose.r, 0.0));
+  const VectorXd normal = turns ? spot.tangent : VectorXd::Unit(m + 1, m);
+  const MatrixXd across =
+      solve_columns_fully_pivoted(bordered(spot.jacobian, normal), MatrixXd::Identity(m + 1, m + 1));
+  const VectorXd left = -across.leftCols(m) * spot.value.r, other = -across.leftCols(m) * loose.r;
   const auto corrected = [&](const BranchMap::Value& value, const VectorXd& by) {
     return std::pair(value.time + loose.time_slope * by.head(m), value.amplitude + loose.amplitude_slope * by.head(m));
   };
@@ -196,10 +199,11 @@ void BranchSolver::polish(BranchSpot& spot, const BranchMap::Value& loose) const
   spot.value.time = time;
   spot.value.amplitude = amplitude;
   spot.left = second_order;
-  const double floor = 1e-13 * across.inverse().cwiseAbs().rowwise().sum().maxCoeff();
+  const double floor = 1e-13 * across.cwiseAbs().rowwise().sum().maxCoeff();
   spot.s_error = share * std::abs(other(m) - left(m)) + second_order + floor;
   if (!turns) {
-    const VectorXd moved = bordered(spot.jacobian, spot.tangent).fullPivLu().solve(joined(loose.r - spot.value.r, 0.0));
+    const VectorXd moved =
+        solve_fully_pivoted(bordered(spot.jacobian, spot.tangent), joined(loose.r - spot.value.r, 0.0));
     spot.s_error += share * std::abs(moved(m));
   }
   const double difference = std::max(std::abs(loose_time / time - 1.0), std::abs(loose_amplitude / amplitude - 1.0));

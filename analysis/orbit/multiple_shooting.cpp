@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -115,9 +116,7 @@ class MultipleShooter {
     system.block(K * n, 0, 1, n) = as_vector(rate).cwiseQuotient(scale_).normalized().transpose();
     VectorXd right = VectorXd::Zero(K * n + 1);
     right.head(K * n) = -residual_;
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver;
-    solver.setThreshold(1e-10);
-    const VectorXd change = solver.compute(system).solve(right);
+    const VectorXd change = least_squares(system, right, 1e-10);
     const double before = residual_.norm();
     const auto kept = nodes_;
     const auto kept_segments = segments_;

@@ -1,6 +1,6 @@
 #include "limcycle/analysis/orbit/section_chart.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 
 namespace limcycle {
@@ -21,8 +21,12 @@ SectionChart::SectionChart(const Section& section, const State& largest, const S
   VectorXd normal = VectorXd::Zero(scale.size());
   normal.head(section.C.size()) = section.C.transpose();
   normal.array() *= scale.array();
-  const MatrixXd q = normal.householderQr().householderQ();
-  basis = q.rightCols(scale.size() - 1);
+  // The reflection that takes the normal to an axis takes the other axes to a basis of the plane.
+  VectorXd mirror = normal;
+  mirror(0) += normal(0) < 0.0 ? -normal.norm() : normal.norm();
+  const VectorXd twice = 2.0 / mirror.squaredNorm() * mirror;
+  basis = MatrixXd::Identity(scale.size(), scale.size()).rightCols(scale.size() - 1);
+  for (Index j = 0; j < basis.cols(); ++j) basis.col(j) -= twice(j + 1) * mirror;
 }
 
 State SectionChart::lift(const State& origin, const VectorXd& u) const {

@@ -9,6 +9,7 @@
 #include "limcycle/analysis/orbit/floquet.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/orbit/section_chart.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -186,16 +187,13 @@ class Shooter {
   }
 
   VectorXd newton_step(const VectorXd& r) const {
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> system;
-    system.setThreshold(1e-7);
     // What is kept stays as it is. In the chart the element states come last, as in the state.
     MatrixXd matrix = MatrixXd::Zero(r.size() + kept_.cols(), r.size());
     matrix.topRows(r.size()) = jacobian_ - MatrixXd::Identity(r.size(), r.size());
     matrix.bottomRightCorner(kept_.cols(), kept_.rows()) = kept_.transpose();
-    system.compute(matrix);
     VectorXd right = VectorXd::Zero(matrix.rows());
     right.head(r.size()) = r;
-    return -system.solve(right);
+    return -least_squares(matrix, right, 1e-7);
   }
 
   /// compare() by solving again at the loose tolerance.

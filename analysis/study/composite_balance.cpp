@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -146,7 +147,7 @@ std::optional<bool> CompositeBalance::stable(double frequency, Complex gain, int
   const Complex N = 1.0 / gain + mass_ * frequency * frequency;
   const double damping = N.imag() / frequency;
   const Eigen::RowVectorXd feedback = N.real() * port.C + damping * port.C_v;
-  const Eigen::VectorXcd roots = (loop_->A + loop_->B.col(f_) * feedback).eigenvalues();
+  const Eigen::VectorXcd roots = eigenvalues(loop_->A + loop_->B.col(f_) * feedback);
   for (const Complex& root : roots) {
     const bool own =
         std::abs(std::abs(root.imag()) - frequency) < 1e-3 * frequency && std::abs(root.real()) < 1e-3 * frequency;
@@ -165,11 +166,10 @@ LoopState CompositeBalance::state(const CompositeRoot& root) {
   const Complex F1 = x1 / loop_->element_response(w)(f_, f_);
   Eigen::MatrixXcd M = Complex(0.0, w) * Eigen::MatrixXcd::Identity(n, n) - loop_->A.cast<Complex>();
   if (loop_->delay > 0.0) M -= std::exp(Complex(0.0, -w * loop_->delay)) * loop_->A_delayed.cast<Complex>();
-  const Eigen::VectorXcd X = M.partialPivLu().solve(loop_->B.col(f_).cast<Complex>() * F1);
+  const Eigen::VectorXcd X = limcycle::solve(M, loop_->B.col(f_).cast<Complex>() * F1);
   const Eigen::VectorXd pull = loop_->E * loop_->external + loop_->B.col(f_) * root.bias;
   LoopState state{std::vector<double>(field.size(), 0.0), std::vector<Mode>(1)};
-  Eigen::Map<Eigen::VectorXd>(state.x.data(), n) =
-      X.imag() + (loop_->A + loop_->A_delayed).completeOrthogonalDecomposition().solve(-pull);
+  Eigen::Map<Eigen::VectorXd>(state.x.data(), n) = X.imag() + least_squares(loop_->A + loop_->A_delayed, -pull);
   if (!root.on_break_away_front && r.status == Status::converged)
     for (std::size_t k = 1; k < r.start.size(); ++k) state.x[field.first_state(0) + k - 1] = r.start[k];
   field.modes() = state.modes;

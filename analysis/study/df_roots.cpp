@@ -1,10 +1,10 @@
 #include "limcycle/analysis/study/df_roots.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -28,7 +28,7 @@ class Search {
  private:
   std::vector<double> undamped_poles() const {
     std::vector<double> found;
-    for (const auto& pole : loop_.A.eigenvalues())
+    for (const auto& pole : eigenvalues(loop_.A))
       if (pole.imag() > 0.0 && std::abs(pole.real()) < 1e-9 * pole.imag()) found.push_back(pole.imag());
     std::ranges::sort(found);
     return found;
@@ -59,7 +59,7 @@ class Search {
     // Each sample of a law of many states takes long; a root is polished to the fine accuracy in any case.
     if (std::visit([](const auto& e) { return e.states(); }, loop_.elements[balance_.main_element()]) > 2)
       options.coarse_accuracy = 1e-4;
-    for (const auto& pole : loop_.tangent().eigenvalues())
+    for (const auto& pole : eigenvalues(loop_.tangent()))
       if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)
         options.frequency_hints.push_back(std::abs(pole));
     // The phase of a delay must not turn by more than about 0.7 between two samples.

@@ -7,6 +7,7 @@
 #include "limcycle/analysis/frequency/describing_function.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
 #include "limcycle/analysis/orbit/return_map.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -250,7 +251,7 @@ std::optional<bool> LoopBalance::stable(double amplitude, double frequency, int 
   const Complex N = gain(amplitude, frequency, 1e-9);
   const double damping = N.imag() / frequency;
   const Eigen::RowVectorXd feedback = (N.real() * port.C + damping * port.C_v) / (1.0 - damping * port.D_v(0));
-  const Eigen::VectorXcd roots = (loop_->A + loop_->B * feedback).eigenvalues();
+  const Eigen::VectorXcd roots = eigenvalues(loop_->A + loop_->B * feedback);
   for (const Complex& root : roots) {
     const bool own =
         std::abs(std::abs(root.imag()) - frequency) < 1e-3 * frequency && std::abs(root.real()) < 1e-3 * frequency;
@@ -264,7 +265,7 @@ Eigen::VectorXd LoopBalance::linear_state(double amplitude, double frequency, do
   const Eigen::VectorXcd W = outputs(amplitude, frequency, 1e-9);
   Eigen::MatrixXcd M = Complex(0.0, frequency) * Eigen::MatrixXcd::Identity(n, n) - loop_->A.cast<Complex>();
   if (loop_->delay > 0.0) M -= std::exp(Complex(0.0, -frequency * loop_->delay)) * loop_->A_delayed.cast<Complex>();
-  const Eigen::VectorXcd X = M.partialPivLu().solve(loop_->B.cast<Complex>() * W) * std::polar(1.0, phase);
+  const Eigen::VectorXcd X = solve(M, loop_->B.cast<Complex>() * W) * std::polar(1.0, phase);
   bool exact = false;
   return scale * X.imag() + mean_state(amplitude, frequency, 1e-9, exact);
 }

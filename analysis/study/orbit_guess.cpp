@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 
@@ -45,12 +46,12 @@ Eigen::VectorXd linear_states(const Loop& loop, const HarmonicBalance& balance, 
     return W;
   };
   const Eigen::VectorXd pull = loop.E * loop.external + loop.B * output(0).imag();
-  Eigen::VectorXd x = loop.A.completeOrthogonalDecomposition().solve(-pull);
+  Eigen::VectorXd x = least_squares(loop.A, -pull);
   for (int order = 1; order <= balance.harmonics; ++order) {
     const Complex s(0.0, order * balance.frequency);
     const Eigen::MatrixXcd M = s * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<Complex>();
     const Complex turn = std::polar(1.0, order * phase) * std::exp(-s * late);
-    x += (M.partialPivLu().solve(loop.B.cast<Complex>() * output(order)) * turn).imag();
+    x += (solve(M, loop.B.cast<Complex>() * output(order)) * turn).imag();
   }
   return x;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "limcycle/models/linear/dense.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -72,7 +74,7 @@ Polynomial product(const Polynomial& a, const Polynomial& b) {
 Eigen::MatrixXcd StateSpace::at(std::complex<double> s) const {
   if (states() == 0) return D.cast<Complex>();
   const Eigen::MatrixXcd resolvent = s * Eigen::MatrixXcd::Identity(states(), states()) - A.cast<Complex>();
-  return C.cast<Complex>() * resolvent.partialPivLu().solve(B.cast<Complex>()) + D.cast<Complex>();
+  return C.cast<Complex>() * solve_columns(resolvent, B.cast<Complex>()) + D.cast<Complex>();
 }
 
 StateSpace realise(std::span<const double> numerator, std::span<const double> denominator) {

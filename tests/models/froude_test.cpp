@@ -10,30 +10,12 @@ using namespace limcycle::test;
 
 namespace {
 
-FroudePendulum pendulum(double shaft_speed) {
-  FroudePendulum p;
-  p.mass = 5.0;
-  p.arm = 0.2;
-  p.inertia = 0.25;
-  p.damping = 0.005;
-  p.shaft_radius = 0.02;
-  p.shaft_speed = shaft_speed;
-  return p;
-}
-
-LoopParts parts_of(const FroudePendulum& p) {
-  LoopParts parts;
-  parts.plant = p;
-  parts.friction = lugre();
-  return parts;
-}
-
 constexpr double weight = 5.0 * 9.81 * 0.2;  // N m
 
 }  // namespace
 
 TEST_CASE("Froude pendulum: gravity and friction are its two elements, friction last") {
-  const Loop loop = build_loop(parts_of(pendulum(4.0)));
+  const Loop loop = build_loop(parts_of(froude_pendulum(4.0)));
   REQUIRE(loop.elements.size() == 2);
   CHECK(loop.ports[0].path == "loop.plant.gravity");
   CHECK(loop.ports[1].path == "loop.friction");
@@ -49,7 +31,7 @@ TEST_CASE("Froude pendulum: gravity and friction are its two elements, friction 
 }
 
 TEST_CASE("Froude pendulum: without gravity it is a wheel on a shaft, with one element") {
-  FroudePendulum p = pendulum(4.0);
+  FroudePendulum p = froude_pendulum(4.0);
   p.gravity = 0.0;
   CHECK(build_loop(parts_of(p)).elements.size() == 1);
 }
@@ -67,7 +49,7 @@ TEST_CASE("Froude pendulum: a shaft that turns drives the way it turns") {
 }
 
 TEST_CASE("Froude pendulum: at rest gravity holds the load where the sine says, and no more than its own torque") {
-  auto parts = parts_of(pendulum(0.0));
+  auto parts = parts_of(froude_pendulum(0.0));
   for (const double share : {0.0, 0.1, -0.7, 0.999, 0.9999999}) {
     parts.load = share * weight;
     bool exact = false;
@@ -85,7 +67,7 @@ TEST_CASE("Froude pendulum: at rest gravity holds the load where the sine says, 
 }
 
 TEST_CASE("Froude pendulum: the mean of a swing is where the mean of the sine balances") {
-  auto parts = parts_of(pendulum(0.0));
+  auto parts = parts_of(froude_pendulum(0.0));
   parts.load = 1.0;
   const Loop loop = build_loop(parts);
   for (const double swing : {0.0, 0.5, 1.5}) {
@@ -120,7 +102,7 @@ TEST_CASE("gravity: describing function against sums over a period") {
 }
 
 TEST_CASE("Froude pendulum: poles are those of the hanging pendulum, and of a servo that holds it") {
-  auto parts = parts_of(pendulum(4.0));
+  auto parts = parts_of(froude_pendulum(4.0));
   const Eigen::VectorXcd poles = build_loop(parts).tangent().eigenvalues();
   CHECK(poles.cwiseAbs().maxCoeff() == Approx(std::sqrt(weight / 0.25)));
   parts.controller = pid(20.0, 30.0, 5.0);
@@ -136,7 +118,7 @@ TEST_CASE("Froude pendulum: poles are those of the hanging pendulum, and of a se
 }
 
 TEST_CASE("Froude pendulum: a loop refuses clearance and says where it is treated") {
-  FroudePendulum p = pendulum(4.0);
+  FroudePendulum p = froude_pendulum(4.0);
   p.clearance = 1e-4;
   const auto broken = validate(parts_of(p));
   REQUIRE(broken);

@@ -47,20 +47,6 @@ Loop limited_servo() {
   return build_loop(parts);
 }
 
-Loop pendulum() {
-  LoopParts parts;
-  FroudePendulum plant;
-  plant.mass = 1.0;
-  plant.arm = 0.3;
-  plant.inertia = 0.1;
-  plant.damping = 0.05;
-  plant.shaft_radius = 0.02;
-  plant.shaft_speed = 8.0;
-  parts.plant = plant;
-  parts.friction = lugre();
-  return build_loop(parts);
-}
-
 Gms<double> three_sliders() {
   auto law = with_levels<Gms<double>>(1.5, 1.0);
   law.vs = 1e-3;
@@ -75,7 +61,8 @@ Gms<double> three_sliders() {
 TEST_CASE("plain field: rates, Jacobian, inputs and guards are those of the general way") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
-  for (const Loop& loop : {servo(lugre()), limited_servo(), pendulum(), servo(three_sliders()), belt(lugre())}) {
+  for (const Loop& loop : {servo(lugre()), limited_servo(), build_loop(parts_of(froude_pendulum(8.0))),
+                           servo(three_sliders()), belt(lugre())}) {
     REQUIRE(PlainField::applies(loop));
     const Loop longer = with_idle_relay(loop);
     REQUIRE_FALSE(PlainField::applies(longer));

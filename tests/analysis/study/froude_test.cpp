@@ -17,30 +17,12 @@ namespace {
 
 using Complex = std::complex<double>;
 
-FroudePendulum pendulum(double shaft_speed) {
-  FroudePendulum p;
-  p.mass = 5.0;
-  p.arm = 0.2;
-  p.inertia = 0.25;
-  p.damping = 0.005;
-  p.shaft_radius = 0.02;
-  p.shaft_speed = shaft_speed;
-  return p;
-}
-
 LuGre<double> friction(double sigma0, double sigma1) {
   auto law = lugre(17.0, 7.4, 1.0);
   law.vs = 0.1;
   law.sigma0 = sigma0;
   law.sigma1 = sigma1;
   return law;
-}
-
-LoopParts parts_of(const FroudePendulum& p, const LuGre<double>& law) {
-  LoopParts parts;
-  parts.plant = p;
-  parts.friction = law;
-  return parts;
 }
 
 /// Dynamic damping of LuGre friction sliding at v, at s (claim B10).
@@ -54,7 +36,7 @@ struct Onset {
   double speed, frequency, angle;
 };
 Onset onset(const LuGre<double>& law, double low, double high) {
-  const FroudePendulum p = pendulum(0.0);
+  const FroudePendulum p = froude_pendulum(0.0);
   const double weight = p.mass * p.gravity * p.arm, r = p.shaft_radius;
   Onset found{};
   for (int i = 0; i < 60; ++i) {
@@ -74,7 +56,7 @@ Onset onset(const LuGre<double>& law, double low, double high) {
 
 /// Growth rate of small swings about steady sliding, 1/s, from the extremes of two stretches of a simulation.
 double growth(const LuGre<double>& law, const Onset& at, double speed) {
-  const Loop loop = build_loop(parts_of(pendulum(speed), law));
+  const Loop loop = build_loop(parts_of(froude_pendulum(speed), law));
   const double v = 0.02 * speed;
   SimulateOptions options;
   options.duration = 60.0;
@@ -117,7 +99,7 @@ TEST_CASE("Froude pendulum: self-excitation begins where the dynamic damping van
 }
 
 TEST_CASE("Froude pendulum: every start leads to the one swing, which the describing function confirms") {
-  const Loop loop = build_loop(parts_of(pendulum(4.0), friction(1e5, 100.0)));
+  const Loop loop = build_loop(parts_of(froude_pendulum(4.0), friction(1e5, 100.0)));
   CHECK_FALSE(LoopBalance::not_applicable(loop));
   PredictOptions options;
   options.search = SearchBox{5e-3, 0.03, 5.0, 8.0};
@@ -137,7 +119,7 @@ TEST_CASE("Froude pendulum: every start leads to the one swing, which the descri
 
 TEST_CASE("Froude pendulum: the balance of gravity and friction is solved by its own oscillation") {
   // N of both and the mean angle put back: J (jw)^2 + c jw + N_gravity + radius^2 N_friction = 0.
-  const Loop loop = build_loop(parts_of(pendulum(4.0), friction(1e5, 100.0)));
+  const Loop loop = build_loop(parts_of(froude_pendulum(4.0), friction(1e5, 100.0)));
   const LoopBalance balance(loop);
   const double A = 0.0125, w = 6.1, angle = A / 0.02;
   const Complex N = balance.gain(A, w, 1e-9), s(0.0, w);
