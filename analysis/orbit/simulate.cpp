@@ -149,7 +149,8 @@ class Running {
     const double level = watch_->level();
     if (step.y0 < level && step.y1 >= level) watch_->crossed(step);
     if ((field_.y_rate(march.last().dx0) < 0.0) != (field_.y_rate(march.last().dx1) < 0.0)) watch_->turned(step);
-    if (march.t() >= watch_->next_look()) watch_->look(march.t(), dx_, field_.input(loop_.elements.size() - 1).v);
+    if (march.t() >= watch_->next_look())
+      watch_->look(march.t(), march.x(), dx_, field_.input(loop_.elements.size() - 1).v);
   }
 
   void trace(const State& x, double t) {
