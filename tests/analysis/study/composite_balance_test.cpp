@@ -157,6 +157,15 @@ TEST_CASE("composite balance: a wish to stop is obeyed, bad options are refused 
   CompositeSearchOptions options = range(0.01, 100.0);
   options.stop = [] { return true; };
   CHECK(balance.find(options).status == Status::interrupted);
+  // Obeyed within the work of one response too, not only between them.
+  long asked = 0;
+  options.stop = [&asked] { return ++asked > 100; };
+  const auto stopped = balance.find(options);
+  CHECK(stopped.status == Status::interrupted);
+  CHECK(stopped.steps < 100 * 256 + 1000);
+  CHECK(asked < 1000);
+  options.stop = {};
+  CHECK(balance.find(options).status != Status::interrupted);  // and forgotten
   CHECK_THROWS_WITH(balance.find(range(0.0, 1.0)), Catch::Contains("frequency_min"));
   CHECK_THROWS_WITH(balance.find(range(2.0, 1.0)), Catch::Contains("frequency_max"));
   options = range(0.01, 1.0);
