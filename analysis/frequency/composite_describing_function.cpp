@@ -151,6 +151,7 @@ double CompositeDescribingFunction::break_away_bias(double force, double frequen
   }
   while (high - low > relative * level) {
     const double middle = 0.5 * (low + high);
+    if (!(middle > low && middle < high)) break;  // no number between: far out, where a wish to stop may lead
     (loose(middle) ? high : low) = middle;
   }
   return side * 0.5 * (low + high);

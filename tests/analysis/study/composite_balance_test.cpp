@@ -151,6 +151,18 @@ TEST_CASE("composite balance: stick-slip on a belt has a bias") {
   CHECK(root.frequency == Approx(0.8255).epsilon(0.3));
 }
 
+TEST_CASE("composite balance: a wish to stop is obeyed on a belt too, wherever it comes") {
+  const Loop loop = test::belt(test::lugre());
+  CompositeBalance balance(loop);
+  for (const long after : {1L, 30L, 1000L}) {  // in the search of a break-away bias, in a response, ...
+    CompositeSearchOptions options = range(0.1, 10.0);
+    long asked = 0;
+    options.stop = [&asked, after] { return ++asked > after; };
+    CHECK(balance.find(options).status == Status::interrupted);
+    CHECK(asked < after + 50000);
+  }
+}
+
 TEST_CASE("composite balance: a wish to stop is obeyed, bad options are refused by name") {
   const Loop loop = test::servo(test::lugre());
   CompositeBalance balance(loop);
