@@ -19,6 +19,7 @@ CaseNumber read_path(const Section& section, const std::vector<CaseNumber>& numb
   const auto found = std::ranges::find(numbers, path, &CaseNumber::path);
   if (found == numbers.end()) {
     std::vector<std::string> paths;
+    paths.reserve(numbers.size());
     for (const auto& one : numbers) paths.push_back(one.path);
     throw place.error("is not a parameter of this loop that is one number", suggest(path, paths));
   }
