@@ -7,7 +7,8 @@
 namespace limcycle {
 namespace {
 
-/// Sections of commands of later versions: they do not change the loop, so that one case file serves every version.
+/// Sections that a lone element has no use for, or of commands of later versions: they do not change the loop, so that
+/// one case file serves every command and version.
 const std::vector<std::string> foreign_tables = {"sensitivity", "dissipativity"};
 
 void check_foreign(const case_file::Section& top) {
@@ -40,6 +41,8 @@ Case read_document(const case_file::Document& document) {
     result.simulate = case_file::read_simulate(*simulate, state_names(build_loop(*result.loop)));
   }
   check_foreign(top);
+  if (const auto sensitivity = top.section("sensitivity"); sensitivity && result.loop)
+    result.sensitivity = case_file::read_sensitivity(*sensitivity, result);
   return result;
 }
 

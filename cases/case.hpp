@@ -5,6 +5,7 @@
 
 #include "limcycle/analysis/frequency/describing_function.hpp"
 #include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/study/parameter_spread.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 #include "limcycle/cases/input_error.hpp"
 #include "limcycle/models/loop.hpp"
@@ -36,7 +37,8 @@ struct Case {
 
   std::optional<DfSection> df;
   std::optional<SimulateOptions> simulate;  ///< duration, initial, force, reference, stepper, rtol, sample are set
-  PredictOptions predict;                   ///< search (from [search]), starts and accuracy are set
+  std::optional<ParameterSpread> sensitivity;
+  PredictOptions predict;  ///< search (from [search]), starts and accuracy are set
 };
 
 /// Bytes that a case file may have.

@@ -64,16 +64,27 @@ CaseNumber number_at(const Case& from, const std::string& flag, const std::strin
                     .suggestion = suggest(path, paths)});
 }
 
-std::optional<Loop> loop_with(const Case& from, const std::string& path, double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  const std::string number = text;
+std::optional<LoopParts> parts_with(const Case& from, std::span<const std::pair<std::string, double>> values) {
   auto overrides = from.overrides;
-  overrides.push_back(path + "=" + number + (number.find_first_of(".en") == std::string::npos ? ".0" : ""));
+  for (const auto& [path, value] : values) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    const std::string number = text;
+    overrides.push_back(path + "=" + number + (number.find_first_of(".en") == std::string::npos ? ".0" : ""));
+  }
   try {
-    return build_loop(need_loop(read_case(from.text, from.file, overrides)));
+    return need_loop(read_case(from.text, from.file, overrides));
   } catch (const InputError&) {
     return std::nullopt;
+  }
+}
+
+std::optional<Loop> loop_with(const Case& from, const std::string& path, double value) {
+  const std::pair<std::string, double> change(path, value);
+  const auto parts = parts_with(from, std::span(&change, 1));
+  if (!parts) return std::nullopt;
+  try {
+    return build_loop(*parts);
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }

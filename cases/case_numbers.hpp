@@ -1,7 +1,9 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limcycle/cases/case.hpp"
@@ -22,6 +24,10 @@ std::vector<CaseNumber> numbers_of(const Case& from);
 
 /// The number at a path. Throws InputError (of `flag`, such as "--parameter") if there is none.
 CaseNumber number_at(const Case& from, const std::string& flag, const std::string& path);
+
+/// The parts of the case's loop with other values at some paths, read as `--set` would; empty where that is not a valid
+/// case.
+std::optional<LoopParts> parts_with(const Case& from, std::span<const std::pair<std::string, double>> values);
 
 /// The case's loop with another value at a path, read as `--set` would; empty where that is not a valid case.
 std::optional<Loop> loop_with(const Case& from, const std::string& path, double value);

@@ -16,6 +16,9 @@ void read_predict(const Section& section, Case& into);
 /// [simulate]; `states`: the names that `initial` may use.
 SimulateOptions read_simulate(const Section& section, const std::vector<std::string>& states);
 
+/// [sensitivity]; `from`: the case, of which the loop has been read.
+ParameterSpread read_sensitivity(const Section& section, const Case& from);
+
 /// A signal of time: a number (constant) or {kind = "step"|"ramp"|"sine"|"zigzag"|"table", ...}.
 Signal read_signal(const Place& place);
 

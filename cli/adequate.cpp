@@ -1,13 +1,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <span>
 
+#include "limcycle/cases/case_numbers.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/adequate.hpp"
+#include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
@@ -16,6 +19,7 @@ struct AdequateFlags : CommonFlags {
   std::string html;         ///< --html
   double tolerance = 0.05;  ///< --tolerance
   double spread = 0.1;      ///< --spread
+  bool own_spread = false;  ///< --spread was given, so that [sensitivity] does not count
 };
 
 /// The loop of a case with friction. Throws InputError where there is none.
@@ -31,6 +35,29 @@ const LoopParts& need_friction(const Case& from) {
                     .suggestion = "`limcycle precision` compares methods on any loop"});
 }
 
+/// "friction.Fs = 1.4, controller.kd = 5"
+std::string name_of(std::span<const std::pair<std::string, double>> values) {
+  std::string name;
+  for (const auto& [path, value] : values)
+    name += (name.empty() ? "" : ", ") + path.substr(path.find('.') + 1) + " = " + with_digits(value, 4);
+  return name;
+}
+
+/// The middle and some corners of the spread in [sensitivity]; `left_out`: those that are no valid case.
+void spread_of_case(const Case& from, AdequateOptions& options, std::vector<std::string>& left_out) {
+  const auto points = corner_points(*from.sensitivity);
+  options.spread_rule = "the middle and " + std::to_string(points.size() - 1) + " corners of [sensitivity]";
+  options.spread = 0.0;
+  for (const auto& point : points) {
+    std::vector<std::pair<std::string, double>> values;
+    for (std::size_t i = 0; i < point.size(); ++i) values.emplace_back(from.sensitivity->parameters[i].path, point[i]);
+    if (auto parts = parts_with(from, values); parts && parts->friction)
+      options.variations.push_back({name_of(values), std::move(*parts)});
+    else
+      left_out.push_back(name_of(values) + ": no valid case, left out");
+  }
+}
+
 AdequateReport compute(const Case& from, const LoopParts& parts, const AdequateFlags& flags) {
   Progress progress(flags.quiet);
   AdequateOptions options;
@@ -40,8 +67,12 @@ AdequateReport compute(const Case& from, const LoopParts& parts, const AdequateF
   options.predict.starts = std::min(options.predict.starts, 2);
   options.predict.stop = interrupted;
   options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
+  std::vector<std::string> left_out;
+  if (from.sensitivity && !flags.own_spread) spread_of_case(from, options, left_out);
   catch_interrupts();
-  return adequate(parts, options);
+  AdequateReport report = adequate(parts, options);
+  report.notes.insert(report.notes.end(), left_out.begin(), left_out.end());
+  return report;
 }
 
 int run(AdequateFlags flags) {
@@ -77,10 +108,17 @@ void add_adequate(CLI::App& program, Action& action) {
       ->type_name("X")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
-  command->add_option("--spread", flags->spread, "By how much each number of the law may be off; 0: not at all")
+  command
+      ->add_option_function<double>(
+          "--spread",
+          [flags](double share) {
+            flags->spread = share;
+            flags->own_spread = true;
+          },
+          "By how much each number of the law may be off, in place of the case's [sensitivity] [0.1 without one]; "
+          "0: not at all")
       ->type_name("X")
-      ->check(CLI::Range(0.0, 0.9))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 0.9));
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
 }

@@ -12,27 +12,46 @@
 namespace limcycle {
 namespace {
 
-int run(CommonFlags flags) {
+struct SimulateFlags : CommonFlags {
+  bool no_check = false;  ///< --no-check
+};
+
+/// The run, and what a second one at other tolerances says of it, if that is wanted and there was time for it.
+struct Answered {
+  Simulation run;
+  std::optional<Agreement> second;
+};
+
+Answered compute(const Case& from, const SimulateFlags& flags) {
+  Progress progress(flags.quiet);
+  const Loop loop = build_loop(*from.loop);
+  SimulateOptions options = need_simulate(from);
+  const double share = flags.no_check ? 1.0 : 0.4;
+  options.stop = interrupted;
+  options.progress = [&](double fraction) { progress.show(share * fraction, "simulation"); };
+  catch_interrupts();
+  Answered result{simulate(loop, options), {}};
+  if (flags.no_check || result.run.status != Status::converged) return result;
+  options.progress = [&](double fraction) { progress.show(share + (1.0 - share) * fraction, "at other tolerances"); };
+  const Agreement second = agreement(loop, options, result.run);
+  if (second.status != Status::interrupted) result.second = second;
+  return result;
+}
+
+int run(SimulateFlags flags) {
   // The result of a run is its samples: -o is where they go, the summary stays on stdout.
   if (flags.csv.empty()) flags.csv = std::exchange(flags.output, {});
   const Case from = load_case(flags);
-  SimulateOptions options = need_simulate(from);
+  need_simulate(from);
   Output output(flags);
-
-  Simulation result;
-  {
-    Progress progress(flags.quiet);
-    options.stop = interrupted;
-    options.progress = [&](double fraction) { progress.show(fraction, "simulation"); };
-    catch_interrupts();
-    result = simulate(build_loop(*from.loop), options);
-  }
-  std::string text = simulate_text(from.title, result);
+  const auto [result, second] = compute(from, flags);
+  std::string text = simulate_text(from.title, result, second);
   if (!output.wants_csv() && !output.wants_json()) text += "\nThe samples: --csv FILE, --csv - or -o FILE.\n";
   output.text(text);
-  if (output.wants_json()) output.json(simulate_json(provenance(flags, &from), result));
+  if (output.wants_json()) output.json(simulate_json(provenance(flags, &from), result, second));
   if (output.wants_csv()) output.csv(simulate_csv(result));
   output.finish();
+  if (second && !second->agrees && !flags.quiet) std::cerr << "limcycle: " << agreement_in_words(*second) << '\n';
   if (result.status == Status::converged) return exit_done;
   if (!flags.quiet) std::cerr << "limcycle: " << (result.why.empty() ? to_string(result.status) : result.why) << '\n';
   return result.status == Status::interrupted && !result.rows.empty() ? exit_done : exit_no_answer;
@@ -41,9 +60,10 @@ int run(CommonFlags flags) {
 }  // namespace
 
 void add_simulate(CLI::App& program, Action& action) {
-  const auto flags = std::make_shared<CommonFlags>();
-  add_command(program, action, "simulate", "Time-domain run from a given state, as CSV", true, flags,
-              [flags] { return run(*flags); });
+  const auto flags = std::make_shared<SimulateFlags>();
+  CLI::App* command = add_command(program, action, "simulate", "Time-domain run from a given state, as CSV", true,
+                                  flags, [flags] { return run(*flags); });
+  command->add_flag("--no-check", flags->no_check, "Do not check the run by a second one at tighter tolerances");
 }
 
 }  // namespace limcycle

@@ -52,8 +52,8 @@ std::string adequate_page(const AdequateReport& report, const Provenance& proven
   }
   body += "<h2>Rules</h2>\n" + html_table(rule_table(report), "How the parameters of each law follow");
   if (!report.spread.empty()) {
-    std::string spread = "Spread, one at a time: ";
-    for (const auto& one : report.spread) spread += (&one == report.spread.data() ? "" : ", ") + one;
+    std::string spread = "Spread: " + report.spread_rule + ": ";
+    for (const auto& one : report.spread) spread += (&one == report.spread.data() ? "" : "; ") + one;
     body += html_tag("p", spread + ".");
   }
   body += html_notes(report.notes);

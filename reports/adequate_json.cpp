@@ -52,6 +52,7 @@ std::string adequate_json(const Provenance& provenance, const AdequateReport& re
   top["points"] = Json::array();
   for (const auto& point : report.points) top["points"].push_back(point_json(point));
   top["spread"] = report.spread;
+  top["spread_rule"] = report.spread_rule;
   top["notes"] = report.notes;
   top["why"] = report.why;
   top["status"] = to_string(report.status);

@@ -157,8 +157,8 @@ std::string adequate_text(const std::string& title, const AdequateReport& report
   for (const auto& law : report.laws) out += item(law.name, 20, law.rule);
   if (!report.spread.empty()) {
     std::string spread;
-    for (const auto& one : report.spread) spread += (spread.empty() ? "" : ", ") + one;
-    out += "\nSpread, one at a time\n" + wrapped(spread, 80, 2);
+    for (const auto& one : report.spread) spread += (spread.empty() ? "" : "; ") + one;
+    out += "\n" + wrapped("Spread: " + report.spread_rule) + wrapped(spread, 80, 2);
   }
   out += notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));

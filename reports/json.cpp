@@ -20,6 +20,22 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+Json agreement_json(const Agreement& second) {
+  return {{"rtol", second.rtol},
+          {"agrees", second.agrees},
+          {"verdict_agrees", second.verdict_agrees},
+          {"outcome", to_string(second.outcome)},
+          {"period_difference", number(second.period_difference)},
+          {"amplitude_difference", number(second.amplitude_difference)},
+          {"position_difference", number(second.position_difference)},
+          {"end_difference", number(second.end_difference)},
+          {"phase_drift", number(second.phase_drift)},
+          {"parted", number(second.parted)},
+          {"steps", second.steps},
+          {"status", to_string(second.status)},
+          {"why", second.why}};
+}
+
 std::string text_of(const std::string& command, const Provenance& provenance, const Json& body) {
   return json_document(command, provenance, body.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
@@ -168,7 +184,7 @@ std::string predict_json(const Provenance& provenance, const PredictReport& repo
   return text_of("predict", provenance, top);
 }
 
-std::string simulate_json(const Provenance& provenance, const Simulation& run) {
+std::string simulate_json(const Provenance& provenance, const Simulation& run, const std::optional<Agreement>& second) {
   Json top;
   top["columns"] = run.columns;
   top["rows"] = Json::array();
@@ -179,6 +195,10 @@ std::string simulate_json(const Provenance& provenance, const Simulation& run) {
   }
   top["events"] = Json::array();
   for (const auto& event : run.events) top["events"].push_back({{"t", number(event.t)}, {"what", event.what}});
+  top["outcome"] = to_string(run.outcome);
+  top["period"] = run.outcome == Outcome::cycle ? number(run.period) : Json(nullptr);
+  top["amplitude"] = run.outcome == Outcome::cycle ? number(run.amplitude) : Json(nullptr);
+  top["agreement"] = second ? agreement_json(*second) : Json(nullptr);
   top["stepper"] = run.stepper;
   top["steps"] = run.steps;
   top["status"] = to_string(run.status);

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "limcycle/analysis/frequency/describing_function.hpp"
-#include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/orbit/agreement.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 #include "limcycle/reports/provenance.hpp"
 
@@ -21,6 +21,8 @@ std::string df_json(const Provenance& provenance, const std::vector<DfPoint>& po
 
 std::string predict_json(const Provenance& provenance, const PredictReport& report);
 
-std::string simulate_json(const Provenance& provenance, const Simulation& run);
+/// `second`: what a run of other tolerances says; "agreement" is null without one.
+std::string simulate_json(const Provenance& provenance, const Simulation& run,
+                          const std::optional<Agreement>& second = std::nullopt);
 
 }  // namespace limcycle

@@ -26,13 +26,37 @@ Table ranges(const Simulation& run) {
   return table;
 }
 
+std::string outcome_in_words(const Simulation& run) {
+  if (run.outcome == Outcome::cycle)
+    return fmt::format("It settles on a cycle of period {} s and amplitude {}.", with_error(run.period, cycle_accuracy),
+                       with_error(run.amplitude, cycle_accuracy));
+  if (run.outcome == Outcome::undecided) return {};
+  return fmt::format("It comes to {}.", to_string(run.outcome));
+}
+
 }  // namespace
 
-std::string simulate_text(const std::string& title, const Simulation& run) {
+std::string agreement_in_words(const Agreement& second) {
+  const std::string other = fmt::format("a second run with rtol = {}", as_error(second.rtol));
+  if (!second.agrees)
+    return fmt::format("Warning: {} disagrees: {}. {}.", other, second.why,
+                       second.rtol < 1e-11 ? "No tolerance settles it: the motion may be chaotic"
+                                           : fmt::format("Try --set simulate.rtol={}", as_error(second.rtol)));
+  std::string out = fmt::format("Agrees with {}: y at like phase to {} of its range, the times of its swings to {} s",
+                                other, as_error(second.position_difference), as_error(second.phase_drift));
+  if (std::isfinite(second.period_difference))
+    out += fmt::format("; period to {}, amplitude to {}", as_error(second.period_difference),
+                       as_error(second.amplitude_difference));
+  return out + ".";
+}
+
+std::string simulate_text(const std::string& title, const Simulation& run, const std::optional<Agreement>& second) {
   std::string out = wrapped(title) + "\n";
   out += fmt::format("{} samples, {} steps of {}", run.rows.size(), run.steps, run.stepper);
   out += run.status == Status::converged ? ".\n" : fmt::format("; ended early: {}.\n", to_string(run.status));
   if (!run.why.empty()) out += wrapped(run.why);
+  if (const auto outcome = outcome_in_words(run); !outcome.empty()) out += wrapped(outcome);
+  if (second) out += wrapped(agreement_in_words(*second));
   if (!run.rows.empty()) out += "\n" + ranges(run).text();
   std::map<std::string, std::size_t> kinds;
   for (const auto& event : run.events) ++kinds[event.what];

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "limcycle/analysis/frequency/describing_function.hpp"
-#include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/orbit/agreement.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
@@ -20,8 +20,13 @@ std::string df_text(const std::string& title, const std::vector<DfPoint>& points
                     const std::vector<DescribingFunction>& results);
 inline constexpr std::size_t longest_table = 200;
 
-/// Summary of a run: how it ended, the range of each column, the located events.
-std::string simulate_text(const std::string& title, const Simulation& run);
+/// Summary of a run: how it ended, what the motion comes to, whether a second run agrees (if there was one), the range
+/// of each column, the located events.
+std::string simulate_text(const std::string& title, const Simulation& run,
+                          const std::optional<Agreement>& second = std::nullopt);
+
+/// What a second run says of `run`, one or two sentences; begins with "Warning" where they disagree.
+std::string agreement_in_words(const Agreement& second);
 
 /// The tables of predict_text, for other formats.
 Table cycle_table(const PredictReport& report, const Units& units);

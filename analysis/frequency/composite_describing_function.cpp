@@ -17,6 +17,7 @@ struct CompositeDescribingFunction::Solver {
                                   const CompositeResponse* near) = 0;
   virtual bool tears_loose(double force, double frequency) = 0;
   virtual bool tears_loose(double bias, double force, double frequency, double direction) = 0;
+  virtual void stop_with(std::function<bool()> stop) = 0;
   virtual bool has_front() const = 0;
   virtual double level() const = 0;
 };
@@ -42,6 +43,7 @@ class SolverOf : public CompositeDescribingFunction::Solver {
   bool tears_loose(double bias, double force, double frequency, double direction) override {
     return period_.tears_loose(bias, force, frequency, direction);
   }
+  void stop_with(std::function<bool()> stop) override { period_.stop_with(std::move(stop)); }
   bool has_front() const override { return period_.has_front(); }
   double level() const override { return period_.level(); }
 
@@ -104,6 +106,8 @@ CompositeResponse CompositeDescribingFunction::operator()(const CompositePoint& 
   return fine;
 }
 
+void CompositeDescribingFunction::stop_with(std::function<bool()> stop) { solver_->stop_with(std::move(stop)); }
+
 double CompositeDescribingFunction::break_away(double frequency, double relative, double guess) {
   const double level = solver_->level();
   if (!(frequency > 0.0)) refuse("frequency", frequency, "must be > 0");
@@ -147,6 +151,7 @@ double CompositeDescribingFunction::break_away_bias(double force, double frequen
   }
   while (high - low > relative * level) {
     const double middle = 0.5 * (low + high);
+    if (!(middle > low && middle < high)) break;  // no number between: far out, where a wish to stop may lead
     (loose(middle) ? high : low) = middle;
   }
   return side * 0.5 * (low + high);

@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -72,6 +73,10 @@ class CompositeDescribingFunction {
   /// The same for a biased force: the bias, of the sign of `direction`, at which the body begins to tear loose in that
   /// direction in every period; may be of the other sign when the force alone is large.
   double break_away_bias(double force, double frequency, double direction, double relative);
+
+  /// Asked from now on, every 256 steps of the integrator and more often: true ends what goes on. A response then has
+  /// Status::interrupted, and what break_away and break_away_bias return is of no use. Empty: never.
+  void stop_with(std::function<bool()> stop);
 
   struct Solver;
 

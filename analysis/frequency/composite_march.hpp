@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,8 @@ class CompositeMarch : public CompositeStep<Kind, D> {
   }
 
   bool has_modes() const { return has_modes_; }
+  /// Asked at every run and every 256 steps: true ends it with Status::interrupted.
+  void stop_with(std::function<bool()> stop) { stop_ = std::move(stop); }
 
   State rest() const {
     State s;
@@ -53,12 +56,14 @@ class CompositeMarch : public CompositeStep<Kind, D> {
     sums.cosine.resize(orders_);
     h_ = 1e-2;
     events_ = 0;
+    asked_ = 0;
     const long budget = steps_ + 20000;
     for (int quarter = from_quarter; quarter < to_quarter; ++quarter) {
       phase_ = half_pi * (quarter % 4);
       const double end = half_pi * (quarter % 4 + 1);
       while (phase_ < end) {
         if (steps_ > budget) return Status::max_iterations;
+        if (stop_ && asked_++ % 256 == 0 && stop_()) return Status::interrupted;
         const Status status = step(s, end, sums);
         if (status != Status::converged) return status;
       }
@@ -212,7 +217,8 @@ class CompositeMarch : public CompositeStep<Kind, D> {
 
   bool has_modes_;
   double slow_ = 0.0, h_ = 0.0;
-  int events_ = 0;
+  int events_ = 0, asked_ = 0;
+  std::function<bool()> stop_;
   bool replay_ = false;
   std::size_t next_ = 0;
   std::vector<double> taken_, guards_;

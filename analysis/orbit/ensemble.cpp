@@ -123,10 +123,11 @@ class LaneRun {
 
   void look(int lane) {
     read_lane(loop(lane), rows_.get() + lane, lanes_, at_.rate(), rates_);
+    read_lane(loop(lane), rows_.get() + lane, lanes_, at_.state(), state_);
     const LaneRows at = at_;
     double speed = number(lane, LaneRows::speed_outside);
     for (int i = 0; i < at.n; ++i) speed += number(lane, at.C_v() + i) * number(lane, at.state() + i);
-    seat(lane).watch->look(number(lane, LaneRows::time), rates_, speed * lane_unit(loop(lane)));
+    seat(lane).watch->look(number(lane, LaneRows::time), state_, rates_, speed * lane_unit(loop(lane)));
   }
 
   /// How the member ends, if it does.
@@ -164,7 +165,7 @@ class LaneRun {
   std::unique_ptr<double[], Free> rows_;
   std::vector<Seat> seats_;
   LaneBatch batch_;
-  State rates_;
+  State state_, rates_;
   int seated_ = 0;
   long calls_ = 0, useful_ = 0;
 };
@@ -220,7 +221,7 @@ class SingleRun {
     if ((field_.y_rate(last.dx0) < 0.0) != (field_.y_rate(last.dx1) < 0.0)) watch_.turned(step);
     if (march_.t() < watch_.next_look()) return;
     field_.rate(march_.x(), rates_, march_.t());
-    watch_.look(march_.t(), rates_, field_.input(loop_.elements.size() - 1).v);
+    watch_.look(march_.t(), march_.x(), rates_, field_.input(loop_.elements.size() - 1).v);
   }
 
   EnsembleWork& work_;

@@ -62,8 +62,8 @@ double OutputStep::crossing(double level) const {
 OutcomeWatch::OutcomeWatch(const Loop& loop, const OutcomeOptions& options, State sizes, double slow)
     : loop_(loop), options_(options), rest_(std::move(sizes), slow, options.rtol) {}
 
-void OutcomeWatch::look(double t, const State& dx, double speed) {
-  const auto verdict = rest_.look(t, dx);
+void OutcomeWatch::look(double t, const State& x, const State& dx, double speed) {
+  const auto verdict = rest_.look(t, x, dx);
   if (verdict == RestWatch::Verdict::at_rest) return decide(stillness());
   if (verdict == RestWatch::Verdict::steady && std::abs(speed) > rubbing_speed(loop_)) decide(Outcome::sliding);
 }

@@ -47,8 +47,8 @@ class OutcomeWatch {
   void turned(const OutputStep& step);
   /// A step within which y goes up through level().
   void crossed(const OutputStep& step);
-  /// The rates of the state and of the rubbing displacement at a time not before next_look().
-  void look(double t, const State& dx, double speed);
+  /// The state, its rates and that of the rubbing displacement at a time not before next_look().
+  void look(double t, const State& x, const State& dx, double speed);
   /// The motion has left all bounds.
   void diverged() { decide(Outcome::divergence); }
 

@@ -7,21 +7,40 @@
 
 namespace limcycle {
 
-RestWatch::Verdict RestWatch::look(double t, const State& dx) {
+RestWatch::Verdict RestWatch::look(double t, const State& x, const State& dx) {
   if (t < next_) return Verdict::moving;
   next_ = std::max(1.5 * t, t + slow_);
+  steady_ = rates_constant(dx) ? steady_ + 1 : 0;
+  calm_ = rates_fade(t, dx) ? calm_ + 1 : 0;
+  still_ = stays(t, x) ? still_ + 1 : 0;
+  return calm_ >= 3 || still_ >= 3 ? Verdict::at_rest : steady_ >= 4 ? Verdict::steady : Verdict::moving;
+}
+
+bool RestWatch::rates_constant(const State& dx) {
   double change = 0.0;
-  for (std::size_t i = 0; i < before_.size(); ++i)
-    change = std::max(change, std::abs(dx[i] - before_[i]) * slow_ / sizes_[i]);
-  steady_ = before_.empty() || change > 1e-7 ? 0 : steady_ + 1;
-  before_ = dx;
+  for (std::size_t i = 0; i < rates_before_.size(); ++i)
+    change = std::max(change, std::abs(dx[i] - rates_before_[i]) * slow_ / sizes_[i]);
+  const bool constant = !rates_before_.empty() && change <= 1e-7;
+  rates_before_ = dx;
+  return constant;
+}
+
+bool RestWatch::rates_fade(double t, const State& dx) {
   double rate = 0.0;
   for (std::size_t i = 0; i < dx.size(); ++i) rate = std::max(rate, std::abs(dx[i]) * slow_ / sizes_[i]);
   const double drift = rate * (t + slow_) / slow_;
   const bool fades = rate <= noise_ || (drift < 0.6 * last_ && drift < 1e-6);
   last_ = drift;
-  calm_ = fades ? calm_ + 1 : 0;
-  return calm_ >= 3 ? Verdict::at_rest : steady_ >= 4 ? Verdict::steady : Verdict::moving;
+  return fades;
+}
+
+bool RestWatch::stays(double t, const State& x) {
+  double rate = before_.empty() ? infinite : 0.0;
+  for (std::size_t i = 0; i < before_.size(); ++i)
+    rate = std::max(rate, std::abs(x[i] - before_[i]) / (t - looked_) * slow_ / sizes_[i]);
+  before_ = x;
+  looked_ = t;
+  return rate <= noise_;
 }
 
 double slow_time(const Loop& loop) {

@@ -5,9 +5,16 @@
 
 namespace limcycle {
 
-/// Watches whether all rates die out: every time by half, it compares what the rates would still move the state by,
-/// were they to last as long again, with the size of the state. Rates as small as the noise of the integration count as
-/// none.
+/// Watches whether a motion dies out, by looks at it that are at least the slowest time constant, and a third of the
+/// time since the start, apart. Rest shows by either of two signs, three times in a row:
+/// - what the rates would still move the state by, were they to last as long again, fades, compared with the size of
+/// the
+///   state. Rates as small as the noise of the integration count as none.
+/// - on the mean since the last look, no rate is more than that noise. A body at rest on a bristle may tremble, and
+/// even
+///   creep, for ever within the tolerances, with rates of the moment that are those of the bristle.
+/// A body that sticks while an integrator winds up shows neither: in its slowest time constant, the integrator moves by
+/// a good part of its size.
 class RestWatch {
  public:
   /// `sizes`: of the states, see typical_sizes(); `slow`: slowest time constant of the linear part, s.
@@ -17,14 +24,19 @@ class RestWatch {
 
   /// Asked after every step, or after those that end at or after next(). steady: the rates have become constant, though
   /// not zero.
-  Verdict look(double t, const State& dx);
+  Verdict look(double t, const State& x, const State& dx);
   double next() const { return next_; }
 
  private:
   State sizes_;
   double slow_, noise_, next_ = 0.0, last_ = infinite;
-  State before_;
-  int calm_ = 0, steady_ = 0;
+  bool rates_constant(const State& dx);
+  bool rates_fade(double t, const State& dx);
+  bool stays(double t, const State& x);
+
+  double looked_ = 0.0;
+  State rates_before_, before_;
+  int calm_ = 0, still_ = 0, steady_ = 0;
 };
 
 /// Slowest time constant of the linear part, s; 1 if it has none.

@@ -59,9 +59,9 @@ class Settling {
     if (march_.t() >= 1e15) return decide(Outcome::undecided, "nothing was decided within 1e15 s");
     if (turning_.feed(march_.t(), y)) look_at_swings();
     if (decided_) return;
-    const auto verdict = rest_.look(march_.t(), dx_);
+    const auto verdict = rest_.look(march_.t(), march_.x(), dx_);
     if (verdict == RestWatch::Verdict::at_rest)
-      return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest, "all rates died out");
+      return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest, "all rates died out, but for noise");
     if (verdict == RestWatch::Verdict::steady && std::abs(result_.trace.velocity.back()) > rubbing_speed(loop_))
       decide(Outcome::sliding, "the body slides at constant speed");
   }

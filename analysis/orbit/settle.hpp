@@ -35,8 +35,9 @@ struct Settled {
 
 /// Simulates from `start` until it is clear what is reached. A cycle is one only when shooting from the motion finds a
 /// stable periodic solution with the same swing: a decaying stick-slip, whose swings shrink for ever, never is. Rest is
-/// one only when every rate has decayed faster than 1/t: slow hunting, which waits at rest for thousands of seconds
-/// while an integrator winds up, never is. What neither test decides within the budget is undecided.
+/// one only when every rate has decayed faster than 1/t or is noise on the mean (see RestWatch): slow hunting, which
+/// waits at rest for thousands of seconds while an integrator winds up, never is. What neither test decides within the
+/// budget is undecided.
 Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options);
 
 /// State in which y (from the rest point of the linear part, elements without history) is displaced by `displacement`.

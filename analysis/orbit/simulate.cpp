@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/outcome_watch.hpp"
 
 namespace limcycle {
 namespace {
@@ -46,21 +47,6 @@ ExternalSignals external(const Loop& loop, const SimulateOptions& options, const
   };
 }
 
-void add_row(Simulation& run, LoopField& field, const State& x, double t) {
-  State dx;
-  field.rate(x, dx, t);
-  std::vector<double> row{t};
-  row.insert(row.end(), x.begin(), x.end());
-  row.push_back(field.y(x));
-  row.push_back(field.y_rate(dx));
-  for (std::size_t i = 0; i < field.loop().elements.size(); ++i) {
-    row.push_back(field.input(i).x);
-    row.push_back(field.input(i).v);
-    row.push_back(field.output(i));
-  }
-  run.rows.push_back(std::move(row));
-}
-
 std::vector<std::string> columns(const Loop& loop) {
   std::vector<std::string> names{"t"};
   for (const auto& name : state_names(loop)) names.push_back("state." + name);
@@ -94,6 +80,123 @@ void check(const SimulateOptions& options) {
     throw std::invalid_argument("simulate.sample asks for more than 1e7 rows");
 }
 
+/// One run: rows at the samples, and after every step what a watcher of the motion needs.
+class Running {
+ public:
+  Running(const Loop& loop, const SimulateOptions& options)
+      : loop_(loop),
+        options_(options),
+        times_(stops(options, options.sample > 0.0 ? options.sample : options.duration / 1000.0)),
+        next_break_(break_after(0.0)),
+        field_(loop) {
+    run_.columns = columns(loop);
+    field_.set_external(external(loop, options, next_break_));
+    if (!options.force && !options.reference && !loop.elements.empty())
+      // Tighter tolerances do not find turning points better than the cubic through each step does.
+      watch_.emplace(loop, OutcomeOptions{std::max(options.rtol, 1e-7), 1e-9, cycle_accuracy}, typical_sizes(loop),
+                     slow_time(loop));
+  }
+
+  Simulation operator()() {
+    State x = initial_state(loop_, options_.initial);
+    const State given = x;
+    field_.start(x, 0.0);
+    for (auto i = static_cast<std::size_t>(loop_.states()); i < x.size(); ++i)
+      if (given[i] != 0.0) x[i] = given[i];  // an element's own state that the case names
+    March march(field_, stepper_kind(options_.stepper), loop_weights(loop_, options_.rtol));
+    run_.stepper = to_string(march.kind());
+    march.begin(x, 0.0);
+    begin(x);
+    for (const auto& [until, is_sample] : times_) {
+      while (march.t() < until && run_.status == Status::converged) step(march, until);
+      if (run_.status != Status::converged) break;
+      if (is_sample) {
+        add_row(march.x(), march.t());
+      } else {
+        next_break_ = break_after(until);
+        march.begin(march.x(), march.t());
+      }
+      if (options_.progress) options_.progress(march.t() / options_.duration);
+    }
+    conclude(march);
+    return std::move(run_);
+  }
+
+ private:
+  double break_after(double t) const {
+    const auto next = std::ranges::find_if(times_, [t](const auto& stop) { return !stop.second && stop.first > t; });
+    return next == times_.end() ? infinite : next->first;
+  }
+
+  void begin(const State& x) {
+    add_row(x, 0.0);
+    trace(x, 0.0);
+    if (watch_) watch_->begin(0.0, field_.y(x));
+  }
+
+  void step(March& march, double until) {
+    if (options_.stop && options_.stop()) run_.status = Status::interrupted;
+    if (run_.status == Status::converged) run_.status = march.step(until);
+    if (run_.status != Status::converged) return;
+    if (march.last().switched && march.last().t1 == march.t())
+      run_.events.push_back({march.t(), loop_.ports[*march.last().switched].path});
+    trace(march.x(), march.t());
+    if (watch_) look(march);
+  }
+
+  void look(const March& march) {
+    const OutputStep step = OutputStep::through(loop_, march.last());
+    const double level = watch_->level();
+    if (step.y0 < level && step.y1 >= level) watch_->crossed(step);
+    if ((field_.y_rate(march.last().dx0) < 0.0) != (field_.y_rate(march.last().dx1) < 0.0)) watch_->turned(step);
+    if (march.t() >= watch_->next_look())
+      watch_->look(march.t(), march.x(), dx_, field_.input(loop_.elements.size() - 1).v);
+  }
+
+  void trace(const State& x, double t) {
+    field_.rate(x, dx_, t);
+    run_.trace.t.push_back(t);
+    run_.trace.y.push_back(field_.y(x));
+    run_.trace.rate.push_back(field_.y_rate(dx_));
+  }
+
+  void add_row(const State& x, double t) {
+    field_.rate(x, dx_, t);
+    std::vector<double> row{t};
+    row.insert(row.end(), x.begin(), x.end());
+    row.push_back(field_.y(x));
+    row.push_back(field_.y_rate(dx_));
+    for (std::size_t i = 0; i < loop_.elements.size(); ++i) {
+      row.push_back(field_.input(i).x);
+      row.push_back(field_.input(i).v);
+      row.push_back(field_.output(i));
+    }
+    run_.rows.push_back(std::move(row));
+  }
+
+  void conclude(const March& march) {
+    run_.steps = march.steps();
+    if (run_.status != Status::converged)
+      run_.why =
+          "the run ended at t = " + std::to_string(march.t()) + " s with status " + std::string(to_string(run_.status));
+    if (run_.status == Status::not_finite) run_.outcome = Outcome::divergence;
+    if (!watch_) return;
+    if (watch_->decided()) run_.outcome = watch_->outcome();
+    if (run_.outcome != Outcome::cycle) return;
+    run_.period = watch_->period();
+    run_.amplitude = watch_->amplitude();
+  }
+
+  const Loop& loop_;
+  const SimulateOptions& options_;
+  std::vector<std::pair<double, bool>> times_;
+  double next_break_;  ///< read by the external signals of the field
+  LoopField field_;
+  std::optional<OutcomeWatch> watch_;
+  Simulation run_;
+  State dx_;
+};
+
 }  // namespace
 
 std::vector<std::string> state_names(const Loop& loop) {
@@ -109,47 +212,7 @@ std::vector<std::string> state_names(const Loop& loop) {
 Simulation simulate(const Loop& loop, const SimulateOptions& options) {
   check(options);
   if (loop.delay > 0.0) throw std::invalid_argument("loop.plant.delay: simulate does not treat a delay yet");
-  Simulation run;
-  run.columns = columns(loop);
-  LoopField field(loop);
-  const auto times = stops(options, options.sample > 0.0 ? options.sample : options.duration / 1000.0);
-  const auto break_after = [&](double t) {
-    const auto next = std::ranges::find_if(times, [t](const auto& stop) { return !stop.second && stop.first > t; });
-    return next == times.end() ? infinite : next->first;
-  };
-  double next_break = break_after(0.0);
-  field.set_external(external(loop, options, next_break));
-  State x = initial_state(loop, options.initial);
-  const State given = x;
-  field.start(x, 0.0);
-  for (auto i = static_cast<std::size_t>(loop.states()); i < x.size(); ++i)
-    if (given[i] != 0.0) x[i] = given[i];  // an element's own state that the case names
-  March march(field, stepper_kind(options.stepper), loop_weights(loop, options.rtol));
-  run.stepper = to_string(march.kind());
-  march.begin(x, 0.0);
-  add_row(run, field, x, 0.0);
-  for (const auto& [until, is_sample] : times) {
-    while (march.t() < until && run.status == Status::converged) {
-      if (options.stop && options.stop()) run.status = Status::interrupted;
-      if (run.status == Status::converged) run.status = march.step(until);
-      if (march.last().switched && march.last().t1 == march.t())
-        run.events.push_back({march.t(), loop.ports[*march.last().switched].path});
-    }
-    if (run.status != Status::converged) {
-      run.why =
-          "the run ended at t = " + std::to_string(march.t()) + " s with status " + std::string(to_string(run.status));
-      break;
-    }
-    if (is_sample) {
-      add_row(run, field, march.x(), march.t());
-    } else {
-      next_break = break_after(until);  // NOLINT(clang-analyzer-deadcode.DeadStores): read through the reference
-      march.begin(march.x(), march.t());
-    }
-    if (options.progress) options.progress(march.t() / options.duration);
-  }
-  run.steps = march.steps();
-  return run;
+  return Running(loop, options)();
 }
 
 }  // namespace limcycle

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/orbit/settle.hpp"
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/models/loop.hpp"
 
@@ -45,11 +47,19 @@ struct Simulation {
     std::string what;
   };
   std::vector<Event> events;  ///< located switches
-  std::string stepper;        ///< the one used
+  /// What the motion has come to by the end of the run, recognised as run_ensemble does; undecided also where a force
+  /// or a reference of time drives it.
+  Outcome outcome = Outcome::undecided;
+  double period = 0.0, amplitude = 0.0;  ///< of a cycle: s, half the swing of y; else 0
+  Trace trace;                           ///< t, y and rate after every step
+  std::string stepper;                   ///< the one used
   Status status = Status::converged;
   std::string why;
   long steps = 0;
 };
+
+/// Share by which the swings and the period of a run's cycle may still change.
+inline constexpr double cycle_accuracy = 1e-4;
 
 /// Time-domain run with located events. Throws std::invalid_argument for an unknown state or stepper name.
 Simulation simulate(const Loop& loop, const SimulateOptions& options);

@@ -26,7 +26,7 @@ class Study {
   Study(const LoopParts& parts, const AdequateOptions& options) : parts_(parts), options_(options) {
     report_.tolerance = options.tolerance;
     report_.laws = law_ladder(*parts.friction);
-    if (options.spread > 0.0) variations_ = law_variations(*parts.friction, options.spread);
+    choose_variations();
     for (const auto& one : variations_) report_.spread.push_back(one.name);
   }
 
@@ -45,19 +45,32 @@ class Study {
   }
 
  private:
+  void choose_variations() {
+    if (!options_.variations.empty()) {
+      variations_ = options_.variations;
+      report_.spread_rule = options_.spread_rule;
+    } else if (options_.spread > 0.0) {
+      for (auto& one : law_variations(*parts_.friction, options_.spread)) {
+        variations_.push_back({std::move(one.name), parts_});
+        variations_.back().parts.friction = std::move(one.law);
+      }
+      report_.spread_rule = "each number of the law up and down, one at a time";
+    }
+  }
+
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
   void tell(double fraction, std::string_view what) const {
     if (options_.progress) options_.progress(fraction, what);
   }
 
-  SceneAnswer ask_law(const std::string& method, const Element<double>& law) const {
+  SceneAnswer ask_law(const std::string& method, const LoopParts& parts, const Element<double>& law) const {
     const double begin = cpu_seconds();
     const auto late = [&] { return cpu_seconds() - begin > options_.patience; };
     PredictOptions options = options_.predict;
     options.stop = [&] { return stopped() || late(); };
     SceneAnswer answer;
     try {
-      answer = ask_scene(method, loop_of(parts_, law), options);
+      answer = ask_scene(method, loop_of(parts, law), options);
     } catch (const std::invalid_argument& error) {  // the plant does not take this law
       answer.why = error.what();
     }
@@ -111,7 +124,7 @@ class Study {
       else if (method == "harmonic-balance" && !predicted)
         point.answer = balance_without_start();
       else
-        point.answer = ask_law(method, *rung.law);
+        point.answer = ask_law(method, parts_, *rung.law);
       if (stopped()) return;
       predicted = predicted || (point.answer.answered && point.answer.hunts());
       point.error = scene_error(method, point.answer, report_.best);
@@ -143,7 +156,7 @@ class Study {
   void find_best_over_spread() {
     for (std::size_t i = 0; i < variations_.size() && !stopped(); ++i) {
       tell(0.5 + 0.2 * static_cast<double>(i) / static_cast<double>(variations_.size()), variations_[i].name);
-      best_.push_back(ask_law(shooting, variations_[i].law));
+      best_.push_back(ask_law(shooting, variations_[i].parts, *variations_[i].parts.friction));
       if (!best_.back().answered && !stopped())
         report_.notes.push_back(variations_[i].name + ": the case's own law gives no answer, left out (" +
                                 best_.back().why + ")");
@@ -162,10 +175,10 @@ class Study {
     point.worst_at = "the case's own values";
     for (std::size_t i = 0; i < best_.size() && !stopped() && point.within; ++i) {
       if (!best_[i].answered) continue;
-      const auto law = varied(variations_[i].law, rung);
+      const auto law = varied(*variations_[i].parts.friction, rung);
       if (!law) continue;
       const bool same = report_.laws[rung].own && point.method == shooting;
-      const SceneAnswer answer = same ? best_[i] : ask_law(point.method, *law);
+      const SceneAnswer answer = same ? best_[i] : ask_law(point.method, variations_[i].parts, *law);
       if (stopped()) return;
       const double error = scene_error(point.method, answer, best_[i]);
       if (error <= point.worst) continue;
@@ -200,7 +213,7 @@ class Study {
 
   const LoopParts& parts_;
   const AdequateOptions& options_;
-  std::vector<LawVariation> variations_;
+  std::vector<SceneVariation> variations_;
   std::vector<SceneAnswer> best_;  ///< of the own law, for each variation
   AdequateReport report_;
 };

@@ -12,11 +12,19 @@
 
 namespace limcycle {
 
+/// The scene with other parameters.
+struct SceneVariation {
+  std::string name;  ///< "Fs -10 %", "friction.Fs = 1.4, controller.kd = 5"
+  LoopParts parts;   ///< with friction
+};
+
 struct AdequateOptions {
-  double tolerance = 0.05;  ///< on period and amplitude, relative
-  double spread = 0.1;      ///< by which each number of the law is moved, one at a time; 0: not at all
-  double patience = 2.0;    ///< CPU seconds for one answer other than the reference
-  PredictOptions predict;   ///< search box, starts, stop
+  double tolerance = 0.05;                 ///< on period and amplitude, relative
+  double spread = 0.1;                     ///< by which each number of the law is moved, one at a time; 0: not at all
+  std::vector<SceneVariation> variations;  ///< unless empty, asked instead of that spread
+  std::string spread_rule;                 ///< how they were chosen, in words
+  double patience = 2.0;                   ///< CPU seconds for one answer other than the reference
+  PredictOptions predict;                  ///< search box, starts, stop
   std::function<void(double, std::string_view)> progress;
 };
 
@@ -37,6 +45,7 @@ struct AdequateReport {
   std::vector<LawRung> laws;
   std::vector<AdequatePoint> points;
   std::vector<std::string> spread;      ///< what was varied
+  std::string spread_rule;              ///< by which rule, in words; empty: nothing was
   std::optional<std::size_t> least;     ///< index of the least law
   std::optional<std::size_t> cheapest;  ///< index of its cheapest point
   double tolerance = 0.05;
@@ -46,9 +55,10 @@ struct AdequateReport {
 };
 
 /// The least law and the cheapest method that tell of this loop what its own law, solved by shooting, does: verdict,
-/// period, amplitude and stability of its (largest) stable cycle, at the case's own values and with each number of the
-/// law moved up and down. Laws are made by law_ladder; only the friction is exchanged. A law counts if shooting with it
-/// stays within the tolerance; then all methods are asked with that law.
+/// period, amplitude and stability of its (largest) stable cycle, at the case's own values and over a spread:
+/// variations that are given, else each number of the law moved up and down. Laws are made by law_ladder; only the
+/// friction is exchanged. A law counts if shooting with it stays within the tolerance; then all methods are asked with
+/// that law.
 ///
 /// Throws std::invalid_argument if the loop has no friction. Status no_cycle never; undefined: the case's own law gives
 /// no confirmed answer, so that there is nothing to compare with; interrupted: what was computed until then is kept.

@@ -194,6 +194,7 @@ CompositeSearch CompositeBalance::find(const CompositeSearchOptions& options) {
   CompositeSearch found;
   const long evaluations = evaluations_, steps = steps_;
   fronts_.clear();
+  element_.stop_with(options.stop);
   if (biased_) {
     search_biased(options, found);
   } else {
@@ -204,6 +205,8 @@ CompositeSearch CompositeBalance::find(const CompositeSearchOptions& options) {
         if (found.status != Status::interrupted) search_side(window, above, options, found);
     }
   }
+  element_.stop_with({});
+  if (options.stop && options.stop()) found.status = Status::interrupted;
   std::ranges::sort(found.roots, {}, &CompositeRoot::frequency);
   found.evaluations = evaluations_ - evaluations;
   found.steps = steps_ - steps;

@@ -61,3 +61,21 @@ TEST_CASE("adequate: without friction it is refused, and says why, and wrong usa
   CHECK(run({"adequate", shipped("df-lugre.toml")}).code == 2);
   CHECK(run({"adequate", shipped("pid-lugre.toml"), "--tolerance", "-1"}).code == 2);
 }
+
+TEST_CASE("adequate: [sensitivity] of the case is its spread, unless --spread is given") {
+  const Scratch scratch;
+  const std::string spread =
+      "[sensitivity]\nparameters = [{path = \"loop.friction.Fs\", from = 0.8, to = 1.6}, "
+      "{path = \"loop.controller.kd\", factor = 1.1}]\n";
+  const auto path = scratch.put("servo.toml", std::string(servo) + spread);
+  const auto ran = run({"adequate", path, "--json", "-"});
+  REQUIRE(ran.code == 0);
+  const auto document = Json::parse(ran.out);
+  CHECK(document["spread_rule"] == "the middle and 4 corners of [sensitivity]");
+  REQUIRE(document["spread"].size() == 3);  // Fs = 0.8 is below Fc, in two corners
+  CHECK(document["spread"][0] == "friction.Fs = 1.200, controller.kd = 6.027");
+  CHECK(document["notes"].dump().find("friction.Fs = 0.8000") != std::string::npos);
+  const auto own = Json::parse(run({"adequate", path, "--spread", "0.05", "--json", "-"}).out);
+  CHECK(own["spread_rule"] == "each number of the law up and down, one at a time");
+  CHECK(own["spread"][0].get<std::string>().find("5 %") != std::string::npos);
+}

@@ -32,7 +32,9 @@ inline bool free_text(const std::string& key) {
 }
 
 /// An estimate of an error may come out differently, but not worse by orders.
-inline bool estimate(const std::string& key) { return key == "error" || key == "residual"; }
+inline bool estimate(const std::string& key) {
+  return key == "error" || key == "residual" || key == "phase_drift" || key.ends_with("_difference");
+}
 
 /// First difference of a document from its golden one, with its path; empty: none. Keys must be the same, in the same
 /// order; numbers near, other values the same.

@@ -39,3 +39,35 @@ TEST_CASE("simulate: -o takes the samples, the summary stays on stdout") {
   arguments.insert(arguments.end(), {"--csv", "-"});
   CHECK(run(arguments).out == csv);
 }
+
+TEST_CASE("simulate: a second run at tighter tolerances checks the first one") {
+  const std::vector<std::string> hunting = {"simulate", shipped("pid-lugre.toml"), "--set", "simulate.duration=200.0"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), hunting.begin(), hunting.end());
+    return run(more);
+  };
+  CHECK_THAT(with({}).out, Contains("It settles on a cycle of period 24.4") && Contains("Agrees with a second run"));
+  const auto good = Json::parse(with({"--json", "-"}).out);
+  CHECK(good["outcome"] == "cycle");
+  CHECK(good["period"].get<double>() == Approx(24.4367865).epsilon(1e-4));
+  CHECK(good["agreement"]["agrees"] == true);
+  CHECK(good["agreement"]["period_difference"].get<double>() < 1e-6);
+  CHECK(good["agreement"]["parted"].is_null());
+
+  const auto alone = with({"--no-check", "--json", "-"});
+  CHECK(Json::parse(alone.out)["agreement"].is_null());
+  CHECK(alone.err.empty());
+
+  const std::vector<std::string> rough = {"--set", "simulate.rtol=0.1",       "--set", "loop.friction.sigma0=1e8",
+                                          "--set", "loop.friction.sigma1=1e4"};
+  const auto bad = with(rough);
+  CHECK(bad.code == 0);
+  CHECK_THAT(bad.out, Contains("Warning: a second run") && Contains("--set simulate.rtol="));
+  CHECK_THAT(bad.err, Contains("Warning: a second run"));
+  auto document = rough;
+  document.insert(document.end(), {"--json", "-", "--quiet"});
+  const auto told = with(document);
+  CHECK(told.err.empty());
+  CHECK(Json::parse(told.out)["agreement"]["agrees"] == false);
+  CHECK(Json::parse(told.out)["agreement"]["why"].get<std::string>().size() > 10);
+}

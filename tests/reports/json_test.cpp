@@ -181,6 +181,25 @@ TEST_CASE("simulate: columns, rows, events") {
   CHECK(document["stepper"] == "rodas5p");
   CHECK(document["steps"] == 12);
   CHECK(document["status"] == "converged");
+  CHECK(document["outcome"] == "undecided");
+  CHECK(document["period"].is_null());
+  CHECK(document["agreement"].is_null());
+
+  Agreement second;
+  second.rtol = 1e-9;
+  second.period_difference = nan_value;
+  second.phase_drift = 0.25;
+  second.why = "because";
+  run.outcome = Outcome::cycle;
+  run.period = 2.0;
+  const auto both = Json::parse(simulate_json(made(), run, second));
+  CHECK(both["outcome"] == "cycle");
+  CHECK(both["period"] == 2.0);
+  CHECK(both["agreement"]["rtol"] == 1e-9);
+  CHECK(both["agreement"]["agrees"] == false);
+  CHECK(both["agreement"]["period_difference"].is_null());
+  CHECK(both["agreement"]["phase_drift"] == 0.25);
+  CHECK(both["agreement"]["why"] == "because");
 }
 
 TEST_CASE("text from a user cannot break a document") {

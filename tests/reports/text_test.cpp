@@ -1,6 +1,7 @@
 #include "limcycle/reports/text.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
 #include <sstream>
 
 #include "limcycle/reports/answer.hpp"
@@ -193,4 +194,30 @@ TEST_CASE("simulate: how it went and where it has been") {
   run.status = Status::stalled;
   run.why = "the step became too small";
   CHECK_THAT(simulate_text("x", run), Contains("ended early: stalled") && Contains("too small"));
+}
+
+TEST_CASE("simulate: what it comes to, and what a second run says of it") {
+  Simulation run;
+  run.outcome = Outcome::cycle;
+  run.period = 24.4367;
+  run.amplitude = 0.0687;
+  Agreement second;
+  second.rtol = 1e-9;
+  second.agrees = true;
+  second.position_difference = 1.2e-6;
+  second.phase_drift = 3e-5;
+  second.period_difference = 2e-8;
+  second.amplitude_difference = 4e-8;
+  const auto text = simulate_text("x", run, second);
+  CHECK_THAT(text, Contains("It settles on a cycle of period 24.437 s and amplitude 0.0687") &&
+                       Contains("Agrees with a second run with rtol = 1.0e-09"));
+  CHECK(widest(text) <= 80);
+  second.period_difference = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THAT(agreement_in_words(second), Contains("1.2e-06") && Contains("3.0e-05 s.") && !Contains("period"));
+  second.agrees = false;
+  second.why = "y parts at t = 37 s";
+  CHECK(agreement_in_words(second) ==
+        "Warning: a second run with rtol = 1.0e-09 disagrees: y parts at t = 37 s. Try --set simulate.rtol=1.0e-09.");
+  run.outcome = Outcome::rest;
+  CHECK_THAT(simulate_text("x", run), Contains("It comes to rest.") && !Contains("second run"));
 }

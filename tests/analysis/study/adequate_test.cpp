@@ -134,6 +134,31 @@ TEST_CASE("adequate: the spread decides where the own values do not") {
   CHECK(point(report, "stribeck", "shooting").worst == 0.0);
 }
 
+TEST_CASE("adequate: variations that are given, of anything in the loop, take the place of the default spread") {
+  AdequateOptions options = quick();
+  options.spread = 0.4;
+  options.tolerance = 0.05;
+  options.spread_rule = "two plants";
+  const auto own = servo_parts(stribeck(1.5, 1.0, 1e-3));
+  CHECK(adequate(own, options).spread.size() > 2);
+  auto slow = own, rough = own;
+  slow.plant = Mass{1.2, 0.0, 0.0};
+  options.variations = {{"heavier", slow}};
+  const auto near = adequate(own, options);
+  CHECK(near.spread == std::vector<std::string>{"heavier"});
+  CHECK(near.spread_rule == "two plants");
+  CHECK(point(near, "coulomb + stiction", "shooting").within);
+  // A wide Stribeck curve is not the same as stiction: in that corner the simple law fails.
+  rough.friction = stribeck(1.5, 1.0, 0.1);
+  options.variations.push_back({"wide curve", rough});
+  const auto far = adequate(own, options);
+  const auto& simple = point(far, "coulomb + stiction", "shooting");
+  CHECK(simple.error < options.tolerance);
+  CHECK_FALSE(simple.within);
+  CHECK(simple.worst_at == "wide curve");
+  CHECK(far.laws[*far.least].name == "stribeck");
+}
+
 TEST_CASE("adequate: a loop that rests needs the least law there is") {
   const auto report = adequate(servo_parts(coulomb(1.0, 1.0, 0.4)), quick());
   REQUIRE(report.status == Status::converged);

@@ -151,12 +151,33 @@ TEST_CASE("composite balance: stick-slip on a belt has a bias") {
   CHECK(root.frequency == Approx(0.8255).epsilon(0.3));
 }
 
+TEST_CASE("composite balance: a wish to stop is obeyed on a belt too, wherever it comes") {
+  const Loop loop = test::belt(test::lugre());
+  CompositeBalance balance(loop);
+  for (const long after : {1L, 30L, 1000L}) {  // in the search of a break-away bias, in a response, ...
+    CompositeSearchOptions options = range(0.1, 10.0);
+    long asked = 0;
+    options.stop = [&asked, after] { return ++asked > after; };
+    CHECK(balance.find(options).status == Status::interrupted);
+    CHECK(asked < after + 50000);
+  }
+}
+
 TEST_CASE("composite balance: a wish to stop is obeyed, bad options are refused by name") {
   const Loop loop = test::servo(test::lugre());
   CompositeBalance balance(loop);
   CompositeSearchOptions options = range(0.01, 100.0);
   options.stop = [] { return true; };
   CHECK(balance.find(options).status == Status::interrupted);
+  // Obeyed within the work of one response too, not only between them.
+  long asked = 0;
+  options.stop = [&asked] { return ++asked > 100; };
+  const auto stopped = balance.find(options);
+  CHECK(stopped.status == Status::interrupted);
+  CHECK(stopped.steps < 100 * 256 + 1000);
+  CHECK(asked < 1000);
+  options.stop = {};
+  CHECK(balance.find(options).status != Status::interrupted);  // and forgotten
   CHECK_THROWS_WITH(balance.find(range(0.0, 1.0)), Catch::Contains("frequency_min"));
   CHECK_THROWS_WITH(balance.find(range(2.0, 1.0)), Catch::Contains("frequency_max"));
   options = range(0.01, 1.0);
