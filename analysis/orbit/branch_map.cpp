@@ -1,6 +1,6 @@
 #include "limcycle/analysis/orbit/branch_map.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #include "limcycle/analysis/orbit/branch_step.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
