@@ -123,6 +123,22 @@ class Settling {
     return std::nullopt;
   }
 
+  /// Swings that are still uneven may show several periods as one: takes the least one that the orbit has.
+  void shorten(ShootingResult& shot, const Section& section, bool half, const ShootingOptions& options) const {
+    for (int fewer = 1; fewer < options.returns; ++fewer) {
+      if (options.returns % fewer != 0) continue;
+      ShootingOptions shorter = options;
+      shorter.returns = fewer;
+      shorter.warm_maps = 0;
+      auto found = shoot(loop_, shot.cycle.start, section, half, shorter);
+      const double times = static_cast<double>(options.returns) / fewer;
+      if (found.status != Status::converged || std::abs(times * found.cycle.period / shot.cycle.period - 1.0) > 1e-6)
+        continue;
+      shot = std::move(found);
+      return;
+    }
+  }
+
   bool try_cycle(std::size_t order) {
     next_try_ = turning_.points().size() + turning_.points().size() / 2 + 1;
     const Trace period = recent(order);
@@ -143,6 +159,7 @@ class Settling {
     const Section section = choose_section(loop_, period);
     shooting.returns = returns_of(section, period);
     auto shot = shoot(loop_, here, section, half, shooting);
+    if (shot.status == Status::converged) shorten(shot, section, half, shooting);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
     if (shot.status != Status::converged || shot.cycle.stable == false) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);

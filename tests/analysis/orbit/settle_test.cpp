@@ -119,3 +119,17 @@ TEST_CASE("turning points: a ringing that does not die while the body waits is n
   for (const auto& point : turning.points()) late += point.t > 8.0 ? 1 : 0;
   CHECK(late == 9);
 }
+
+TEST_CASE("slow hunting is one swing each way a period, not three") {
+  for (const Element<double>& friction : {Element<double>(coulomb(1.5, 1.0, 0.4)), Element<double>(lugre())}) {
+    LoopParts parts = servo_parts(friction);
+    parts.controller = pid(3.0, 0.04, 1.0);
+    const Loop loop = build_loop(parts);
+    const auto settled = run(loop, 1.0);
+    INFO(settled.why);
+    REQUIRE(settled.outcome == Outcome::cycle);
+    const Cycle& cycle = settled.shot->cycle;
+    CHECK(cycle.period == Approx(1140.0).epsilon(2e-3));  // by simulation
+    CHECK(returns_of(choose_section(loop, cycle.trace), cycle.trace) == 1);
+  }
+}
