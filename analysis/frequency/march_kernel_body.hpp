@@ -1,0 +1,381 @@
+#pragma once
+#include <cstddef>
+
+#include "limcycle/analysis/frequency/march_laws.hpp"
+#include "limcycle/analysis/lanes/pack.hpp"
+
+namespace limcycle {
+
+/// Marches the points of a task, each in a lane of its own, which takes the next one when it has come to its end.
+template <class P, int S, class Law>
+class March {
+ public:
+  using Mask = typename P::Mask;
+
+  March(const MarchNumbers& numbers, const MarchTask& task)
+      : law_(numbers), task_(task), mesh_(*task.mesh), collocation_(*task.collocation) {}
+
+  void run() {
+    for (int lane = 0; lane < P::lanes; ++lane) begin(lane);
+    while (active_ > 0) {
+      attempt();
+      finish();
+    }
+  }
+
+ private:
+  static constexpr int most_orders = 32, most_attempts = 600;
+
+  /// Phases of a panel: their geometry, and what the law knows there.
+  struct Node {
+    P sine, cosine, slope, way;  ///< slope: dphi/dq; way: 1 -+ cos(phi), from the nearer end
+    MarchPlace<P> at;
+  };
+
+  void set(P& pack, int lane, double value) { pack.v[lane] = value; }
+
+  void begin(int lane) {
+    if (next_ < task_.count) {
+      point_[lane] = next_;
+      const int i = next_++;
+      ++active_;
+      set(lane_.reach, lane, task_.reach[i]);
+      set(lane_.speed, lane, task_.speed[i]);
+      set(lane_.tempo, lane, task_.tempo[i]);
+      set(lane_.drag, lane, task_.drag[i]);
+      set(lane_.lag, lane, task_.lag[i]);
+      set(lane_.after, lane, task_.after[i]);
+      set(lane_.before, lane, task_.before[i]);
+      set(u_, lane, task_.start[i]);
+      set(b_, lane, task_.start_level[i]);
+    } else {
+      point_[lane] = -1;
+      if (lane_.after[lane] == 0.0) {  // a lane that never had a point
+        set(lane_.after, lane, 1.0);
+        set(lane_.before, lane, 1.0);
+        set(b_, lane, 1.0);
+      }
+    }
+    set(q_, lane, 0.0);
+    set(side_, lane, 1.0);
+    set(du_, lane, 1.0);
+    set(db_, lane, 1.0);
+    set(mode_, lane, 0.0);
+    set(way_, lane, 0.0);
+    set(limit_, lane, beyond);
+    set(tried_, lane, beyond);
+    set(running_, lane, point_[lane] >= 0 ? 1.0 : 0.0);
+    attempts_[lane] = 0;
+    for (int order = 0; order < task_.orders; ++order)
+      for (P& sum : sums_[order]) set(sum, lane, 0.0);
+    const auto here = point_[lane] >= 0;
+    set(end_after_, lane, here ? far_end(lane_.after[lane]) : 1.0);
+    set(end_before_, lane, here ? far_end(lane_.before[lane]) : 1.0);
+  }
+
+  /// asinh(1/scale): where tan(phi/2) has become 1.
+  static double far_end(double scale) {
+    const double y = 1.0 / scale;
+    return log(P(y + __builtin_sqrt(y * y + 1.0)))[0];
+  }
+
+  Node node(const P& q, const P& b) const {
+    const auto first = side_ > 0.0;
+    const P scale = select(first, lane_.after, lane_.before);
+    const P e = exp(q), inverse = 1.0 / e, half = 0.5 * scale;
+    const P t = half * (e - inverse), square = t * t, d = 1.0 / (1.0 + square);
+    Node here;
+    here.sine = 2.0 * t * d;
+    here.cosine = side_ * (1.0 - square) * d;
+    here.way = 2.0 * square * d;
+    here.slope = (e + inverse) * scale * d;
+    here.at = law_.place(lane_, here.sine, b);
+    return here;
+  }
+
+  void attempt() {
+    const auto first = side_ > 0.0;
+    const P rest = select(first, end_after_ - q_, q_);
+    P h = min(P(mesh_.width), min(limit_, tried_));
+    h = select(rest < h * 1.00001, rest, select(rest < 2.0 * h, select(tried_ < h * 1.00001, h, 0.5 * rest), h));
+    nodes_[0] = node(q_, b_);
+    P b_end = b_, db_end = db_;
+    if constexpr (Law::lags) {
+      for (int i = 1; i <= S; ++i) nodes_[i] = node(q_ + side_ * (h * collocation_.nodes[i]), b_);
+      solve_level(h, b_end, db_end);
+    } else {
+      for (int i = 1; i <= S; ++i) nodes_[i] = node(q_ + side_ * (h * collocation_.nodes[i]), b_);
+    }
+    const Mask solved = solve(h);
+    guard(h, solved, b_end, db_end);
+  }
+
+  /// The lagged level at the nodes, linear in itself.
+  void solve_level(const P& h, P& b_end, P& db_end) {
+    P m[S][S], x[S], y[S];
+    MarchLevel<P> level = law_.level;
+    for (int i = 0; i < S; ++i) {
+      const P scale = h * nodes_[i + 1].slope * lane_.lag;
+      x[i] = scale * level.at(lane_.speed * nodes_[i + 1].sine) + b_ * collocation_.row_sum[i];
+      y[i] = db_ * collocation_.row_sum[i];
+      for (int j = 0; j < S; ++j) m[i][j] = P(collocation_.inverse[i * S + j]);
+      m[i][i] += scale;
+    }
+    eliminate(m, x, y);
+    for (int i = 0; i < S; ++i) nodes_[i + 1].at = law_.place(lane_, nodes_[i + 1].sine, x[i]);
+    b_end = x[S - 1];
+    db_end = y[S - 1];
+  }
+
+  [[gnu::always_inline]] static void eliminate(P (&m)[S][S], P (&x)[S], P (&y)[S]) {
+#pragma GCC unroll 8
+    for (int k = 0; k < S; ++k) {
+      const P pivot = 1.0 / m[k][k];
+      m[k][k] = pivot;
+#pragma GCC unroll 8
+      for (int i = k + 1; i < S; ++i) {
+        const P factor = m[i][k] * pivot;
+#pragma GCC unroll 8
+        for (int j = k + 1; j < S; ++j) m[i][j] = m[i][j] - factor * m[k][j];
+        x[i] = x[i] - factor * x[k];
+        y[i] = y[i] - factor * y[k];
+      }
+    }
+#pragma GCC unroll 8
+    for (int i = S - 1; i >= 0; --i) {
+#pragma GCC unroll 8
+      for (int j = i + 1; j < S; ++j) {
+        x[i] = x[i] - m[i][j] * x[j];
+        y[i] = y[i] - m[i][j] * y[j];
+      }
+      x[i] = x[i] * m[i][i];
+      y[i] = y[i] * m[i][i];
+    }
+  }
+
+  /// u and du at the nodes; where Newton came to its end.
+  Mask solve(const P& h) {
+    const Mask holds = Law::sticks ? abs(mode_) < 0.5 : mode_ < -beyond;
+    z_[0] = u_;
+    for (int i = 1; i <= S; ++i)
+      z_[i] = select(holds, u_ + lane_.reach * side_ * (nodes_[i].way - way_), u_);
+    Mask done = holds;
+    P step;
+    for (int pass = 0; pass < 7; ++pass) {
+      P m[S][S], x[S], y[S];
+#pragma GCC unroll 8
+      for (int i = 0; i < S; ++i) {
+        const MarchRate<P> rate = law_.rate(nodes_[i + 1].at, mode_, z_[i + 1], lane_);
+        const P scale = h * nodes_[i + 1].slope;
+        x[i] = scale * rate.rate;
+        y[i] = du_ * collocation_.row_sum[i];
+#pragma GCC unroll 8
+        for (int j = 0; j < S; ++j) {
+          m[i][j] = P(collocation_.inverse[i * S + j]);
+          x[i] = x[i] - (z_[j + 1] - u_) * collocation_.inverse[i * S + j];
+        }
+        m[i][i] = m[i][i] - scale * rate.slope;
+      }
+      eliminate(m, x, y);
+      step = P(0.0);
+#pragma GCC unroll 8
+      for (int i = 0; i < S; ++i) {
+        step = max(step, abs(x[i]));
+        z_[i + 1] = select(done, z_[i + 1], z_[i + 1] + x[i]);
+        dz_[i + 1] = select(done, dz_[i + 1], y[i]);
+      }
+      done = done | (step < mesh_.newton);
+      if (done.all()) break;
+    }
+    for (int i = 1; i <= S; ++i) dz_[i] = select(holds, du_, dz_[i]);
+    return done;
+  }
+
+  /// Takes the panel where it lasts to its end; else finds how long it may be.
+  void guard(const P& h, const Mask& solved, const P& b_end, const P& db_end) {
+    P low[S + 1], high[S + 1];
+    const P edge = P(-mesh_.located);
+    Mask out = mode_ < -beyond, lower = out;
+    P before = P(0.0), beyond_it = P(0.0);
+    for (int i = 0; i <= S; ++i) {
+      const MarchBand<P> band = law_.band(nodes_[i].at, mode_);
+      low[i] = z_[i] - band.low;
+      high[i] = band.high - z_[i];
+      // Where a mode begins its edge may be missed by more than where it ends: modes must not toss it to and fro.
+      const P least = i > 0 ? edge : 1e3 * edge;
+      const Mask below = low[i] < least, above = high[i] < least;
+      const Mask now = (below | above) & !out;
+      lower = lower | (now & below);
+      before = select(now, P(i > 0 ? collocation_.nodes[i - 1] : 0.0), before);
+      beyond_it = select(now, P(collocation_.nodes[i]), beyond_it);
+      out = out | now;
+    }
+    out = out & solved;
+    P share = P(1.0);
+    if (out.any()) share = root(low, high, lower, before, beyond_it);
+    const Mask at_once = out & (share * h < 1e-12);
+    const Mask again = (out & !at_once) | !solved;
+    tried_ = select(again, select(solved, share * h, 0.5 * h), P(beyond));
+    const Mask runs = running_ > 0.5;
+    const Mask taken = (!out) & solved & runs;
+    // The end of a panel may be an edge.
+    const Mask at_low = taken & (low[S] < -edge), at_high = taken & (high[S] < -edge);
+    const P low_slope = slope_at_end(low), high_slope = slope_at_end(high);
+    const Mask leaves_low = at_low & (low_slope < 0.0), leaves_high = at_high & (high_slope < 0.0);
+    take(h, taken, b_end, db_end);
+    switch_mode(leaves_low | leaves_high, leaves_high, select(leaves_high, -high_slope, low_slope), h);
+    const Mask jumps = at_once & runs;
+    if (jumps.any()) {
+      mode_ = select(jumps, law_.next(mode_, !lower), mode_);
+      relax(jumps, nodes_[0], u_);
+    }
+  }
+
+  P slope_at_end(const P (&values)[S + 1]) const {
+    P sum = P(0.0);
+    // Bounds that are never met cancel only roughly.
+    for (int i = 0; i <= S; ++i) sum += collocation_.end_slope[i] * (values[i] - values[S]);
+    return sum;
+  }
+
+  /// Adds the panel to the sums and moves on.
+  void take(const P& h, const Mask& taken, const P& b_end, const P& db_end) {
+    for (int i = 1; i <= S; ++i) {
+      const Node& here = nodes_[i];
+      const P weight = select(taken, h * here.slope * collocation_.weights[i], P(0.0));
+      const P u = select(taken, z_[i], P(0.0)) * weight, du = select(taken, dz_[i], P(0.0)) * weight;
+      const P twice = 4.0 * here.cosine * here.cosine - 2.0;
+      P sine = here.sine, cosine = here.cosine, sine_before = -sine, cosine_before = cosine;
+      for (int order = 0; order < task_.orders; ++order) {
+        sums_[order][0] += u * sine;
+        sums_[order][1] += u * cosine;
+        sums_[order][2] += du * sine;
+        sums_[order][3] += du * cosine;
+        const P s = twice * sine - sine_before, c = twice * cosine - cosine_before;
+        sine_before = sine;
+        cosine_before = cosine;
+        sine = s;
+        cosine = c;
+      }
+    }
+    u_ = select(taken, z_[S], u_);
+    du_ = select(taken, dz_[S], du_);
+    b_ = select(taken, b_end, b_);
+    db_ = select(taken, db_end, db_);
+    way_ = select(taken, nodes_[S].way, way_);
+    const auto first = side_ > 0.0;
+    const P q = q_ + side_ * h;
+    q_ = select(taken, q, q_);
+    limit_ = select(taken, limit_ * (1.0 + 2.0 * mesh_.width), limit_);
+    limit_ = min(limit_, P(beyond));
+    // From the one end over to the other.
+    const Mask over = taken & first & (end_after_ - q_ <= 1e-12 * end_after_);
+    q_ = select(over, end_before_, q_);
+    side_ = select(over, P(-1.0), side_);
+    way_ = select(over, P(1.0), way_);
+  }
+
+  /// What follows where a panel has ended at an edge that moves away from u at the rate `apart` over the panel.
+  void switch_mode(const Mask& switched, const Mask& up, const P& apart, const P& h) {
+    if (!switched.any()) return;
+    const Node& here = nodes_[S];
+    const P before = law_.rate(here.at, mode_, u_, lane_).rate;
+    mode_ = select(switched, law_.next(mode_, up), mode_);
+    const P jump = (law_.rate(here.at, mode_, u_, lane_).rate - before) * h * here.slope;
+    du_ = select(switched, du_ * (apart + jump) / apart, du_);
+    relax(switched, here, u_);
+  }
+
+  /// A relaxation that follows a switch is cut into panels that grow.
+  void relax(const Mask& switched, const Node& here, const P& u) {
+    const P rate = abs(law_.rate(here.at, mode_, u, lane_).rate), stiffness = law_.stiffness(here.at, mode_, lane_);
+    const P shortest = mesh_.width / (stiffness * here.slope + 1e-300);
+    limit_ = select(switched, select(rate > mesh_.layer * stiffness, shortest, P(beyond)), limit_);
+  }
+
+  /// Where the guard that turned negative is zero, of the polynomial through the nodes.
+  P root(const P (&low)[S + 1], const P (&high)[S + 1], const Mask& lower, const P& from, const P& to) const {
+    P c[S + 1];
+    for (int i = 0; i <= S; ++i) c[i] = select(lower, low[i], high[i]);
+    for (int k = 1; k <= S; ++k)
+      for (int i = S; i >= k; --i) c[i] = (c[i] - c[i - 1]) * collocation_.apart[i][i - k];
+    P left = from, right = to, t = 0.5 * (from + to);
+    for (int pass = 0; pass < 7; ++pass) {
+      P value = c[S], slope = P(0.0);
+      for (int i = S - 1; i >= 0; --i) {
+        const P step = t - collocation_.nodes[i];
+        slope = slope * step + value;
+        value = value * step + c[i];
+      }
+      const Mask inside = value > 0.0;
+      left = select(inside, t, left);
+      right = select(inside, right, t);
+      const P guess = t - value / slope;
+      t = select((guess >= left) & (guess <= right), guess, 0.5 * (left + right));
+    }
+    return t;
+  }
+
+  /// Lanes that have come to their end hand it in and begin anew.
+  void finish() {
+    const Mask ended = (running_ > 0.5) & (side_ < 0.0) & (q_ <= 1e-14);
+    const bool any = ended.any();
+    for (int lane = 0; lane < P::lanes; ++lane) {
+      if (point_[lane] < 0) continue;
+      const bool fails = ++attempts_[lane] > most_attempts;
+      if (!(any && ended.bits[lane] != 0) && !fails) continue;
+      hand_in(lane, fails);
+      --active_;
+      begin(lane);
+    }
+  }
+
+  void hand_in(int lane, bool fails) {
+    const int i = point_[lane];
+    task_.end[i] = u_[lane];
+    task_.slope[i] = du_[lane];
+    task_.end_level[i] = b_[lane];
+    task_.level_slope[i] = db_[lane];
+    task_.panels[i] = fails ? 0 : attempts_[lane];
+    double* sums = task_.sums + std::ptrdiff_t{4} * task_.orders * i;
+    for (int order = 0; order < task_.orders; ++order)
+      for (int k = 0; k < 4; ++k) sums[4 * order + k] = sums_[order][k][lane];
+  }
+
+  Law law_;
+  const MarchTask& task_;
+  const MarchMesh& mesh_;
+  const MarchCollocation& collocation_;
+  int next_ = 0, active_ = 0;
+  int point_[P::lanes] = {}, attempts_[P::lanes] = {};
+
+  MarchLane<P> lane_;
+  P q_, side_, end_after_, end_before_;  ///< distance from the nearer end, which it is (1 or -1), and how far they go
+  P u_, du_, b_, db_, mode_, way_, limit_, tried_, running_;
+  Node nodes_[S + 1];
+  P z_[S + 1], dz_[S + 1];
+  P sums_[most_orders][4];
+};
+
+template <class P, int S, template <class> class Law>
+void march(const MarchNumbers& numbers, const MarchTask& task) {
+  March<P, S, Law<P>>(numbers, task).run();
+}
+
+template <class P>
+constexpr MarchKernels march_kernels() {
+  MarchKernels k;
+  k.of[0][5] = march<P, 5, ElastoPlasticMarch>;
+  k.of[1][5] = march<P, 5, SliderMarch>;
+  k.of[2][5] = march<P, 5, CappedMarch>;
+  k.of[3][5] = march<P, 5, DahlMarch>;
+  k.of[4][5] = march<P, 5, BoucWenMarch>;
+  k.of[0][8] = march<P, 8, ElastoPlasticMarch>;
+  k.of[1][8] = march<P, 8, SliderMarch>;
+  k.of[2][8] = march<P, 8, CappedMarch>;
+  k.of[3][8] = march<P, 8, DahlMarch>;
+  k.of[4][8] = march<P, 8, BoucWenMarch>;
+  return k;
+}
+
+}  // namespace limcycle
