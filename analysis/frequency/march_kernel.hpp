@@ -36,7 +36,8 @@ struct MarchCollocation {
   double weights[9];     ///< of the integral; the first is 0
   double inverse[64];    ///< of the matrix, row-major
   double row_sum[8];     ///< of that
-  double end_slope[9];   ///< derivative at 1 of the polynomial through the nodes
+  double start_slope[9];  ///< derivative at 0 of the polynomial through the nodes; the first is not used
+  double end_slope[9];   ///< the same at 1; the last is not used
   double apart[9][9];    ///< [i][j]: 1/(nodes[i] - nodes[j])
 };
 
@@ -64,7 +65,7 @@ struct MarchTask {
   double *end = nullptr, *slope = nullptr;              ///< u(pi) and its derivative by u(0)
   double *end_level = nullptr, *level_slope = nullptr;  ///< the same of b
   double* sums = nullptr;     ///< [point][order][u, du/du(0)][sine, cosine]: integrals over the half period
-  int* panels = nullptr;      ///< tried; 0 where it came to no end
+  int* panels = nullptr;      ///< tried; 0 where it came to no end; negative where a switch may have been missed
 
   static constexpr int sums_of(int orders) { return 4 * orders; }
 };

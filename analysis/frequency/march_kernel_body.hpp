@@ -63,6 +63,7 @@ class March {
     set(mode_, lane, 0.0);
     set(way_, lane, 0.0);
     set(limit_, lane, beyond);
+    set(doubt_, lane, 0.0);
     set(tried_, lane, beyond);
     set(running_, lane, point_[lane] >= 0 ? 1.0 : 0.0);
     attempts_[lane] = 0;
@@ -97,7 +98,7 @@ class March {
     const auto first = side_ > 0.0;
     const P rest = select(first, end_after_ - q_, q_);
     P h = min(P(mesh_.width), min(limit_, tried_));
-    h = select(rest < h * 1.00001, rest, select(rest < 2.0 * h, select(tried_ < h * 1.00001, h, 0.5 * rest), h));
+    h = select(tried_ < beyond, min(h, rest), select(rest < h * 1.00001, rest, select(rest < 2.0 * h, 0.5 * rest, h)));
     nodes_[0] = node(q_, b_);
     P b_end = b_, db_end = db_;
     if constexpr (Law::lags) {
@@ -194,7 +195,9 @@ class March {
   /// Takes the panel where it lasts to its end; else finds how long it may be.
   void guard(const P& h, const Mask& solved, const P& b_end, const P& db_end) {
     P low[S + 1], high[S + 1];
-    const P edge = P(-mesh_.located);
+    P edge = P(-(Law::gentle ? 0.3 * __builtin_sqrt(mesh_.located) : mesh_.located < 1e-10 ? mesh_.located : 1e-10));
+    // At a cap a fast relaxation makes much of little.
+    if constexpr (Law::lags) edge = min(edge / (1.0 + lane_.tempo), P(-1e-14));
     Mask out = mode_ < -beyond, lower = out;
     P before = P(0.0), beyond_it = P(0.0);
     for (int i = 0; i <= S; ++i) {
@@ -202,7 +205,7 @@ class March {
       low[i] = z_[i] - band.low;
       high[i] = band.high - z_[i];
       // Where a mode begins its edge may be missed by more than where it ends: modes must not toss it to and fro.
-      const P least = i > 0 ? edge : 1e3 * edge;
+      const P least = i > 0 ? edge : (Law::gentle ? 30.0 : 1e3) * edge;
       const Mask below = low[i] < least, above = high[i] < least;
       const Mask now = (below | above) & !out;
       lower = lower | (now & below);
@@ -211,8 +214,8 @@ class March {
       out = out | now;
     }
     out = out & solved;
-    P share = P(1.0);
-    if (out.any()) share = root(low, high, lower, before, beyond_it);
+    P share = P(1.0), root_slope = P(-1.0);
+    if (out.any()) share = root(low, high, lower, before, beyond_it, root_slope);
     const Mask at_once = out & (share * h < 1e-12);
     const Mask again = (out & !at_once) | !solved;
     tried_ = select(again, select(solved, share * h, 0.5 * h), P(beyond));
@@ -223,12 +226,20 @@ class March {
     const P low_slope = slope_at_end(low), high_slope = slope_at_end(high);
     const Mask leaves_low = at_low & (low_slope < 0.0), leaves_high = at_high & (high_slope < 0.0);
     take(h, taken, b_end, db_end);
-    switch_mode(leaves_low | leaves_high, leaves_high, select(leaves_high, -high_slope, low_slope), h);
-    const Mask jumps = at_once & runs;
-    if (jumps.any()) {
-      mode_ = select(jumps, law_.next(mode_, !lower), mode_);
-      relax(jumps, nodes_[0], u_);
+    const Mask jumps = at_once & runs, ends = leaves_low | leaves_high;
+    if (ends.any()) switch_mode(ends, leaves_high, select(leaves_high, high_slope, low_slope), h, nodes_[S]);
+    if (jumps.any()) switch_mode(jumps, !lower, root_slope, h, nodes_[0]);
+  }
+
+  /// Whether a bound came so near within the panel that it may have been met between the nodes.
+  Mask nearly_met(const P (&values)[S + 1]) const {
+    P slope = P(0.0), least = values[0];
+    for (int i = 1; i <= S; ++i) {
+      slope += collocation_.start_slope[i] * (values[i] - values[0]);
+      least = min(least, values[i]);
     }
+    const P depth = max(values[0], values[S]) - least;
+    return (slope < 0.0) & (slope_at_end(values) > 0.0) & (least < 0.1 * depth);
   }
 
   P slope_at_end(const P (&values)[S + 1]) const {
@@ -275,14 +286,13 @@ class March {
     way_ = select(over, P(1.0), way_);
   }
 
-  /// What follows where a panel has ended at an edge that moves away from u at the rate `apart` over the panel.
-  void switch_mode(const Mask& switched, const Mask& up, const P& apart, const P& h) {
-    if (!switched.any()) return;
-    const Node& here = nodes_[S];
+  /// At an edge, the distance from which falls at the rate `slope` < 0 over the panel.
+  void switch_mode(const Mask& switched, const Mask& up, const P& slope, const P& h, const Node& here) {
     const P before = law_.rate(here.at, mode_, u_, lane_).rate;
     mode_ = select(switched, law_.next(mode_, up), mode_);
     const P jump = (law_.rate(here.at, mode_, u_, lane_).rate - before) * h * here.slope;
-    du_ = select(switched, du_ * (apart + jump) / apart, du_);
+    const P apart = select(up, -slope, slope);
+    du_ = select(switched & (slope < 0.0), du_ * (apart + jump) / apart, du_);
     relax(switched, here, u_);
   }
 
@@ -294,14 +304,16 @@ class March {
   }
 
   /// Where the guard that turned negative is zero, of the polynomial through the nodes.
-  P root(const P (&low)[S + 1], const P (&high)[S + 1], const Mask& lower, const P& from, const P& to) const {
+  P root(const P (&low)[S + 1], const P (&high)[S + 1], const Mask& lower, const P& from, const P& to,
+         P& slope) const {
     P c[S + 1];
     for (int i = 0; i <= S; ++i) c[i] = select(lower, low[i], high[i]);
     for (int k = 1; k <= S; ++k)
       for (int i = S; i >= k; --i) c[i] = (c[i] - c[i - 1]) * collocation_.apart[i][i - k];
     P left = from, right = to, t = 0.5 * (from + to);
     for (int pass = 0; pass < 7; ++pass) {
-      P value = c[S], slope = P(0.0);
+      P value = c[S];
+      slope = P(0.0);
       for (int i = S - 1; i >= 0; --i) {
         const P step = t - collocation_.nodes[i];
         slope = slope * step + value;
@@ -336,7 +348,7 @@ class March {
     task_.slope[i] = du_[lane];
     task_.end_level[i] = b_[lane];
     task_.level_slope[i] = db_[lane];
-    task_.panels[i] = fails ? 0 : attempts_[lane];
+    task_.panels[i] = fails ? 0 : doubt_[lane] > 0.0 ? -attempts_[lane] : attempts_[lane];
     double* sums = task_.sums + std::ptrdiff_t{4} * task_.orders * i;
     for (int order = 0; order < task_.orders; ++order)
       for (int k = 0; k < 4; ++k) sums[4 * order + k] = sums_[order][k][lane];
@@ -351,7 +363,7 @@ class March {
 
   MarchLane<P> lane_;
   P q_, side_, end_after_, end_before_;  ///< distance from the nearer end, which it is (1 or -1), and how far they go
-  P u_, du_, b_, db_, mode_, way_, limit_, tried_, running_;
+  P u_, du_, b_, db_, mode_, way_, limit_, tried_, running_, doubt_;
   Node nodes_[S + 1];
   P z_[S + 1], dz_[S + 1];
   P sums_[most_orders][4];

@@ -45,12 +45,14 @@ struct MarchLevel {
   P at(const P& speed) const { return curve.level(speed, true); }
 };
 
+/// Laws, all alike: `sticks`, u follows the motion in mode 0; `lags`, there is a b; `gentle`, du/dphi does not jump where
+/// the mode changes, so that to miss the edge by little is felt by its square only.
 inline constexpr double beyond = 1e300;  ///< a bound that is never met
 
 /// Modes: 0 elastic, 1 between, 2 plastic.
 template <class P>
 struct ElastoPlasticMarch {
-  static constexpr bool sticks = true, lags = false;
+  static constexpr bool sticks = true, lags = false, gentle = true;
   MarchLevel<P> level;
   double share, fixed;
 
@@ -88,7 +90,7 @@ struct ElastoPlasticMarch {
 /// Modes: 0 sticks, 1 slips.
 template <class P>
 struct SliderMarch {
-  static constexpr bool sticks = true, lags = false;
+  static constexpr bool sticks = true, lags = false, gentle = false;
   MarchLevel<P> level;
 
   explicit SliderMarch(const MarchNumbers& n) : level(n) {}
@@ -114,7 +116,7 @@ struct SliderMarch {
 /// Modes: 0 below the cap, 1 and -1 at the upper and the lower one.
 template <class P>
 struct CappedMarch {
-  static constexpr bool sticks = true, lags = true;
+  static constexpr bool sticks = true, lags = true, gentle = true;
   MarchLevel<P> level;
 
   explicit CappedMarch(const MarchNumbers& n) : level(n) {}
@@ -141,7 +143,7 @@ struct CappedMarch {
 /// One mode.
 template <class P>
 struct DahlMarch {
-  static constexpr bool sticks = false, lags = false;
+  static constexpr bool sticks = false, lags = false, gentle = false;
   double exponent;
 
   explicit DahlMarch(const MarchNumbers& n) : exponent(n.exponent) {}
@@ -159,7 +161,7 @@ struct DahlMarch {
 /// Modes: 0 for u < 0, 1 for u > 0.
 template <class P>
 struct BoucWenMarch {
-  static constexpr bool sticks = false, lags = false;
+  static constexpr bool sticks = false, lags = false, gentle = true;
   double exponent, curvature;
 
   explicit BoucWenMarch(const MarchNumbers& n) : exponent(n.exponent), curvature(n.curvature) {}

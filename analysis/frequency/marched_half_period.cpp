@@ -25,8 +25,8 @@ constexpr std::array<Mesh, 6> meshes{{{{5, 1.4, 0.7, 0.05, 1e-2, 1e-5, 1e-2}, 1.
                                       {{5, 1.0, 0.5, 0.02, 1e-3, 1e-7, 1e-3}, 1.0, 1e-5},
                                       {{5, 0.6, 0.4, 0.005, 1e-4, 1e-9, 1e-4}, 0.3, 1e-7},
                                       {{8, 0.7, 0.3, 5e-4, 1e-5, 1e-11, 1e-5}, 0.3, 1e-9},
-                                      {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-13, 1e-6}, 0.3, 1e-11},
-                                      {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-13, 1e-7}, 0.3, 1e-12}}};
+                                      {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-12, 1e-6}, 0.3, 1e-11},
+                                      {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-12, 1e-7}, 0.3, 1e-12}}};
 
 MarchCollocation collocation_of(int stages) {
   MarchCollocation c{};
@@ -47,6 +47,7 @@ MarchCollocation collocation_of(int stages) {
       c.apart[i][j] = 1.0 / (c.nodes[i] - c.nodes[j]);
     }
   }
+  for (int i = 1; i <= stages; ++i) c.start_slope[i] = static_cast<double>(weight[i] / weight[0]) / -c.nodes[i];
   for (int i = 0; i < stages; ++i)
     c.end_slope[i] = static_cast<double>(weight[i] / weight[stages]) / (c.nodes[stages] - c.nodes[i]);
   return c;
@@ -178,6 +179,7 @@ class MarchedHalfPeriod::Batch {
     tolerance_ = 0.1 * std::sqrt(mesh.least);
     outputs_.assign(points_.size() * static_cast<std::size_t>(orders_), 0.0);
     failed_.assign(points_.size(), false);
+    doubtful_.assign(points_.size(), false);
     panels_.assign(points_.size(), 0);
     for (std::size_t s = 0; s < law_.states.size(); ++s) {
       pending_.clear();
@@ -188,6 +190,7 @@ class MarchedHalfPeriod::Batch {
   }
 
   bool failed(std::size_t point) const { return failed_[point]; }
+  bool doubtful(std::size_t point) const { return doubtful_[point]; }
   std::complex<double> output(std::size_t point, int order) const {
     return outputs_[point * static_cast<std::size_t>(orders_) + static_cast<std::size_t>(order)];
   }
@@ -228,6 +231,11 @@ class MarchedHalfPeriod::Batch {
     } else {
       const double inner = std::max(speed, mesh_->ignored * std::min(way, 1.0));
       after = std::min(way, inner);
+      if (state.law == MarchLaw::slider && law_.kink > 0.0 && law_.kink < 2.0) {
+        // What is stretched to the level slips at once where that falls faster than the stretch: up to this phase.
+        const double fall = 2.0 * (1.0 - state.numbers.ratio) * std::pow(m.speed, law_.kink) / m.reach;
+        after = std::clamp(std::pow(fall, 1.0 / (2.0 - law_.kink)), 1e-4 * after, after);
+      }
       if (state.law == MarchLaw::elasto_plastic)
         before = speed < way ? inner : way;
       else
@@ -277,12 +285,12 @@ class MarchedHalfPeriod::Batch {
   /// Newton on the half period; whether that is done.
   bool settle(const MarchedState& state, const MarchTask& task, std::size_t i) {
     Marching& m = pending_[i];
-    panels_[m.point] += task.panels[i];
+    panels_[m.point] += std::abs(task.panels[i]);
     if (task.panels[i] == 0) {
       failed_[m.point] = true;
       return true;
     }
-    const double slope = std::clamp(task.slope[i], 0.0, 1e3);
+    const double slope = std::clamp(task.slope[i], -0.9, 1e3);
     const double change = -(m.start + task.end[i]) / (1.0 + slope);
     double level_change = 0.0;
     if (state.lag > 0.0) level_change = (task.end_level[i] - m.level) / (1.0 - task.level_slope[i]);
@@ -291,6 +299,7 @@ class MarchedHalfPeriod::Batch {
     m.level += level_change;
     start = {m.start, m.level, true};
     if (!(std::abs(change) <= tolerance_ * std::min(1.0, m.reach)) || !(std::abs(level_change) <= 1e-3 * tolerance_)) return false;
+    if (task.panels[i] < 0) doubtful_[m.point] = true;
     const double w = points_[m.point].frequency;
     const double* sums = task.sums + i * static_cast<std::size_t>(MarchTask::sums_of(orders_));
     for (int order = 0; order < orders_; ++order, sums += 4) {
@@ -314,7 +323,7 @@ class MarchedHalfPeriod::Batch {
   std::vector<double> numbers_;
   std::vector<int> panel_counts_, panels_;
   std::vector<std::complex<double>> outputs_;
-  std::vector<bool> failed_;
+  std::vector<bool> failed_, doubtful_;
 };
 
 DescribingFunction MarchedHalfPeriod::collect(const Batch& batch, std::size_t i, const DfPoint& point) const {
@@ -338,6 +347,7 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
   Batch batch(*this, points);
   std::vector<std::complex<double>> coarser(points.size());
   std::vector<bool> have(points.size(), false);
+  std::vector<int> failures(points.size(), 0);
   std::size_t first = 0;
   while (first + 2 < limcycle::meshes.size() && limcycle::meshes[first + 1].least > 0.3 * options_.accuracy) ++first;
   for (std::size_t k = first; k < limcycle::meshes.size() && !wanted.empty(); ++k) {
@@ -346,10 +356,10 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
     std::erase_if(wanted, [&](std::size_t i) {
       if (batch.failed(i)) {
         have[i] = false;
-        return false;
+        return ++failures[i] == 2;
       }
       DescribingFunction now = collect(batch, i, points[i]);
-      if (have[i]) {
+      if (have[i] && !batch.doubtful(i)) {
         now.error = mesh.trust * size(now.gain - coarser[i]) / size(now.gain) + mesh.least + roundings;
         if (now.error <= options_.accuracy) {
           now.method = "kernel";
@@ -357,7 +367,7 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
           return true;
         }
       }
-      have[i] = true;
+      have[i] = !batch.doubtful(i);
       coarser[i] = now.gain;
       return false;
     });
