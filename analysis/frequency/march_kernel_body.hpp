@@ -64,6 +64,8 @@ class March {
     set(way_, lane, 0.0);
     set(limit_, lane, beyond);
     set(doubt_, lane, 0.0);
+    set(fell_low_, lane, 0.0);
+    set(fell_high_, lane, 0.0);
     set(tried_, lane, beyond);
     set(running_, lane, point_[lane] >= 0 ? 1.0 : 0.0);
     attempts_[lane] = 0;
@@ -226,20 +228,27 @@ class March {
     const P low_slope = slope_at_end(low), high_slope = slope_at_end(high);
     const Mask leaves_low = at_low & (low_slope < 0.0), leaves_high = at_high & (high_slope < 0.0);
     take(h, taken, b_end, db_end);
+    if constexpr (Law::sticks && !Law::gentle) {
+      const Mask sticking = taken & (abs(mode_) < 0.5);
+      const Mask near = nearly_met(low, low_slope, fell_low_) | nearly_met(high, high_slope, fell_high_);
+      doubt_ = select(sticking & near, P(1.0), doubt_);
+      fell_low_ = select(taken, low_slope, fell_low_);
+      fell_high_ = select(taken, high_slope, fell_high_);
+    }
     const Mask jumps = at_once & runs, ends = leaves_low | leaves_high;
     if (ends.any()) switch_mode(ends, leaves_high, select(leaves_high, high_slope, low_slope), h, nodes_[S]);
     if (jumps.any()) switch_mode(jumps, !lower, root_slope, h, nodes_[0]);
   }
 
-  /// Whether a bound came so near within the panel that it may have been met between the nodes.
-  Mask nearly_met(const P (&values)[S + 1]) const {
-    P slope = P(0.0), least = values[0];
-    for (int i = 1; i <= S; ++i) {
-      slope += collocation_.start_slope[i] * (values[i] - values[0]);
-      least = min(least, values[i]);
-    }
+  /// Whether a bound came so near within the panel that it may have been met between the nodes; `fell`: slope at the
+  /// end of the panel before.
+  Mask nearly_met(const P (&values)[S + 1], const P& end_slope, const P& fell) const {
+    P least = values[0];
+    for (int i = 1; i <= S; ++i) least = min(least, values[i]);
+    P start = P(0.0);
+    for (int i = 1; i <= S; ++i) start += collocation_.start_slope[i] * (values[i] - values[0]);
     const P depth = max(values[0], values[S]) - least;
-    return (slope < 0.0) & (slope_at_end(values) > 0.0) & (least < 0.1 * depth);
+    return ((fell < 0.0) | (start < 0.0)) & (end_slope > 0.0) & (least < 0.1 * depth + 1e-9);
   }
 
   P slope_at_end(const P (&values)[S + 1]) const {
@@ -363,7 +372,7 @@ class March {
 
   MarchLane<P> lane_;
   P q_, side_, end_after_, end_before_;  ///< distance from the nearer end, which it is (1 or -1), and how far they go
-  P u_, du_, b_, db_, mode_, way_, limit_, tried_, running_, doubt_;
+  P u_, du_, b_, db_, mode_, way_, limit_, tried_, running_, doubt_, fell_low_, fell_high_;
   Node nodes_[S + 1];
   P z_[S + 1], dz_[S + 1];
   P sums_[most_orders][4];

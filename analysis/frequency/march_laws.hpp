@@ -161,7 +161,7 @@ struct DahlMarch {
 /// Modes: 0 for u < 0, 1 for u > 0.
 template <class P>
 struct BoucWenMarch {
-  static constexpr bool sticks = false, lags = false, gentle = true;
+  static constexpr bool sticks = false, lags = false, gentle = false;
   double exponent, curvature;
 
   explicit BoucWenMarch(const MarchNumbers& n) : exponent(n.exponent), curvature(n.curvature) {}

@@ -15,18 +15,17 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double roundings = 1e-13;
 
-/// From coarse to fine. The difference of two neighbours, times `trust`, bounds the error of the finer one; `least` is
-/// what their agreement by chance could hide.
+/// From coarse to fine. `least` is what their agreement by chance could hide.
 struct Mesh {
   MarchMesh march;
-  double trust = 1.0, least = 0.0;
+  double least = 0.0;
 };
-constexpr std::array<Mesh, 6> meshes{{{{5, 1.4, 0.7, 0.05, 1e-2, 1e-5, 1e-2}, 1.0, 1e-3},
-                                      {{5, 1.0, 0.5, 0.02, 1e-3, 1e-7, 1e-3}, 1.0, 1e-5},
-                                      {{5, 0.6, 0.4, 0.005, 1e-4, 1e-9, 1e-4}, 0.3, 1e-7},
-                                      {{8, 0.7, 0.3, 5e-4, 1e-5, 1e-11, 1e-5}, 0.3, 1e-9},
-                                      {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-12, 1e-6}, 0.3, 1e-11},
-                                      {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-12, 1e-7}, 0.3, 1e-12}}};
+constexpr std::array<Mesh, 6> meshes{{{{5, 1.3, 0.6, 0.04, 5e-3, 1e-6, 5e-3}, 1e-3},
+                                      {{5, 0.8, 0.45, 0.01, 3e-4, 1e-8, 3e-4}, 5e-6},
+                                      {{5, 0.55, 0.35, 0.004, 1e-4, 1e-9, 1e-4}, 2e-7},
+                                      {{8, 0.7, 0.3, 5e-4, 1e-5, 1e-11, 1e-5}, 2e-9},
+                                      {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-12, 1e-6}, 2e-11},
+                                      {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-12, 1e-7}, 2e-12}}};
 
 MarchCollocation collocation_of(int stages) {
   MarchCollocation c{};
@@ -135,7 +134,8 @@ MarchedLaw marched(const BoucWen<double>& law) {
   state.numbers.curvature = (law.gamma - law.beta) / (law.gamma + law.beta);
   state.reach = law.A / (law.D * largest);
   state.force = (1.0 - law.alpha) * law.k * law.D * largest;
-  return {{state}, law.alpha * law.k};
+  const bool whole = law.n == std::floor(law.n);
+  return {{state}, law.alpha * law.k, 0.0, 0.0, whole ? 2.0 : 5.0};
 }
 
 /// |z| of numbers that are far from the ends of the range.
@@ -350,6 +350,8 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
   std::vector<int> failures(points.size(), 0);
   std::size_t first = 0;
   while (first + 2 < limcycle::meshes.size() && limcycle::meshes[first + 1].least > 0.3 * options_.accuracy) ++first;
+  // A slider that slips at once, or not, is another motion: coarse meshes may agree on the wrong one.
+  if (law_.states.front().law == MarchLaw::slider) first = std::max<std::size_t>(first, law_.kink > 0.0 ? 2 : 1);
   for (std::size_t k = first; k < limcycle::meshes.size() && !wanted.empty(); ++k) {
     const Mesh& mesh = limcycle::meshes[k];
     batch.run(mesh, wanted);
@@ -360,7 +362,7 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
       }
       DescribingFunction now = collect(batch, i, points[i]);
       if (have[i] && !batch.doubtful(i)) {
-        now.error = mesh.trust * size(now.gain - coarser[i]) / size(now.gain) + mesh.least + roundings;
+        now.error = law_.trust * size(now.gain - coarser[i]) / size(now.gain) + mesh.least + roundings;
         if (now.error <= options_.accuracy) {
           now.method = "kernel";
           results[i] = std::move(now);

@@ -24,6 +24,8 @@ struct MarchedLaw {
   std::vector<MarchedState> states;
   double spring = 0.0, viscous = 0.0;  ///< the rest of the output: spring x + viscous v
   double kink = 0.0;                   ///< the level changes like |v|^kink at rest; 0: it is smooth and even
+  /// The error of a mesh is at most so many times its difference from the coarser one.
+  double trust = 2.0;
 
   /// Elasto-plastic and GMS without direction dependence, Xiong likewise, Dahl with an exponent above 1, Bouc-Wen with
   /// beta >= 0; empty for the others.
@@ -36,8 +38,8 @@ class MarchedHalfPeriod {
  public:
   MarchedHalfPeriod(MarchedLaw law, const DfOptions& options) : law_(std::move(law)), options_(options) {}
 
-  /// Points are marched on two meshes or more, from coarse to fine. The error is what their difference says, see
-  /// `trust` there. Where the wanted accuracy was not reached `method` stays empty.
+  /// Points are marched on two meshes or more, from coarse to fine. The error is what the difference of the last two
+  /// says, see `trust`. Where the wanted accuracy was not reached `method` stays empty.
   void compute(std::span<const DfPoint> points, std::span<DescribingFunction> results) const;
 
   /// On one mesh of those, 0..; empty where no periodic state was found. For tests.
