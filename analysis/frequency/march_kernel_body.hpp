@@ -64,6 +64,9 @@ class March {
     set(way_, lane, 0.0);
     set(limit_, lane, beyond);
     set(doubt_, lane, 0.0);
+    set(known_, lane, 0.0);
+    set(last_h_, lane, 1.0);
+    for (P& value : shape_) set(value, lane, 0.0);
     set(fell_low_, lane, 0.0);
     set(fell_high_, lane, 0.0);
     set(tried_, lane, beyond);
@@ -160,8 +163,11 @@ class March {
   Mask solve(const P& h) {
     const Mask holds = Law::sticks ? abs(mode_) < 0.5 : mode_ < -beyond;
     z_[0] = u_;
-    for (int i = 1; i <= S; ++i)
-      z_[i] = select(holds, u_ + lane_.reach * side_ * (nodes_[i].way - way_), u_);
+    const P stretch = h / last_h_;
+    for (int i = 1; i <= S; ++i) {
+      const P guess = min(P(2.0), max(P(-2.0), polynomial(offset_ + collocation_.nodes[i] * stretch)));
+      z_[i] = select(holds, u_ + lane_.reach * side_ * (nodes_[i].way - way_), select(known_ > 0.5, guess, u_));
+    }
     Mask done = holds;
     P step;
     for (int pass = 0; pass < 7; ++pass) {
@@ -192,6 +198,17 @@ class March {
     }
     for (int i = 1; i <= S; ++i) dz_[i] = select(holds, du_, dz_[i]);
     return done;
+  }
+
+  /// The polynomial of the last panel, or of the one that was given up.
+  P polynomial(const P& t) const {
+    P value = shape_[S];
+    for (int i = S - 1; i >= 0; --i) value = value * (t - collocation_.nodes[i]) + shape_[i];
+    return value;
+  }
+  void divide(P (&c)[S + 1]) const {
+    for (int k = 1; k <= S; ++k)
+      for (int i = S; i >= k; --i) c[i] = (c[i] - c[i - 1]) * collocation_.apart[i][i - k];
   }
 
   /// Takes the panel where it lasts to its end; else finds how long it may be.
@@ -235,6 +252,11 @@ class March {
       fell_low_ = select(taken, low_slope, fell_low_);
       fell_high_ = select(taken, high_slope, fell_high_);
     }
+    for (int i = 0; i <= S; ++i) shape_[i] = z_[i];
+    divide(shape_);
+    last_h_ = h;
+    offset_ = select(taken, P(1.0), P(0.0));
+    known_ = select(solved & !over_ & (h > 0.0), P(1.0), P(0.0));
     const Mask jumps = at_once & runs, ends = leaves_low | leaves_high;
     if (ends.any()) switch_mode(ends, leaves_high, select(leaves_high, high_slope, low_slope), h, nodes_[S]);
     if (jumps.any()) switch_mode(jumps, !lower, root_slope, h, nodes_[0]);
@@ -289,10 +311,10 @@ class March {
     limit_ = select(taken, limit_ * (1.0 + 2.0 * mesh_.width), limit_);
     limit_ = min(limit_, P(beyond));
     // From the one end over to the other.
-    const Mask over = taken & first & (end_after_ - q_ <= 1e-12 * end_after_);
-    q_ = select(over, end_before_, q_);
-    side_ = select(over, P(-1.0), side_);
-    way_ = select(over, P(1.0), way_);
+    over_ = taken & first & (end_after_ - q_ <= 1e-12 * end_after_);
+    q_ = select(over_, end_before_, q_);
+    side_ = select(over_, P(-1.0), side_);
+    way_ = select(over_, P(1.0), way_);
   }
 
   /// At an edge, the distance from which falls at the rate `slope` < 0 over the panel.
@@ -302,6 +324,7 @@ class March {
     const P jump = (law_.rate(here.at, mode_, u_, lane_).rate - before) * h * here.slope;
     const P apart = select(up, -slope, slope);
     du_ = select(switched & (slope < 0.0), du_ * (apart + jump) / apart, du_);
+    known_ = select(switched, P(0.0), known_);
     relax(switched, here, u_);
   }
 
@@ -317,8 +340,7 @@ class March {
          P& slope) const {
     P c[S + 1];
     for (int i = 0; i <= S; ++i) c[i] = select(lower, low[i], high[i]);
-    for (int k = 1; k <= S; ++k)
-      for (int i = S; i >= k; --i) c[i] = (c[i] - c[i - 1]) * collocation_.apart[i][i - k];
+    divide(c);
     P left = from, right = to, t = 0.5 * (from + to);
     for (int pass = 0; pass < 7; ++pass) {
       P value = c[S];
@@ -375,6 +397,8 @@ class March {
   P u_, du_, b_, db_, mode_, way_, limit_, tried_, running_, doubt_, fell_low_, fell_high_;
   Node nodes_[S + 1];
   P z_[S + 1], dz_[S + 1];
+  P shape_[S + 1], last_h_, offset_, known_;  ///< to guess from
+  Mask over_;
   P sums_[most_orders][4];
 };
 

@@ -16,6 +16,7 @@ struct MarchPlace {
   P drive{};  ///< reach sin(phi), or the tempo
   P level{};  ///< g or b
   P extra{};  ///< what else the law wants
+  P per{}, per_range{};  ///< and quotients of these, which are dear
 };
 
 /// du/dphi and its derivative by u.
@@ -60,11 +61,12 @@ struct ElastoPlasticMarch {
 
   MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const {
     const P g = level.at(lane.speed * sine);
-    return {lane.reach * sine, g, fixed > 0.0 ? P(fixed) : share * g};
+    const P elastic = fixed > 0.0 ? P(fixed) : share * g;
+    return {lane.reach * sine, g, elastic, 1.0 / g, 1.0 / (g - elastic)};
   }
   /// a = (1 + sin(pi r))/2 with r = (u - middle)/(g - elastic), and da/du, by the half angle.
   MarchRate<P> rate(const MarchPlace<P>& at, const P& mode, const P& u, const MarchLane<P>&) const {
-    const P width = 1.0 / (at.level - at.extra), per = 1.0 / at.level;
+    const P &width = at.per_range, &per = at.per;
     const P r = min(P(0.65), max(P(-0.65), (u - at.extra) * width - 0.5));
     const P h = (0.5 * 3.14159265358979323846) * r, s = h * h;
     const P sine = h * (((((((P(-1.0 / 1307674368000.0) * s + 1.0 / 6227020800.0) * s - 1.0 / 39916800.0) * s +
@@ -82,7 +84,7 @@ struct ElastoPlasticMarch {
   }
   /// Largest rate of relaxation in that mode.
   P stiffness(const MarchPlace<P>& at, const P& mode, const MarchLane<P>&) const {
-    return at.drive * select(mode > 1.5, 1.0 / at.level, select(mode > 0.5, 1.6 / (at.level - at.extra), P(0.0)));
+    return at.drive * select(mode > 1.5, at.per, select(mode > 0.5, 1.6 * at.per_range, P(0.0)));
   }
   P next(const P& mode, const typename P::Mask& up) const { return mode + select(up, P(1.0), P(-1.0)); }
 };
@@ -96,11 +98,12 @@ struct SliderMarch {
   explicit SliderMarch(const MarchNumbers& n) : level(n) {}
 
   MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const {
-    return {lane.reach * sine, level.at(lane.speed * sine), lane.tempo};
+    const P g = level.at(lane.speed * sine);
+    return {lane.reach * sine, g, lane.tempo, lane.tempo / g, 0.0};
   }
   MarchRate<P> rate(const MarchPlace<P>& at, const P& mode, const P& u, const MarchLane<P>&) const {
     const auto slips = mode > 0.5;
-    const P decay = at.extra / at.level;
+    const P& decay = at.per;
     return {select(slips, at.extra - decay * u, at.drive), select(slips, -decay, P(0.0))};
   }
   MarchBand<P> band(const MarchPlace<P>& at, const P& mode) const {
@@ -108,7 +111,7 @@ struct SliderMarch {
     return {-high, high};
   }
   P stiffness(const MarchPlace<P>& at, const P& mode, const MarchLane<P>&) const {
-    return select(mode > 0.5, at.extra / at.level, P(0.0));
+    return select(mode > 0.5, at.per, P(0.0));
   }
   P next(const P&, const typename P::Mask&) const { return 1.0; }
 };
@@ -123,7 +126,7 @@ struct CappedMarch {
 
   /// `extra`: what the damper adds to the force below the cap.
   MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P& b) const {
-    return {lane.reach * sine, b, lane.drag * sine};
+    return {lane.reach * sine, b, lane.drag * sine, 0.0, 0.0};
   }
   MarchRate<P> rate(const MarchPlace<P>& at, const P& mode, const P& u, const MarchLane<P>& lane) const {
     const auto below = abs(mode) < 0.5;
@@ -148,7 +151,7 @@ struct DahlMarch {
 
   explicit DahlMarch(const MarchNumbers& n) : exponent(n.exponent) {}
 
-  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const { return {lane.reach * sine, 1.0, 0.0}; }
+  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const { return {lane.reach * sine, 1.0, 0.0, 0.0, 0.0}; }
   MarchRate<P> rate(const MarchPlace<P>& at, const P&, const P& u, const MarchLane<P>&) const {
     const P left = max(1.0 - u, P(1e-200)), f = power(left, P(exponent));
     return {at.drive * f, -exponent * at.drive * f / left};
@@ -166,7 +169,7 @@ struct BoucWenMarch {
 
   explicit BoucWenMarch(const MarchNumbers& n) : exponent(n.exponent), curvature(n.curvature) {}
 
-  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const { return {lane.reach * sine, 1.0, 0.0}; }
+  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const { return {lane.reach * sine, 1.0, 0.0, 0.0, 0.0}; }
   MarchRate<P> rate(const MarchPlace<P>& at, const P& mode, const P& u, const MarchLane<P>&) const {
     const auto up = mode > 0.5;
     // Beyond its end a mode goes on as an odd power: panels that look ahead stay smooth.

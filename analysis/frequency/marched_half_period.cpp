@@ -20,12 +20,12 @@ struct Mesh {
   MarchMesh march;
   double least = 0.0;
 };
-constexpr std::array<Mesh, 6> meshes{{{{5, 1.3, 0.6, 0.04, 5e-3, 1e-6, 5e-3}, 1e-3},
-                                      {{5, 0.8, 0.45, 0.01, 3e-4, 1e-8, 3e-4}, 5e-6},
-                                      {{5, 0.55, 0.35, 0.004, 1e-4, 1e-9, 1e-4}, 2e-7},
-                                      {{8, 0.7, 0.3, 5e-4, 1e-5, 1e-11, 1e-5}, 2e-9},
-                                      {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-12, 1e-6}, 2e-11},
-                                      {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-12, 1e-7}, 2e-12}}};
+constexpr std::array<Mesh, 6> meshes{{{{5, 1.3, 0.6, 0.04, 5e-3, 1e-6, 5e-3}, 2e-3},
+                                      {{5, 0.8, 0.45, 0.01, 3e-4, 1e-8, 3e-4}, 1e-5},
+                                      {{5, 0.55, 0.35, 0.004, 1e-4, 1e-9, 1e-4}, 2.5e-7},
+                                      {{8, 0.7, 0.3, 5e-4, 1e-5, 1e-11, 1e-5}, 4e-9},
+                                      {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-12, 1e-6}, 1.5e-10},
+                                      {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-12, 1e-7}, 5e-12}}};
 
 MarchCollocation collocation_of(int stages) {
   MarchCollocation c{};
@@ -169,14 +169,15 @@ std::optional<MarchedLaw> MarchedLaw::of(const Element<double>& element) {
 class MarchedHalfPeriod::Batch {
  public:
   Batch(const MarchedHalfPeriod& owner, std::span<const DfPoint> points)
-      : law_(owner.law_), isa_(owner.options_.isa), orders_((owner.options_.harmonics + 1) / 2), points_(points) {
+      : law_(owner.law_), isa_(owner.options_.isa), wanted_orders_(std::max(2, (owner.options_.harmonics + 1) / 2)), points_(points) {
     starts_.assign(points.size() * law_.states.size(), {});
   }
 
   /// Harmonics of the points numbered in `wanted`, [orders] each; empty where no periodic state was found.
   void run(const Mesh& mesh, const std::vector<std::size_t>& wanted) {
     mesh_ = &mesh.march;
-    tolerance_ = 0.1 * std::sqrt(mesh.least);
+    tolerance_ = 0.7 * std::sqrt(mesh.least);
+    orders_ = mesh.least > 1e-6 ? 2 : wanted_orders_;
     outputs_.assign(points_.size() * static_cast<std::size_t>(orders_), 0.0);
     failed_.assign(points_.size(), false);
     doubtful_.assign(points_.size(), false);
@@ -189,12 +190,21 @@ class MarchedHalfPeriod::Batch {
     }
   }
 
+  /// Periodic states, roughly.
+  void guess(const std::vector<std::size_t>& wanted) {
+    Mesh rough = limcycle::meshes.front();
+    rough.least = 5e-3;
+    run(rough, wanted);
+  }
+
   bool failed(std::size_t point) const { return failed_[point]; }
   bool doubtful(std::size_t point) const { return doubtful_[point]; }
   std::complex<double> output(std::size_t point, int order) const {
     return outputs_[point * static_cast<std::size_t>(orders_) + static_cast<std::size_t>(order)];
   }
   int orders() const { return orders_; }
+  /// Whether the last mesh gave all harmonics; the coarse ones do not.
+  bool complete() const { return orders_ == wanted_orders_; }
   long evaluations(std::size_t point) const { return static_cast<long>(panels_[point]) * mesh_->stages; }
 
  private:
@@ -314,7 +324,7 @@ class MarchedHalfPeriod::Batch {
 
   const MarchedLaw& law_;
   Isa isa_;
-  int orders_;
+  int wanted_orders_, orders_ = 1;
   std::span<const DfPoint> points_;
   const MarchMesh* mesh_ = nullptr;
   double tolerance_ = 0.0;
@@ -330,7 +340,7 @@ DescribingFunction MarchedHalfPeriod::collect(const Batch& batch, std::size_t i,
   const double A = point.amplitude, w = point.frequency;
   DescribingFunction result;
   result.harmonics.assign(static_cast<std::size_t>(options_.harmonics), 0.0);
-  for (int order = 0; order < batch.orders(); ++order)
+  for (int order = 0; order < batch.orders() && 2 * order < options_.harmonics; ++order)
     result.harmonics[2 * static_cast<std::size_t>(order)] = batch.output(i, order);
   result.harmonics[0] += std::complex<double>(law_.spring * A, law_.viscous * A * w);
   result.gain = result.harmonics[0] / A;
@@ -345,13 +355,18 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
   for (std::size_t i = 0; i < points.size(); ++i)
     if (points[i].bias == 0.0) wanted.push_back(i);
   Batch batch(*this, points);
-  std::vector<std::complex<double>> coarser(points.size());
+  struct Coarser {
+    std::complex<double> first, third;
+  };
+  std::vector<Coarser> coarser(points.size());
   std::vector<bool> have(points.size(), false);
   std::vector<int> failures(points.size(), 0);
   std::size_t first = 0;
   while (first + 2 < limcycle::meshes.size() && limcycle::meshes[first + 1].least > 0.3 * options_.accuracy) ++first;
   // A slider that slips at once, or not, is another motion: coarse meshes may agree on the wrong one.
   if (law_.states.front().law == MarchLaw::slider) first = std::max<std::size_t>(first, law_.kink > 0.0 ? 2 : 1);
+  // Newton sets out from what a coarse mesh says.
+  if (first > 0) batch.guess(wanted);
   for (std::size_t k = first; k < limcycle::meshes.size() && !wanted.empty(); ++k) {
     const Mesh& mesh = limcycle::meshes[k];
     batch.run(mesh, wanted);
@@ -362,15 +377,18 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
       }
       DescribingFunction now = collect(batch, i, points[i]);
       if (have[i] && !batch.doubtful(i)) {
-        now.error = law_.trust * size(now.gain - coarser[i]) / size(now.gain) + mesh.least + roundings;
-        if (now.error <= options_.accuracy) {
+        const double A = points[i].amplitude;
+        // The third harmonic is heard, too: two meshes may agree on one number by chance.
+        const double apart = size(now.gain - coarser[i].first) + size(batch.output(i, 1) - coarser[i].third) / A;
+        now.error = law_.trust * apart / size(now.gain) + mesh.least + roundings;
+        if (now.error <= options_.accuracy && batch.complete()) {
           now.method = "kernel";
           results[i] = std::move(now);
           return true;
         }
       }
       have[i] = !batch.doubtful(i);
-      coarser[i] = now.gain;
+      coarser[i] = {now.gain, batch.output(i, 1)};
       return false;
     });
   }
