@@ -16,12 +16,12 @@ namespace limcycle {
 /// of others whose states know nothing of each other (elasto-plastic, Dahl, Bouc-Wen, GMS, Xiong; see MarchedLaw) by
 /// marching it through its switches (march_kernel.hpp).
 ///
-/// The error of the first kind. In units of Fs/sigma0 and vs the problem has four numbers: alpha = A sigma0/Fs, q = A w/vs, Fs/Fc and the
-/// exponent delta. For Fs <= 4 Fc, delta <= 2 and constant damping the error of each mesh was measured over all alpha
-/// and q, and the bound of HalfPeriodSettings is about twice the largest that was found;
-/// tests hold it against finer meshes and other methods. What lies outside is computed on three meshes or more, and
-/// the error is ten times the difference of the last two (at least). The result of a point does not depend on what it
-/// is computed together with.
+/// The error of the first kind. In units of Fs/sigma0 and vs the problem has four numbers: alpha = A sigma0/Fs, q = A
+/// w/vs, Fs/Fc and the exponent delta. For Fs <= 4 Fc, delta <= 2 and constant damping the error of each mesh was
+/// measured over all alpha and q, and the bound of HalfPeriodSettings is about twice the largest that was found; tests
+/// hold it against finer meshes and other methods. What lies outside is computed on three meshes or more, and the error
+/// is ten times the difference of the last two (at least). The result of a point does not depend on what it is computed
+/// together with.
 class DfKernel {
  public:
   /// Empty if the element is none of these laws, or if the accuracy is beyond the finest mesh.
@@ -38,7 +38,8 @@ class DfKernel {
   using Law = std::variant<LuGre<double>, Dahl<double>>;
   class Batch;
   DfKernel(Law law, const DfOptions& options);
-  DfKernel(MarchedLaw law, const DfOptions& options) : options_(options), marched_(std::in_place, std::move(law), options) {}
+  DfKernel(MarchedLaw law, const DfOptions& options)
+      : options_(options), marched_(std::in_place, std::move(law), options) {}
   double bound(const HalfPeriodSettings& mesh) const;
 
   Law law_;

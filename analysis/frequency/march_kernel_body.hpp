@@ -336,8 +336,7 @@ class March {
   }
 
   /// Where the guard that turned negative is zero, of the polynomial through the nodes.
-  P root(const P (&low)[S + 1], const P (&high)[S + 1], const Mask& lower, const P& from, const P& to,
-         P& slope) const {
+  P root(const P (&low)[S + 1], const P (&high)[S + 1], const Mask& lower, const P& from, const P& to, P& slope) const {
     P c[S + 1];
     for (int i = 0; i <= S; ++i) c[i] = select(lower, low[i], high[i]);
     divide(c);

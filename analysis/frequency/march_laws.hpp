@@ -13,9 +13,9 @@ struct MarchLane {
 /// What the equations need to know at a phase, whatever the state.
 template <class P>
 struct MarchPlace {
-  P drive{};  ///< reach sin(phi), or the tempo
-  P level{};  ///< g or b
-  P extra{};  ///< what else the law wants
+  P drive{};             ///< reach sin(phi), or the tempo
+  P level{};             ///< g or b
+  P extra{};             ///< what else the law wants
   P per{}, per_range{};  ///< and quotients of these, which are dear
 };
 
@@ -46,8 +46,8 @@ struct MarchLevel {
   P at(const P& speed) const { return curve.level(speed, true); }
 };
 
-/// Laws, all alike: `sticks`, u follows the motion in mode 0; `lags`, there is a b; `gentle`, du/dphi does not jump where
-/// the mode changes, so that to miss the edge by little is felt by its square only.
+/// Laws, all alike: `sticks`, u follows the motion in mode 0; `lags`, there is a b; `gentle`, du/dphi does not jump
+/// where the mode changes, so that to miss the edge by little is felt by its square only.
 inline constexpr double beyond = 1e300;  ///< a bound that is never met
 
 /// Modes: 0 elastic, 1 between, 2 plastic.
@@ -69,13 +69,32 @@ struct ElastoPlasticMarch {
     const P &width = at.per_range, &per = at.per;
     const P r = min(P(0.65), max(P(-0.65), (u - at.extra) * width - 0.5));
     const P h = (0.5 * 3.14159265358979323846) * r, s = h * h;
-    const P sine = h * (((((((P(-1.0 / 1307674368000.0) * s + 1.0 / 6227020800.0) * s - 1.0 / 39916800.0) * s +
-                            1.0 / 362880.0) * s - 1.0 / 5040.0) * s + 1.0 / 120.0) * s - 1.0 / 6.0) * s + 1.0);
-    const P cosine = ((((((((P(1.0 / 20922789888000.0) * s - 1.0 / 87178291200.0) * s + 1.0 / 479001600.0) * s -
-                           1.0 / 3628800.0) * s + 1.0 / 40320.0) * s - 1.0 / 720.0) * s + 1.0 / 24.0) * s - 0.5) * s + 1.0);
+    const P sine =
+        h *
+        (((((((P(-1.0 / 1307674368000.0) * s + 1.0 / 6227020800.0) * s - 1.0 / 39916800.0) * s + 1.0 / 362880.0) * s -
+            1.0 / 5040.0) *
+               s +
+           1.0 / 120.0) *
+              s -
+          1.0 / 6.0) *
+             s +
+         1.0);
+    const P cosine =
+        ((((((((P(1.0 / 20922789888000.0) * s - 1.0 / 87178291200.0) * s + 1.0 / 479001600.0) * s - 1.0 / 3628800.0) *
+                 s +
+             1.0 / 40320.0) *
+                s -
+            1.0 / 720.0) *
+               s +
+           1.0 / 24.0) *
+              s -
+          0.5) *
+             s +
+         1.0);
     const auto plastic = mode > 1.5, elastic = mode < 0.5;
     const P a = select(plastic, P(1.0), select(elastic, P(0.0), 0.5 + sine * cosine));
-    const P slope = select(plastic | elastic, P(0.0), (0.5 * 3.14159265358979323846) * (1.0 - 2.0 * sine * sine) * width);
+    const P slope =
+        select(plastic | elastic, P(0.0), (0.5 * 3.14159265358979323846) * (1.0 - 2.0 * sine * sine) * width);
     return {at.drive * (1.0 - a * u * per), -at.drive * (a + slope * u) * per};
   }
   MarchBand<P> band(const MarchPlace<P>& at, const P& mode) const {
@@ -151,7 +170,9 @@ struct DahlMarch {
 
   explicit DahlMarch(const MarchNumbers& n) : exponent(n.exponent) {}
 
-  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const { return {lane.reach * sine, 1.0, 0.0, 0.0, 0.0}; }
+  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const {
+    return {lane.reach * sine, 1.0, 0.0, 0.0, 0.0};
+  }
   MarchRate<P> rate(const MarchPlace<P>& at, const P&, const P& u, const MarchLane<P>&) const {
     const P left = max(1.0 - u, P(1e-200)), f = power(left, P(exponent));
     return {at.drive * f, -exponent * at.drive * f / left};
@@ -169,7 +190,9 @@ struct BoucWenMarch {
 
   explicit BoucWenMarch(const MarchNumbers& n) : exponent(n.exponent), curvature(n.curvature) {}
 
-  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const { return {lane.reach * sine, 1.0, 0.0, 0.0, 0.0}; }
+  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const {
+    return {lane.reach * sine, 1.0, 0.0, 0.0, 0.0};
+  }
   MarchRate<P> rate(const MarchPlace<P>& at, const P& mode, const P& u, const MarchLane<P>&) const {
     const auto up = mode > 0.5;
     // Beyond its end a mode goes on as an odd power: panels that look ahead stay smooth.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "limcycle/analysis/frequency/half_period_mesh.hpp"
@@ -90,7 +91,7 @@ MarchedLaw marched(const ElastoPlastic<double>& law) {
 }
 
 MarchedLaw marched(const Gms<double>& law) {
-  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law)};
+  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law), 4.0, 5e-9};
   for (std::size_t i = 0; i < law.k.size(); ++i) {
     MarchedState state{.law = MarchLaw::slider, .numbers = level_of(law)};
     state.force = law.alpha[i] * law.Fs;
@@ -124,7 +125,9 @@ MarchedLaw marched(const Dahl<double>& law) {
   state.numbers.exponent = law.exponent;
   state.reach = law.sigma0 / law.Fc;
   state.force = law.Fc;
-  return {{state}};
+  MarchedLaw all{{state}};
+  all.knows_rate = false;
+  return all;
 }
 
 MarchedLaw marched(const BoucWen<double>& law) {
@@ -135,7 +138,12 @@ MarchedLaw marched(const BoucWen<double>& law) {
   state.reach = law.A / (law.D * largest);
   state.force = (1.0 - law.alpha) * law.k * law.D * largest;
   const bool whole = law.n == std::floor(law.n);
-  return {{state}, law.alpha * law.k, 0.0, 0.0, whole ? 2.0 : 5.0};
+  MarchedLaw all{{state}, law.alpha * law.k};
+  // |u|^n has a kink or a branch point where u changes sign.
+  all.trust = whole ? 2.0 : 5.0;
+  all.least = whole ? 2e-9 : 5e-8;
+  all.knows_rate = false;
+  return all;
 }
 
 /// |z| of numbers that are far from the ends of the range.
@@ -155,7 +163,7 @@ std::optional<MarchedLaw> MarchedLaw::of(const Element<double>& element) {
   if (const auto* law = std::get_if<ElastoPlastic<double>>(&element))
     return law->odd() && law->vd == 0.0 && law->zba_ratio < 1.0 ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = std::get_if<Gms<double>>(&element))
-    return law->odd() ? std::optional(marched(*law)) : std::nullopt;
+    return law->odd() && (kink_of(*law) == 0.0 || kink_of(*law) > 2.0) ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = std::get_if<Xiong<double>>(&element))
     return law->odd() ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = std::get_if<Dahl<double>>(&element))
@@ -169,14 +177,17 @@ std::optional<MarchedLaw> MarchedLaw::of(const Element<double>& element) {
 class MarchedHalfPeriod::Batch {
  public:
   Batch(const MarchedHalfPeriod& owner, std::span<const DfPoint> points)
-      : law_(owner.law_), isa_(owner.options_.isa), wanted_orders_(std::max(2, (owner.options_.harmonics + 1) / 2)), points_(points) {
+      : law_(owner.law_),
+        isa_(owner.options_.isa),
+        wanted_orders_(std::max(2, (owner.options_.harmonics + 1) / 2)),
+        points_(points) {
     starts_.assign(points.size() * law_.states.size(), {});
   }
 
   /// Harmonics of the points numbered in `wanted`, [orders] each; empty where no periodic state was found.
   void run(const Mesh& mesh, const std::vector<std::size_t>& wanted) {
     mesh_ = &mesh.march;
-    tolerance_ = 0.7 * std::sqrt(mesh.least);
+    tolerance_ = 0.15 * std::sqrt(mesh.least);
     orders_ = mesh.least > 1e-6 ? 2 : wanted_orders_;
     outputs_.assign(points_.size() * static_cast<std::size_t>(orders_), 0.0);
     failed_.assign(points_.size(), false);
@@ -190,11 +201,27 @@ class MarchedHalfPeriod::Batch {
     }
   }
 
-  /// Periodic states, roughly.
-  void guess(const std::vector<std::size_t>& wanted) {
+  /// Periodic states, roughly; takes those out of `wanted` that are not the only one of their point.
+  void guess(std::vector<std::size_t>& wanted) {
     Mesh rough = limcycle::meshes.front();
-    rough.least = 5e-3;
+    rough.least = 0.02;
+    if (law_.states.front().law != MarchLaw::slider) {
+      run(rough, wanted);
+      return;
+    }
+    // A slider that is stretched to its level may begin to slip at once, and then return there without any motion:
+    // beside the periodic state that is reached from rest there may be another.
+    for (Start& start : starts_) start = {-0.999, 1.0, true};
     run(rough, wanted);
+    const std::vector<Start> stretched = starts_;
+    for (Start& start : starts_) start.known = false;
+    run(rough, wanted);
+    const std::size_t n = law_.states.size();
+    std::erase_if(wanted, [&](std::size_t point) -> bool {
+      for (std::size_t i = point * n; i < (point + 1) * n; ++i)
+        if (!(std::abs(starts_[i].u - stretched[i].u) <= 0.1)) return true;
+      return failed_[point];
+    });
   }
 
   bool failed(std::size_t point) const { return failed_[point]; }
@@ -241,11 +268,6 @@ class MarchedHalfPeriod::Batch {
     } else {
       const double inner = std::max(speed, mesh_->ignored * std::min(way, 1.0));
       after = std::min(way, inner);
-      if (state.law == MarchLaw::slider && law_.kink > 0.0 && law_.kink < 2.0) {
-        // What is stretched to the level slips at once where that falls faster than the stretch: up to this phase.
-        const double fall = 2.0 * (1.0 - state.numbers.ratio) * std::pow(m.speed, law_.kink) / m.reach;
-        after = std::clamp(std::pow(fall, 1.0 / (2.0 - law_.kink)), 1e-4 * after, after);
-      }
       if (state.law == MarchLaw::elasto_plastic)
         before = speed < way ? inner : way;
       else
@@ -308,7 +330,8 @@ class MarchedHalfPeriod::Batch {
     m.start += change;
     m.level += level_change;
     start = {m.start, m.level, true};
-    if (!(std::abs(change) <= tolerance_ * std::min(1.0, m.reach)) || !(std::abs(level_change) <= 1e-3 * tolerance_)) return false;
+    if (!(std::abs(change) <= tolerance_ * std::min(1.0, m.reach)) || !(std::abs(level_change) <= 1e-3 * tolerance_))
+      return false;
     if (task.panels[i] < 0) doubtful_[m.point] = true;
     const double w = points_[m.point].frequency;
     const double* sums = task.sums + i * static_cast<std::size_t>(MarchTask::sums_of(orders_));
@@ -351,9 +374,26 @@ DescribingFunction MarchedHalfPeriod::collect(const Batch& batch, std::size_t i,
 }
 
 void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<DescribingFunction> results) const {
-  std::vector<std::size_t> wanted;
+  std::vector<std::size_t> wanted, same(points.size());
+  std::map<double, std::size_t> first_of;  // points of each amplitude, where the frequency does not matter
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    same[i] = i;
+    if (points[i].bias != 0.0) continue;
+    if (law_.knows_rate) {
+      wanted.push_back(i);
+    } else {
+      const auto [known, is_new] = first_of.try_emplace(points[i].amplitude, i);
+      same[i] = known->second;
+      if (is_new) wanted.push_back(i);
+    }
+  }
+  march(points, std::move(wanted), results);
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i].bias == 0.0) wanted.push_back(i);
+    if (same[i] != i) results[i] = results[same[i]];
+}
+
+void MarchedHalfPeriod::march(std::span<const DfPoint> points, std::vector<std::size_t> wanted,
+                              std::span<DescribingFunction> results) const {
   Batch batch(*this, points);
   struct Coarser {
     std::complex<double> first, third;
@@ -361,12 +401,10 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
   std::vector<Coarser> coarser(points.size());
   std::vector<bool> have(points.size(), false);
   std::vector<int> failures(points.size(), 0);
-  std::size_t first = 0;
+  std::size_t first = 1;
   while (first + 2 < limcycle::meshes.size() && limcycle::meshes[first + 1].least > 0.3 * options_.accuracy) ++first;
-  // A slider that slips at once, or not, is another motion: coarse meshes may agree on the wrong one.
-  if (law_.states.front().law == MarchLaw::slider) first = std::max<std::size_t>(first, law_.kink > 0.0 ? 2 : 1);
   // Newton sets out from what a coarse mesh says.
-  if (first > 0) batch.guess(wanted);
+  batch.guess(wanted);
   for (std::size_t k = first; k < limcycle::meshes.size() && !wanted.empty(); ++k) {
     const Mesh& mesh = limcycle::meshes[k];
     batch.run(mesh, wanted);
@@ -380,7 +418,7 @@ void MarchedHalfPeriod::compute(std::span<const DfPoint> points, std::span<Descr
         const double A = points[i].amplitude;
         // The third harmonic is heard, too: two meshes may agree on one number by chance.
         const double apart = size(now.gain - coarser[i].first) + size(batch.output(i, 1) - coarser[i].third) / A;
-        now.error = law_.trust * apart / size(now.gain) + mesh.least + roundings;
+        now.error = law_.trust * apart / size(now.gain) + mesh.least + law_.least + roundings;
         if (now.error <= options_.accuracy && batch.complete()) {
           now.method = "kernel";
           results[i] = std::move(now);

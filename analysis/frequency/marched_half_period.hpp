@@ -26,9 +26,11 @@ struct MarchedLaw {
   double kink = 0.0;                   ///< the level changes like |v|^kink at rest; 0: it is smooth and even
   /// The error of a mesh is at most so many times its difference from the coarser one.
   double trust = 2.0;
+  double least = 0.0;      ///< and not below this
+  bool knows_rate = true;  ///< else a gain is that of its amplitude
 
-  /// Elasto-plastic and GMS without direction dependence, Xiong likewise, Dahl with an exponent above 1, Bouc-Wen with
-  /// beta >= 0; empty for the others.
+  /// Without direction dependence elasto-plastic (constant damping), Xiong, and GMS with a level that is smooth at
+  /// rest; Dahl with an exponent above 1; Bouc-Wen with beta >= 0. Empty for the others.
   static std::optional<MarchedLaw> of(const Element<double>& element);
 };
 
@@ -48,6 +50,8 @@ class MarchedHalfPeriod {
 
  private:
   class Batch;
+  void march(std::span<const DfPoint> points, std::vector<std::size_t> wanted,
+             std::span<DescribingFunction> results) const;
   DescribingFunction collect(const Batch& batch, std::size_t i, const DfPoint& point) const;
   MarchedLaw law_;
   DfOptions options_;
