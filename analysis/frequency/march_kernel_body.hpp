@@ -163,10 +163,15 @@ class March {
   Mask solve(const P& h) {
     const Mask holds = Law::sticks ? abs(mode_) < 0.5 : mode_ < -beyond;
     z_[0] = u_;
-    const P stretch = h / last_h_;
+    const MarchRate<P> now = law_.rate(nodes_[0].at, mode_, u_, lane_);
+    const P stretch = h / last_h_, way = h * nodes_[0].slope;
+    // What goes on as before is guessed by the polynomial of the panel before, what is new as a relaxation.
+    const Mask goes_on = (known_ > 0.5) & (stretch < 1.3);
     for (int i = 1; i <= S; ++i) {
-      const P guess = min(P(2.0), max(P(-2.0), polynomial(offset_ + collocation_.nodes[i] * stretch)));
-      z_[i] = select(holds, u_ + lane_.reach * side_ * (nodes_[i].way - way_), select(known_ > 0.5, guess, u_));
+      const double c = collocation_.nodes[i];
+      const P before = min(P(2.0), max(P(-2.0), polynomial(offset_ + c * stretch)));
+      const P relaxes = u_ + c * way * now.rate / (1.0 + c * way * abs(now.slope));
+      z_[i] = select(holds, u_ + lane_.reach * side_ * (nodes_[i].way - way_), select(goes_on, before, relaxes));
     }
     Mask done = holds;
     P step;

@@ -22,9 +22,9 @@ struct Mesh {
   double least = 0.0;
 };
 constexpr std::array<Mesh, 6> meshes{{{{5, 1.3, 0.6, 0.04, 5e-3, 1e-6, 5e-3}, 2e-3},
-                                      {{5, 0.8, 0.45, 0.01, 3e-4, 1e-8, 3e-4}, 1e-5},
-                                      {{5, 0.55, 0.35, 0.004, 1e-4, 1e-9, 1e-4}, 2.5e-7},
-                                      {{8, 0.7, 0.3, 5e-4, 1e-5, 1e-11, 1e-5}, 4e-9},
+                                      {{5, 0.72, 0.42, 0.01, 2e-4, 1e-8, 3e-4}, 1e-5},
+                                      {{5, 0.52, 0.33, 0.004, 4e-5, 1e-9, 1e-4}, 2.5e-7},
+                                      {{8, 0.7, 0.3, 5e-4, 5e-6, 1e-11, 1e-5}, 4e-9},
                                       {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-12, 1e-6}, 1.5e-10},
                                       {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-12, 1e-7}, 5e-12}}};
 
@@ -87,7 +87,7 @@ MarchedLaw marched(const ElastoPlastic<double>& law) {
   state.speed = 1.0 / law.vs;
   state.force = law.Fs;
   state.damping = law.sigma1 * law.Fs / law.sigma0;
-  return {{state}, 0.0, law.sigma2, kink_of(law)};
+  return {{state}, 0.0, law.sigma2, kink_of(law), 1.0};
 }
 
 MarchedLaw marched(const Gms<double>& law) {
@@ -105,7 +105,7 @@ MarchedLaw marched(const Gms<double>& law) {
 }
 
 MarchedLaw marched(const Xiong<double>& law) {
-  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law)};
+  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law), 1.0};
   for (std::size_t i = 0; i < law.K.size(); ++i) {
     MarchedState state{.law = MarchLaw::capped, .numbers = level_of(law)};
     state.force = law.lambda[i] * law.Fs;
@@ -267,7 +267,7 @@ class MarchedHalfPeriod::Batch {
       before = 1.0;
     } else {
       const double inner = std::max(speed, mesh_->ignored * std::min(way, 1.0));
-      after = std::min(way, inner);
+      after = state.law == MarchLaw::elasto_plastic ? way : std::min(way, inner);  // elastic at first, whatever g
       if (state.law == MarchLaw::elasto_plastic)
         before = speed < way ? inner : way;
       else
