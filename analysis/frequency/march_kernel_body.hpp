@@ -2,6 +2,7 @@
 #include <cstddef>
 
 #include "limcycle/analysis/frequency/march_laws.hpp"
+#include "limcycle/analysis/frequency/march_nodes.hpp"
 #include "limcycle/analysis/lanes/pack.hpp"
 
 namespace limcycle {
@@ -13,7 +14,7 @@ class March {
   using Mask = typename P::Mask;
 
   March(const MarchNumbers& numbers, const MarchTask& task)
-      : law_(numbers), task_(task), mesh_(*task.mesh), collocation_(*task.collocation) {}
+      : law_(numbers), task_(task), mesh_(*task.mesh), collocation_(*task.collocation), polynomial_{collocation_} {}
 
   void run() {
     for (int lane = 0; lane < P::lanes; ++lane) begin(lane);
@@ -34,6 +35,7 @@ class March {
 
   void set(P& pack, int lane, double value) { pack.v[lane] = value; }
 
+  /// The next point, if there is one.
   void begin(int lane) {
     if (next_ < task_.count) {
       point_[lane] = next_;
@@ -56,6 +58,11 @@ class March {
         set(b_, lane, 1.0);
       }
     }
+    set_out(lane);
+  }
+
+  /// At phi = 0.
+  void set_out(int lane) {
     set(q_, lane, 0.0);
     set(side_, lane, 1.0);
     set(du_, lane, 1.0);
@@ -133,32 +140,6 @@ class March {
     db_end = y[S - 1];
   }
 
-  [[gnu::always_inline]] static void eliminate(P (&m)[S][S], P (&x)[S], P (&y)[S]) {
-#pragma GCC unroll 8
-    for (int k = 0; k < S; ++k) {
-      const P pivot = 1.0 / m[k][k];
-      m[k][k] = pivot;
-#pragma GCC unroll 8
-      for (int i = k + 1; i < S; ++i) {
-        const P factor = m[i][k] * pivot;
-#pragma GCC unroll 8
-        for (int j = k + 1; j < S; ++j) m[i][j] = m[i][j] - factor * m[k][j];
-        x[i] = x[i] - factor * x[k];
-        y[i] = y[i] - factor * y[k];
-      }
-    }
-#pragma GCC unroll 8
-    for (int i = S - 1; i >= 0; --i) {
-#pragma GCC unroll 8
-      for (int j = i + 1; j < S; ++j) {
-        x[i] = x[i] - m[i][j] * x[j];
-        y[i] = y[i] - m[i][j] * y[j];
-      }
-      x[i] = x[i] * m[i][i];
-      y[i] = y[i] * m[i][i];
-    }
-  }
-
   /// u and du at the nodes; where Newton came to its end.
   Mask solve(const P& h) {
     const Mask holds = Law::sticks ? abs(mode_) < 0.5 : mode_ < -beyond;
@@ -169,7 +150,7 @@ class March {
     const Mask goes_on = (known_ > 0.5) & (stretch < 1.3);
     for (int i = 1; i <= S; ++i) {
       const double c = collocation_.nodes[i];
-      const P before = min(P(2.0), max(P(-2.0), polynomial(offset_ + c * stretch)));
+      const P before = min(P(2.0), max(P(-2.0), polynomial_.at(offset_ + c * stretch, shape_)));
       const P relaxes = u_ + c * way * now.rate / (1.0 + c * way * abs(now.slope));
       z_[i] = select(holds, u_ + lane_.reach * side_ * (nodes_[i].way - way_), select(goes_on, before, relaxes));
     }
@@ -205,50 +186,27 @@ class March {
     return done;
   }
 
-  /// The polynomial of the last panel, or of the one that was given up.
-  P polynomial(const P& t) const {
-    P value = shape_[S];
-    for (int i = S - 1; i >= 0; --i) value = value * (t - collocation_.nodes[i]) + shape_[i];
-    return value;
-  }
-  void divide(P (&c)[S + 1]) const {
-    for (int k = 1; k <= S; ++k)
-      for (int i = S; i >= k; --i) c[i] = (c[i] - c[i - 1]) * collocation_.apart[i][i - k];
-  }
-
   /// Takes the panel where it lasts to its end; else finds how long it may be.
   void guard(const P& h, const Mask& solved, const P& b_end, const P& db_end) {
-    P low[S + 1], high[S + 1];
-    P edge = P(-(Law::gentle ? 0.3 * __builtin_sqrt(mesh_.located) : mesh_.located < 1e-10 ? mesh_.located : 1e-10));
+    // How far beyond its bounds u may be found.
+    P room = P(Law::gentle ? 0.3 * __builtin_sqrt(mesh_.located) : mesh_.located < 1e-10 ? mesh_.located : 1e-10);
     // At a cap a fast relaxation makes much of little.
-    if constexpr (Law::lags) edge = min(edge / (1.0 + lane_.tempo), P(-1e-14));
-    Mask out = mode_ < -beyond, lower = out;
-    P before = P(0.0), beyond_it = P(0.0);
-    for (int i = 0; i <= S; ++i) {
-      const MarchBand<P> band = law_.band(nodes_[i].at, mode_);
-      low[i] = z_[i] - band.low;
-      high[i] = band.high - z_[i];
-      // Where a mode begins its edge may be missed by more than where it ends: modes must not toss it to and fro.
-      const P least = i > 0 ? edge : (Law::gentle ? 30.0 : 1e3) * edge;
-      const Mask below = low[i] < least, above = high[i] < least;
-      const Mask now = (below | above) & !out;
-      lower = lower | (now & below);
-      before = select(now, P(i > 0 ? collocation_.nodes[i - 1] : 0.0), before);
-      beyond_it = select(now, P(collocation_.nodes[i]), beyond_it);
-      out = out | now;
-    }
-    out = out & solved;
+    if constexpr (Law::lags) room = max(room / (1.0 + lane_.tempo), P(1e-14));
+    P low[S + 1], high[S + 1], before = P(0.0), behind = P(0.0);
+    Mask lower, out = leaves(room, low, high, lower, before, behind) & solved;
     P share = P(1.0), root_slope = P(-1.0);
-    if (out.any()) share = root(low, high, lower, before, beyond_it, root_slope);
-    const Mask at_once = out & (share * h < 1e-12);
-    const Mask again = (out & !at_once) | !solved;
-    tried_ = select(again, select(solved, share * h, 0.5 * h), P(beyond));
-    const Mask runs = running_ > 0.5;
-    const Mask taken = (!out) & solved & runs;
+    if (out.any()) {
+      P met[S + 1];
+      for (int i = 0; i <= S; ++i) met[i] = select(lower, low[i], high[i]);
+      share = polynomial_.root(met, before, behind, root_slope);
+    }
+    const Mask runs = running_ > 0.5, at_once = out & (share * h < 1e-12);
+    tried_ = select((out & !at_once) | !solved, select(solved, share * h, 0.5 * h), P(beyond));
+    const Mask taken = (!out) & solved & runs, jumps = at_once & runs;
+    const P low_slope = polynomial_.slope_at_end(low), high_slope = polynomial_.slope_at_end(high);
     // The end of a panel may be an edge.
-    const Mask at_low = taken & (low[S] < -edge), at_high = taken & (high[S] < -edge);
-    const P low_slope = slope_at_end(low), high_slope = slope_at_end(high);
-    const Mask leaves_low = at_low & (low_slope < 0.0), leaves_high = at_high & (high_slope < 0.0);
+    const Mask up = taken & (high[S] < room) & (high_slope < 0.0);
+    const Mask ends = up | (taken & (low[S] < room) & (low_slope < 0.0));
     take(h, taken, b_end, db_end);
     if constexpr (Law::sticks && !Law::gentle) {
       const Mask sticking = taken & (abs(mode_) < 0.5);
@@ -258,13 +216,31 @@ class March {
       fell_high_ = select(taken, high_slope, fell_high_);
     }
     for (int i = 0; i <= S; ++i) shape_[i] = z_[i];
-    divide(shape_);
+    polynomial_.divide(shape_);
     last_h_ = h;
     offset_ = select(taken, P(1.0), P(0.0));
     known_ = select(solved & !over_ & (h > 0.0), P(1.0), P(0.0));
-    const Mask jumps = at_once & runs, ends = leaves_low | leaves_high;
-    if (ends.any()) switch_mode(ends, leaves_high, select(leaves_high, high_slope, low_slope), h, nodes_[S]);
+    if (ends.any()) switch_mode(ends, up, select(up, high_slope, low_slope), h, nodes_[S]);
     if (jumps.any()) switch_mode(jumps, !lower, root_slope, h, nodes_[0]);
+  }
+
+  /// Distances of u from its bounds at the nodes, and whether they are left: by the lower one, and between which nodes.
+  Mask leaves(const P& room, P (&low)[S + 1], P (&high)[S + 1], Mask& lower, P& before, P& behind) const {
+    Mask out = mode_ < -beyond;
+    lower = out;
+    for (int i = 0; i <= S; ++i) {
+      const MarchBand<P> band = law_.band(nodes_[i].at, mode_);
+      low[i] = z_[i] - band.low;
+      high[i] = band.high - z_[i];
+      // Where a mode begins its edge may be missed by more than where it ends: modes must not toss it to and fro.
+      const P least = i > 0 ? -room : (Law::gentle ? -30.0 : -1e3) * room;
+      const Mask below = low[i] < least, now = (below | (high[i] < least)) & !out;
+      lower = lower | (now & below);
+      before = select(now, P(i > 0 ? collocation_.nodes[i - 1] : 0.0), before);
+      behind = select(now, P(collocation_.nodes[i]), behind);
+      out = out | now;
+    }
+    return out;
   }
 
   /// Whether a bound came so near within the panel that it may have been met between the nodes; `fell`: slope at the
@@ -272,21 +248,13 @@ class March {
   Mask nearly_met(const P (&values)[S + 1], const P& end_slope, const P& fell) const {
     P least = values[0];
     for (int i = 1; i <= S; ++i) least = min(least, values[i]);
-    P start = P(0.0);
-    for (int i = 1; i <= S; ++i) start += collocation_.start_slope[i] * (values[i] - values[0]);
+    const P start = polynomial_.slope_at_start(values);
     const P depth = max(values[0], values[S]) - least;
     return ((fell < 0.0) | (start < 0.0)) & (end_slope > 0.0) & (least < 0.1 * depth + 1e-9);
   }
 
-  P slope_at_end(const P (&values)[S + 1]) const {
-    P sum = P(0.0);
-    // Bounds that are never met cancel only roughly.
-    for (int i = 0; i <= S; ++i) sum += collocation_.end_slope[i] * (values[i] - values[S]);
-    return sum;
-  }
-
-  /// Adds the panel to the sums and moves on.
-  void take(const P& h, const Mask& taken, const P& b_end, const P& db_end) {
+  /// Adds the panel to the sums.
+  void add(const P& h, const Mask& taken) {
     for (int i = 1; i <= S; ++i) {
       const Node& here = nodes_[i];
       const P weight = select(taken, h * here.slope * collocation_.weights[i], P(0.0));
@@ -305,6 +273,11 @@ class March {
         cosine = c;
       }
     }
+  }
+
+  /// The same, and moves on.
+  void take(const P& h, const Mask& taken, const P& b_end, const P& db_end) {
+    add(h, taken);
     u_ = select(taken, z_[S], u_);
     du_ = select(taken, dz_[S], du_);
     b_ = select(taken, b_end, b_);
@@ -340,29 +313,6 @@ class March {
     limit_ = select(switched, select(rate > mesh_.layer * stiffness, shortest, P(beyond)), limit_);
   }
 
-  /// Where the guard that turned negative is zero, of the polynomial through the nodes.
-  P root(const P (&low)[S + 1], const P (&high)[S + 1], const Mask& lower, const P& from, const P& to, P& slope) const {
-    P c[S + 1];
-    for (int i = 0; i <= S; ++i) c[i] = select(lower, low[i], high[i]);
-    divide(c);
-    P left = from, right = to, t = 0.5 * (from + to);
-    for (int pass = 0; pass < 7; ++pass) {
-      P value = c[S];
-      slope = P(0.0);
-      for (int i = S - 1; i >= 0; --i) {
-        const P step = t - collocation_.nodes[i];
-        slope = slope * step + value;
-        value = value * step + c[i];
-      }
-      const Mask inside = value > 0.0;
-      left = select(inside, t, left);
-      right = select(inside, right, t);
-      const P guess = t - value / slope;
-      t = select((guess >= left) & (guess <= right), guess, 0.5 * (left + right));
-    }
-    return t;
-  }
-
   /// Lanes that have come to their end hand it in and begin anew.
   void finish() {
     const Mask ended = (running_ > 0.5) & (side_ < 0.0) & (q_ <= 1e-14);
@@ -393,6 +343,7 @@ class March {
   const MarchTask& task_;
   const MarchMesh& mesh_;
   const MarchCollocation& collocation_;
+  MarchPolynomial<P, S> polynomial_;
   int next_ = 0, active_ = 0;
   int point_[P::lanes] = {}, attempts_[P::lanes] = {};
 
