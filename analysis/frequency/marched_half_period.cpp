@@ -164,16 +164,16 @@ class MarchedHalfPeriod::Batch {
     double cap = mesh_->cap;
     if (law_.kink != 0.0 && law_.kink != 1.0) cap *= std::pow(mesh_->newton * mesh_->newton, 1.0 / (2.0 + law_.kink));
     const double way = std::sqrt(2.0 / m.reach), speed = m.speed > 0.0 ? 1.0 / m.speed : way;
-    double after = way, before = way;
-    if (state.law == MarchLaw::dahl || state.law == MarchLaw::bouc_wen) {
-      before = 1.0;
-    } else {
-      const double inner = std::max(speed, mesh_->ignored * std::min(way, 1.0));
-      after = state.law == MarchLaw::elasto_plastic ? way : std::min(way, inner);  // elastic at first, whatever g
-      if (state.law == MarchLaw::elasto_plastic)
-        before = speed < way ? inner : way;
+    double after = way, before = 1.0;
+    if (state.law == MarchLaw::elasto_plastic) {
+      // Elastic at first, whatever the level; near the end u follows the level, or stands where that changes.
+      if (speed < way)
+        before = std::max(speed, mesh_->ignored * std::min(way, 1.0));
       else
-        before = inner;
+        before = way;
+    } else if (state.law != MarchLaw::dahl && state.law != MarchLaw::bouc_wen) {
+      before = std::max(speed, mesh_->ignored * std::min(way, 1.0));
+      after = std::min(way, before);
     }
     m.after = std::min(0.5 * cap * after, 0.5);
     m.before = std::min(0.5 * cap * before, 0.5);

@@ -31,7 +31,7 @@ MarchedLaw marched(const ElastoPlastic<double>& law) {
   state.speed = 1.0 / law.vs;
   state.force = law.Fs;
   state.damping = law.sigma1 * law.Fs / law.sigma0;
-  return {{state}, 0.0, law.sigma2, kink_of(law), 1.0};
+  return {{state}, 0.0, law.sigma2, kink_of(law), 1.5};
 }
 
 MarchedLaw marched(const Gms<double>& law) {
@@ -49,7 +49,7 @@ MarchedLaw marched(const Gms<double>& law) {
 }
 
 MarchedLaw marched(const Xiong<double>& law) {
-  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law), 1.0};
+  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law), 2.0};
   for (std::size_t i = 0; i < law.K.size(); ++i) {
     MarchedState state{.law = MarchLaw::capped, .numbers = level_of(law)};
     state.force = law.lambda[i] * law.Fs;
