@@ -194,7 +194,8 @@ std::optional<DfKernel> DfKernel::of(const Element<double>& element, const DfOpt
     return lugre->odd() ? std::optional(DfKernel(*lugre, options)) : std::nullopt;
   if (const auto* dahl = std::get_if<Dahl<double>>(&element); dahl != nullptr && dahl->is_linear_in_state())
     return DfKernel(*dahl, options);
-  if (auto law = MarchedLaw::of(element)) return DfKernel(std::move(*law), options);
+  if (auto law = MarchedLaw::of(element); law && law->least < 0.5 * options.accuracy)
+    return DfKernel(std::move(*law), options);
   return std::nullopt;
 }
 

@@ -89,7 +89,7 @@ class MarchedHalfPeriod::Batch {
   /// Harmonics of the points numbered in `wanted`, [orders] each; empty where no periodic state was found.
   void run(const Mesh& mesh, const std::vector<std::size_t>& wanted) {
     mesh_ = &mesh.march;
-    tolerance_ = 0.15 * std::sqrt(mesh.least);
+    tolerance_ = 0.3 * std::sqrt(mesh.least);
     orders_ = mesh.least > 1e-6 ? 2 : wanted_orders_;
     outputs_.assign(points_.size() * static_cast<std::size_t>(orders_), 0.0);
     failed_.assign(points_.size(), false);
@@ -106,9 +106,11 @@ class MarchedHalfPeriod::Batch {
   /// Periodic states, roughly; takes those out of `wanted` that are not the only one of their point.
   void guess(std::vector<std::size_t>& wanted) {
     Mesh rough = limcycle::meshes.front();
-    rough.least = 0.02;
+    rough.least = 5e-3;
+    guessing_ = true;
     if (law_.states.front().law != MarchLaw::slider) {
       run(rough, wanted);
+      guessing_ = false;
       return;
     }
     // A slider that is stretched to its level may begin to slip at once, and then return there without any motion:
@@ -118,6 +120,7 @@ class MarchedHalfPeriod::Batch {
     const std::vector<Start> stretched = starts_;
     for (Start& start : starts_) start.known = false;
     run(rough, wanted);
+    guessing_ = false;
     const std::size_t n = law_.states.size();
     std::erase_if(wanted, [&](std::size_t point) -> bool {
       for (std::size_t i = point * n; i < (point + 1) * n; ++i)
@@ -232,7 +235,10 @@ class MarchedHalfPeriod::Batch {
     m.start += change;
     m.level += level_change;
     start = {m.start, m.level, true};
-    if (!(std::abs(change) <= tolerance_ * std::min(1.0, m.reach)) || !(std::abs(level_change) <= 1e-3 * tolerance_))
+    // What the end hardly remembers is found by one step.
+    const double left = guessing_ ? std::min(1.0, std::abs(task.slope[i]) + 0.05) : 1.0;
+    if (!(std::abs(change) * left <= tolerance_ * std::min(1.0, m.reach)) ||
+        !(std::abs(level_change) <= 1e-3 * tolerance_))
       return false;
     if (task.panels[i] < 0) doubtful_[m.point] = true;
     const double w = points_[m.point].frequency;
@@ -253,6 +259,7 @@ class MarchedHalfPeriod::Batch {
   std::span<const DfPoint> points_;
   const MarchMesh* mesh_ = nullptr;
   double tolerance_ = 0.0;
+  bool guessing_ = false;
   std::vector<Start> starts_;
   std::vector<Marching> pending_;
   std::vector<double> numbers_;

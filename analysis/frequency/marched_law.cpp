@@ -35,7 +35,7 @@ MarchedLaw marched(const ElastoPlastic<double>& law) {
 }
 
 MarchedLaw marched(const Gms<double>& law) {
-  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law), 4.0, 5e-9};
+  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law), 4.0, 5e-8};
   for (std::size_t i = 0; i < law.k.size(); ++i) {
     MarchedState state{.law = MarchLaw::slider, .numbers = level_of(law)};
     state.force = law.alpha[i] * law.Fs;
@@ -84,8 +84,8 @@ MarchedLaw marched(const BoucWen<double>& law) {
   const bool whole = law.n == std::floor(law.n);
   MarchedLaw all{{state}, law.alpha * law.k};
   // |u|^n has a kink or a branch point where u changes sign.
-  all.trust = whole ? 2.0 : 5.0;
-  all.least = whole ? 2e-9 : 5e-8;
+  all.trust = whole ? 3.0 : 6.0;
+  all.least = !whole ? 5e-8 : law.n == 1.0 ? 2e-9 : 0.0;
   all.knows_rate = false;
   return all;
 }
@@ -96,13 +96,13 @@ std::optional<MarchedLaw> MarchedLaw::of(const Element<double>& element) {
   if (const auto* law = std::get_if<ElastoPlastic<double>>(&element))
     return law->odd() && law->vd == 0.0 && law->zba_ratio < 1.0 ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = std::get_if<Gms<double>>(&element))
-    return law->odd() && (kink_of(*law) == 0.0 || kink_of(*law) > 2.0) ? std::optional(marched(*law)) : std::nullopt;
+    return law->odd() && kink_of(*law) == 0.0 ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = std::get_if<Xiong<double>>(&element))
     return law->odd() ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = std::get_if<Dahl<double>>(&element))
     return law->exponent > 1.0 ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = std::get_if<BoucWen<double>>(&element))
-    return law->beta >= 0.0 ? std::optional(marched(*law)) : std::nullopt;
+    return law->beta >= 0.0 && (law->n == 1.0 || law->n >= 2.0) ? std::optional(marched(*law)) : std::nullopt;
   return std::nullopt;
 }
 

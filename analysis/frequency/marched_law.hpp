@@ -27,7 +27,7 @@ struct MarchedLaw {
   bool knows_rate = true;  ///< else a gain is that of its amplitude
 
   /// Without direction dependence elasto-plastic (constant damping), Xiong, and GMS with a level that is smooth at
-  /// rest; Dahl with an exponent above 1; Bouc-Wen with beta >= 0. Empty for the others.
+  /// rest; Dahl with an exponent above 1; Bouc-Wen with beta >= 0 and n = 1 or n >= 2. Empty for the others.
   static std::optional<MarchedLaw> of(const Element<double>& element);
 };
 
