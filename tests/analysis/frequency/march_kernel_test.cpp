@@ -116,6 +116,7 @@ Tally tally(Element<double> (*any_law)(Random&), int laws, unsigned seed) {
   for (int i = 0; i < laws; ++i) {
     const Element<double> element = any_law(random);
     std::vector<DfPoint> points;
+    points.reserve(40);
     for (int k = 0; k < 40; ++k) points.push_back({random.spread(1e-7, 1e-2), random.spread(0.1, 1000.0), 0.0});
     const double accuracy = random.spread(1e-8, 1e-3);
     std::vector<DescribingFunction> results(points.size());
