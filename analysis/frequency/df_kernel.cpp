@@ -192,8 +192,10 @@ std::optional<DfKernel> DfKernel::of(const Element<double>& element, const DfOpt
   if (options.harmonics > most_harmonics || options.accuracy < 2.0 * meshes.back().bound) return std::nullopt;
   if (const auto* lugre = std::get_if<LuGre<double>>(&element))
     return lugre->odd() ? std::optional(DfKernel(*lugre, options)) : std::nullopt;
-  if (const auto* dahl = std::get_if<Dahl<double>>(&element))
-    return dahl->is_linear_in_state() ? std::optional(DfKernel(*dahl, options)) : std::nullopt;
+  if (const auto* dahl = std::get_if<Dahl<double>>(&element); dahl != nullptr && dahl->is_linear_in_state())
+    return DfKernel(*dahl, options);
+  if (auto law = MarchedLaw::of(element); law && law->least < 0.5 * options.accuracy)
+    return DfKernel(std::move(*law), options);
   return std::nullopt;
 }
 
@@ -203,6 +205,10 @@ double DfKernel::bound(const HalfPeriodSettings& mesh) const {
 }
 
 void DfKernel::compute(std::span<const DfPoint> points, std::span<DescribingFunction> results) const {
+  if (marched_) {
+    marched_->compute(points, results);
+    return;
+  }
   std::vector<std::size_t> wanted;
   wanted.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
