@@ -2,11 +2,14 @@
 /// limcycle's table of describing functions, 200 x 200 points of cases/df-lugre.toml: one thread with every instruction
 /// set of this machine, and two threads.
 ///   ours_df REFERENCE CASE
+#include <algorithm>
 #include <chrono>
 #include <string>
+#include <string_view>
 
 #include "limcycle/analysis/frequency/describing_function.hpp"
 #include "limcycle/analysis/lanes/isa.hpp"
+#include "limcycle/analysis/study/experiments/laws.hpp"
 #include "limcycle/bench/bristle.hpp"
 #include "limcycle/bench/measure.hpp"
 #include "limcycle/cases/case.hpp"
@@ -63,6 +66,24 @@ void measure_threads(const Question& question, limcycle::DfOptions options) {
                   least[threads - 1]});
 }
 
+/// Other laws with their presets' values on 40 x 40 points of the same range. Error: the largest that is stated;
+/// evaluations: the points that a kernel answered.
+void measure_laws(const std::vector<limcycle::DfPoint>& points, limcycle::DfOptions options) {
+  constexpr std::string_view labels[] = {"lugre", "dahl", "bouc-wen", "elasto-plastic", "xiong", "gms"};
+  options.accuracy = 1e-6;
+  for (const auto& setting : limcycle::law_settings()) {
+    if (std::ranges::find(labels, setting.label) == std::end(labels)) continue;
+    const auto law = limcycle::make_law(setting);
+    Table table;
+    bench::Row row{"df", "laws to 1.0e-06", "limcycle", setting.label};
+    row.seconds = bench::least_cpu_seconds([&] { table = limcycle::describing_function_table(law, points, options); });
+    row.seconds /= static_cast<double>(table.size());
+    row.evaluations = std::ranges::count(table, "kernel", &limcycle::DescribingFunction::method);
+    row.error = std::ranges::max(table, {}, &limcycle::DescribingFunction::error).error;
+    bench::print(row);
+  }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -85,4 +106,6 @@ int main(int count, char** arguments) {
   options.accuracy = 1e-9;
   options.isa = limcycle::best_isa();
   measure_threads(question, options);
+  const auto fewer = limcycle::load_case(arguments[2], {"df.harmonics=1"});
+  measure_laws(fewer.df->points(), options);
 }
