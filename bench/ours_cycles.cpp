@@ -1,6 +1,7 @@
 /// @file
 /// limcycle finds and follows limit cycles; and the errors of the periods, its own and those of AUTO-07p.
 ///   ours_cycles AUTO_POINTS SERVO_CASE VAN_DER_POL_CASE      AUTO_POINTS as auto_cycles.py writes it
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -8,7 +9,7 @@
 #include <string>
 
 #include "limcycle/analysis/orbit/continuation.hpp"
-#include "limcycle/analysis/study/cycle_hunt.hpp"
+#include "limcycle/analysis/orbit/settle.hpp"
 #include "limcycle/bench/measure.hpp"
 #include "limcycle/cases/case.hpp"
 
@@ -46,14 +47,17 @@ Family van_der_pol(const std::string& file) {
           5.0};
 }
 
-/// As `predict` does from one start: simulates from y displaced by 1 until the motion repeats itself, then shoots.
+/// As `predict` does from one start: simulates from y displaced by 1 until the motion repeats itself, then shoots. The
+/// multipliers, which tell that the cycle is stable, are wanted to some 1e-6 only.
 Cycle cold(const Loop& loop, double accuracy) {
-  limcycle::PredictOptions options;
-  options.accuracy = accuracy;
-  limcycle::CycleHunt hunt(loop, options, limcycle::default_search_box(loop));
-  hunt.settle_from(limcycle::displaced(loop, 1.0), "y displaced by 1");
-  if (hunt.cycles().empty()) throw std::runtime_error("no cycle: " + hunt.outcomes().front().why);
-  return hunt.cycles().front();
+  limcycle::SettleOptions options;
+  options.shooting.accuracy = accuracy;
+  options.shooting.rtol = std::clamp(accuracy, 1e-13, 1e-8);
+  options.shooting.tolerance = 0.1 * options.shooting.rtol;
+  options.shooting.derivative_rtol = 1e-7;
+  const auto settled = limcycle::settle(loop, limcycle::displaced(loop, 1.0), options);
+  if (!settled.shot) throw std::runtime_error("no cycle: " + settled.why);
+  return settled.shot->cycle;
 }
 
 /// Periods to about 1e-12 by shooting, each from the one before: ask in the order of the branch.

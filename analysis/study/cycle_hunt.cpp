@@ -15,7 +15,7 @@ CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const Sear
   settle_.shooting.accuracy = options.accuracy;
   settle_.shooting.rtol = std::clamp(options.accuracy, 1e-13, 1e-8);
   settle_.shooting.tolerance = 0.1 * settle_.shooting.rtol;
-  settle_.shooting.derivative_rtol = std::clamp(10.0 * options.accuracy, 1e-10, 1e-7);
+  settle_.shooting.derivative_rtol = std::clamp(options.accuracy, 1e-10, 1e-8);
   settle_.stop = settle_.shooting.stop = options.stop;
 }
 
