@@ -63,15 +63,14 @@ void BranchMap::set_frame(Frame frame) {
   for (auto& loop : recent_) loop.map.reset();
 }
 
-BranchMap::Value BranchMap::at(const VectorXd& u, double s, bool with_derivative, double rtol) {
+BranchMap::Value BranchMap::at(const VectorXd& u, double s, With with, double rtol) {
   Value value;
   Prepared& here = prepared(s);
   if (here.loop && !here.map) {
     auto half = frame_.half ? symmetry(*here.loop) : std::nullopt;
     const bool fits = static_cast<std::size_t>(frame_.chart.scale.size()) == frame_.origin.x.size() &&
                       (!frame_.half || half) && states_of(*here.loop) == frame_.origin.x.size();
-    ReturnMap::Options options{rtol, steps_a_map, stop_};
-    options.trace = true;
+    const ReturnMap::Options options{rtol, steps_a_map, stop_};
     if (fits) here.map = std::make_unique<ReturnMap>(*here.loop, frame_.section, std::move(half), options);
   }
   if (!here.map) {
@@ -80,7 +79,9 @@ BranchMap::Value BranchMap::at(const VectorXd& u, double s, bool with_derivative
     return value;
   }
   here.map->set_rtol(rtol);
-  here.map->set_derivative(with_derivative);
+  here.map->set_derivative(with == With::derivatives);
+  here.map->set_extremes(with != With::nothing);
+  here.map->set_trace(with == With::trace);
   value.start = {frame_.chart.lift(frame_.origin.x, u), frame_.origin.modes};
   value.motion = (*here.map)(value.start);
   ++maps_;
@@ -88,11 +89,12 @@ BranchMap::Value BranchMap::at(const VectorXd& u, double s, bool with_derivative
   if (value.status != Status::converged) return value;
   value.r = frame_.chart.coordinates(value.motion.state.x, value.start.x);
   value.time = value.motion.time;
+  if (with == With::nothing) return value;
   const double low = value.motion.extremes.low, high = value.motion.extremes.high;
   const auto& reflection = here.map->reflection();
   const double middle = reflection ? (frame_.section.C * reflection->centre).value() : 0.5 * (low + high);
   value.amplitude = std::max(high - middle, middle - low);
-  if (with_derivative) differentiate(value, high - middle >= middle - low);
+  if (with == With::derivatives) differentiate(value, high - middle >= middle - low);
   return value;
 }
 
@@ -116,7 +118,7 @@ void BranchMap::differentiate(Value& value, bool upper) const {
 }
 
 std::optional<VectorXd> BranchMap::slope(const VectorXd& u, double s, double step, const VectorXd& here, double rtol) {
-  const Value plus = at(u, s + step, false, rtol), minus = at(u, s - step, false, rtol);
+  const Value plus = at(u, s + step, With::nothing, rtol), minus = at(u, s - step, With::nothing, rtol);
   bool ahead = plus.status == Status::converged, behind = minus.status == Status::converged;
   if (ahead && behind) {
     const double forward = (plus.r - here).norm(), backward = (minus.r - here).norm();
@@ -128,7 +130,7 @@ std::optional<VectorXd> BranchMap::slope(const VectorXd& u, double s, double ste
   }
   if (!ahead && !behind) return std::nullopt;
   const double side = ahead ? step : -step;
-  const Value near = at(u, s + 0.5 * side, false, rtol), middle = at(u, s, false, rtol);
+  const Value near = at(u, s + 0.5 * side, With::nothing, rtol), middle = at(u, s, With::nothing, rtol);
   if (near.status != Status::converged || middle.status != Status::converged) return std::nullopt;
   const VectorXd& far = ahead ? plus.r : minus.r;
   return (4.0 * near.r - far - 3.0 * middle.r) / side;  // one-sided, of second order too

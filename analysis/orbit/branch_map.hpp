@@ -43,13 +43,17 @@ class BranchMap {
     Status status = Status::converged;
     bool valid = true;  ///< false: there is no loop at this s (then status is not_finite)
     Eigen::VectorXd r;
-    double time = 0.0, amplitude = 0.0;  ///< of the (half) period; of y, from the motion to the image
+    double time = 0.0;  ///< of the (half) period
     LoopState start;
-    ReturnMap::Result motion;  ///< from there to its image, with its trace
+    ReturnMap::Result motion;  ///< from there to its image
     // Only if they were asked for:
+    double amplitude = 0.0;                          ///< of y
     Eigen::MatrixXd D;                               ///< dP/du
     Eigen::RowVectorXd time_slope, amplitude_slope;  ///< over u
   };
+
+  /// What is asked beside the image: nothing, derivatives and extremes, or the trace and extremes.
+  enum class With { nothing, derivatives, trace };
 
   BranchMap(LoopFamily family, ParameterScale scale, double rtol, std::function<bool()> stop)
       : family_(std::move(family)), scale_(scale), rtol_(rtol), stop_(std::move(stop)) {}
@@ -65,7 +69,7 @@ class BranchMap {
   long maps() const { return maps_; }
   bool stopped() const { return stop_ && stop_(); }
 
-  Value at(const Eigen::VectorXd& u, double s, bool with_derivative, double rtol);
+  Value at(const Eigen::VectorXd& u, double s, With with, double rtol);
   /// dR/ds by central differences; one-sided where the other side is not valid, has no map or jumps (`here`: R at
   /// (u, s), by which that is seen). Empty if neither side will do.
   std::optional<Eigen::VectorXd> slope(const Eigen::VectorXd& u, double s, double step, const Eigen::VectorXd& here,

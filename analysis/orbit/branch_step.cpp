@@ -105,7 +105,7 @@ bool BranchSolver::converge(BranchSpot& spot, const VectorXd& normal, BranchJaco
   failure_ = Status::stalled;
   invalid_ = false;
   for (int i = 0; i < 14; ++i, ++spot.iterations) {
-    spot.value = map_.at(spot.u(), spot.s(), false, map_.rtol());
+    spot.value = map_.at(spot.u(), spot.s(), BranchMap::With::trace, map_.rtol());
     if (spot.value.status != Status::converged) return fail(spot.value);
     const VectorXd& r = spot.value.r;
     const VectorXd b = joined(r, normal.dot(spot.w - w));
@@ -136,7 +136,7 @@ bool BranchSolver::converge(BranchSpot& spot, const VectorXd& normal, BranchJaco
 /// with what was known.
 std::optional<BranchMap::Value> BranchSolver::differentiate(const BranchSpot& spot, double rtol, Derivatives wanted,
                                                             BranchJacobian& jacobian) {
-  auto linear = map_.at(spot.u(), spot.s(), true, rtol);
+  auto linear = map_.at(spot.u(), spot.s(), BranchMap::With::derivatives, rtol);
   if (linear.status != Status::converged) {
     fail(linear);
     return std::nullopt;
@@ -144,7 +144,7 @@ std::optional<BranchMap::Value> BranchSolver::differentiate(const BranchSpot& sp
   const double step = slope_step(jacobian.slope, rtol);
   std::optional<VectorXd> slope;
   if (wanted == Derivatives::rough && jacobian.slope.size() > 0) {
-    const auto ahead = map_.at(spot.u(), spot.s() + step, false, rtol);
+    const auto ahead = map_.at(spot.u(), spot.s() + step, BranchMap::With::nothing, rtol);
     if (ahead.status == Status::converged) slope = (ahead.r - linear.r) / step;
     if (slope && (*slope - jacobian.slope).norm() > 0.3 * jacobian.slope.norm()) slope.reset();
   }
@@ -261,9 +261,9 @@ bool BranchSolver::place_frame(const LoopState& start, const Trace& trace, doubl
 std::optional<BranchSpot> BranchSolver::begin(const Cycle& cycle, double s) {
   const auto loop = map_.loop(s);
   if (!loop) return std::nullopt;
-  Trace trace;
-  failure_ = record(*loop, cycle.start, cycle.period, 1e-9, 1000, trace);
-  if (failure_ != Status::converged) return std::nullopt;
+  Trace trace = cycle.trace;
+  if (trace.t.empty()) failure_ = record(*loop, cycle.start, cycle.period, 1e-9, 1000, trace);
+  if (trace.t.empty() || failure_ != Status::converged) return std::nullopt;
   // Half of the map only if the loop stays symmetric nearby: a load or an unequal level takes the symmetry away.
   bool half = cycle.half_wave_symmetric && symmetry(*loop).has_value();
   for (const double side : {-1e-3, 1e-3})

@@ -77,8 +77,11 @@ Eigen::VectorXcd harmonics(const std::vector<double>& t, const std::vector<doubl
     const Cubic01 cubic = piece(t, y, rate, i);
     const double h = t[i + 1] - t[i];
     for (std::size_t k = 0; k < node.size(); ++k) {
-      const double part = cubic.at(node[k]) * h * weight[k], angle = w * (t[i] + node[k] * h);
-      for (int n = 0; n <= H; ++n) sum(n) += part * std::complex<double>(std::sin(n * angle), std::cos(n * angle));
+      const double angle = w * (t[i] + node[k] * h);
+      const std::complex<double> turn(std::cos(angle), -std::sin(angle));
+      std::complex<double> term(0.0, cubic.at(node[k]) * h * weight[k]);  // j e^(-j n angle) = sin + j cos
+      sum(0) += term;
+      for (int n = 1; n <= H; ++n) sum(n) += term *= turn;
     }
   }
   sum *= 2.0 / period;

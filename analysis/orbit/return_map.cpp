@@ -85,10 +85,8 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
     if (result.status == Status::converged) result.status = march.step(options_.longest);
     if (result.status != Status::converged) break;
     if (options_.derivative) result.factors.push_back(march.last().transition);
-    if (options_.trace) {
-      result.extremes.include(*field_, march, static_cast<std::size_t>(march.steps() - 1));
-      append(result.trace, *field_, march);
-    }
+    if (options_.extremes) result.extremes.include(*field_, march, static_cast<std::size_t>(march.steps() - 1));
+    if (options_.trace) append(result.trace, *field_, march);
     if (march.last().switched) {
       first_switch = std::min(first_switch, march.t());
       last_switch = march.t();
@@ -124,7 +122,7 @@ void ReturnMap::close_derivative(Result& result, const LoopState& from, const Se
   // An extreme moves with the state there; the moment at which it is met has no part in it, as y stands still.
   const auto extreme = [&](double at, std::size_t step, const Eigen::MatrixXd& next, Eigen::RowVectorXd& gradient) {
     const double share = at - static_cast<double>(step);
-    if (!options_.trace || share < 0.0 || share > 1.0) return;
+    if (!options_.extremes || share < 0.0 || share > 1.0) return;
     if (at == 0.0 || at == static_cast<double>(result.factors.size()))  // on the section
       gradient = Eigen::RowVectorXd::Zero(n);
     else

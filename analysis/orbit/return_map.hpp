@@ -36,7 +36,8 @@ class ReturnMap {
     bool derivative = false;
     double longest = infinite;  ///< time after which a motion that has not come back is given up, s
     int returns = 1;            ///< crossings of the section that make one map: several for a motion of unequal swings
-    bool trace = false;         ///< record the motion: Result::trace and extremes
+    bool extremes = false;      ///< find the extremes of y on the way
+    bool trace = false;         ///< record the motion
   };
   struct Result {
     Status status = Status::converged;
@@ -44,8 +45,8 @@ class ReturnMap {
     double time = 0.0;  ///< of the (half) period
     State largest;  ///< largest |state| met, per component (linear states from the centre of the reflection, if any)
     double switch_distance = infinite;  ///< of the section from the nearest switch, share of `time`
-    LocatedExtremes extremes;           ///< of y, only with Options::trace
-    Trace trace;                        ///< the same, if there is one return: in the steps of the integration
+    LocatedExtremes extremes;           ///< of y, if they are wanted
+    Trace trace;                        ///< if it is wanted and there is one return: in the steps of the integration
 
     // Only with `derivative`, and only if every switch was crossed transversally (else empty):
     Eigen::MatrixXd derivative;        ///< d(state)/d(from), over all states; its image is tangent to the section
@@ -70,6 +71,7 @@ class ReturnMap {
   long steps() const { return steps_; }
   void set_rtol(double rtol) { options_.rtol = rtol; }
   void set_derivative(bool derivative) { options_.derivative = derivative; }
+  void set_extremes(bool extremes) { options_.extremes = extremes; }
   void set_trace(bool trace) { options_.trace = trace; }
 
  private:

@@ -27,7 +27,7 @@ class Shooter {
  public:
   Shooter(const Loop& loop, ReturnMap map, const ShootingOptions& options)
       : map_(std::move(map)), options_(options), first_(loop.states()), typical_(typical_sizes(loop)) {
-    map_.set_trace(true);  // the extremes are wanted everywhere
+    map_.set_extremes(true);
   }
 
   Status warm_up(const LoopState& guess) {
@@ -49,6 +49,7 @@ class Shooter {
   /// Brings the residual below the tolerance; on return state_ is the best point and residual_ its residual.
   Status solve(double rtol, double tolerance) {
     map_.set_rtol(rtol);
+    map_.set_trace(true);
     chart_.emplace(map_.section(), largest_, typical_);
     auto image = map(state_);
     if (image.status != Status::converged) return image.status;
@@ -110,11 +111,13 @@ class Shooter {
   Status linearise(double rtol) {
     const double kept = map_.options().rtol;
     map_.set_rtol(rtol);
+    map_.set_trace(false);
     map_.set_derivative(true);
     linear_at_ = state_;
     linear_rtol_ = rtol;
     linear_ = map(state_);
     map_.set_rtol(kept);
+    map_.set_trace(true);
     map_.set_derivative(false);
     if (linear_.status != Status::converged) return linear_.status;
     if (linear_.derivative.size() == 0) return Status::stalled;

@@ -20,7 +20,7 @@ Loop van_der_pol(double mu) {
 ReturnMap::Options tight(double rtol) {
   ReturnMap::Options options;
   options.rtol = rtol;
-  options.trace = true;
+  options.extremes = options.trace = true;
   return options;
 }
 
