@@ -2,10 +2,11 @@
 import math
 from xml.sax.saxutils import escape
 
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 900, 540, 80, 240, 50, 60
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 920, 540, 80, 260, 50, 60
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f4f24", "#8a8a00", "#6a3d9a", "#555555",
            "#b15928", "#f032e6", "#a6761d", "#386cb0")
 OURS = "#000000"
+DASHES = ("", "12 5", "7 4", "3 3", "1 4")  # ours, where there are several
 
 
 def superscript(exponent):
@@ -15,6 +16,10 @@ def superscript(exponent):
 def decades(values):
     low, high = math.floor(math.log10(min(values)) + 1e-9), math.ceil(math.log10(max(values)) - 1e-9)
     return low, max(high, low + 1)
+
+
+def dashed(dashes):
+    return f'stroke-dasharray="{dashes}"' if dashes else ""
 
 
 class Axes:
@@ -42,18 +47,19 @@ class Axes:
     def up(self, value):
         return HEIGHT - BOTTOM - (math.log10(value) - self.y[0]) / (self.y[1] - self.y[0]) * (HEIGHT - BOTTOM - TOP)
 
-    def line(self, x1, y1, x2, y2, colour, width):
+    def line(self, x1, y1, x2, y2, colour, width, dashes=""):
         self.parts.append(f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}" '
-                          f'stroke-width="{width}"/>')
+                          f'stroke-width="{width}" {dashed(dashes)}/>')
 
-    def series(self, index, name, points, colour, width):
+    def series(self, index, name, points, colour, width, dashes=""):
         path = " ".join(f"{self.across(x):.1f},{self.up(y):.1f}" for x, y in points)
-        self.parts.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="{width}"/>')
+        self.parts.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="{width}" '
+                          f'{dashed(dashes)}/>')
         for x, y in points:
             self.parts.append(f'<circle cx="{self.across(x):.1f}" cy="{self.up(y):.1f}" r="{1.5 + width / 2}" fill="{colour}"/>')
         at = TOP + 12 + 20 * index
-        self.line(WIDTH - RIGHT + 12, at, WIDTH - RIGHT + 36, at, colour, width + 0.5)
-        self.parts.append(f'<text x="{WIDTH - RIGHT + 42}" y="{at + 4}">{escape(name)}</text>')
+        self.line(WIDTH - RIGHT + 10, at, WIDTH - RIGHT + 48, at, colour, width + 0.5, dashes)
+        self.parts.append(f'<text x="{WIDTH - RIGHT + 54}" y="{at + 4}">{escape(name)}</text>')
 
 
 def picture(parts, height=HEIGHT):
@@ -74,8 +80,10 @@ def lines(title, x_label, y_label, series):
     axes = Axes(title, x_label, y_label, [x for points in series.values() for x, _ in points],
                 [y for points in series.values() for _, y in points])
     colours = colours_of(series)
+    ours = sorted(name for name in series if name.startswith("limcycle"))  # the plain name comes first
     for index, (name, points) in enumerate(series.items()):
-        axes.series(index, name, points, colours[name], 3 if name.startswith("limcycle") else 1.5)
+        dashes = DASHES[ours.index(name) % len(DASHES)] if name in ours else ""
+        axes.series(index, name, points, colours[name], 3 if name in ours else 1.5, dashes)
     return picture(axes.parts)
 
 
