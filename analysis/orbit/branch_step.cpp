@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double loose_factor = 100.0;  ///< of the second integration tolerance, for derivatives and errors
-constexpr double caution = 3.0;         ///< errors go about with the tolerance; this much more is stated
+constexpr double caution = 6.0;         ///< errors go about with the tolerance; this much more is stated
 constexpr double tightest = 3e-13;
 constexpr double near_switch = 2e-3;  ///< share of the period in which the section should not meet a switch
 constexpr long steps_a_map = 200000;

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr double loose_factor = 100.0;  ///< of the second integration tolerance, for derivatives and errors
 constexpr double loosest = 1e-6;        ///< beyond, a cycle with stick may be lost
-constexpr double caution = 3.0;         ///< errors go about with the tolerance; this much more is stated
+constexpr double caution = 6.0;         ///< errors go about with the tolerance; this much more is stated
 constexpr double tightest = 1e-13;
 
 /// Newton on the return map.
