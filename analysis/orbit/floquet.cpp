@@ -99,8 +99,8 @@ std::vector<MatrixXd> condensed(const std::vector<MatrixXd>& factors) {
 
 std::vector<std::complex<double>> product_eigenvalues(const std::vector<MatrixXd>& factors) {
   std::vector<std::complex<double>> values;
-  if (factors.empty()) return values;
-  const Index m = factors.front().cols();
+  const Index m = factors.empty() ? 0 : factors.front().cols();
+  if (m == 0) return values;
   const std::vector<MatrixXd> two = condensed(factors);
   MatrixXd Q = MatrixXd::Identity(m, m), Z;
   std::vector<MatrixXd> triangles;
