@@ -45,6 +45,19 @@ class FaceOf final : public ErasedElement<S>::Face {
   }
   bool drive_is_of_rate() const override { return limcycle::drive_is_of_rate(e_); }
   bool arrests(Mode mode, int fired) const override { return limcycle::arrests(e_, mode, fired); }
+  bool has_storage() const override {
+    if constexpr (requires { e_.has_storage(); }) return e_.has_storage();
+    return HasStorage<E, S>;
+  }
+  S storage(Mode mode, std::span<const S> z) const override {
+    if constexpr (HasStorage<E, S>) return e_.storage(mode, z);
+    return S(0.0);
+  }
+  bool needs_drive() const override { return NeedsDrive<E>; }
+  bool follows_position() const override {
+    if constexpr (requires { e_.follows_position(); }) return e_.follows_position();
+    return false;
+  }
 
  private:
   static constexpr bool switches = HasModes<E, S>;

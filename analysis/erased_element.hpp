@@ -35,6 +35,10 @@ class ErasedElement {
     virtual Held held(Mode mode) const = 0;
     virtual bool drive_is_of_rate() const = 0;
     virtual bool arrests(Mode mode, int fired) const = 0;
+    virtual bool has_storage() const = 0;
+    virtual S storage(Mode mode, std::span<const S> z) const = 0;
+    virtual bool needs_drive() const = 0;
+    virtual bool follows_position() const = 0;
   };
 
   explicit ErasedElement(const Element<double>& element);
@@ -65,6 +69,12 @@ class ErasedElement {
   Held held(Mode mode) const { return face_->held(mode); }
   bool drive_is_of_rate() const { return face_->drive_is_of_rate(); }
   bool arrests(Mode mode, int fired) const { return face_->arrests(mode, fired); }
+  /// Whether the element tells its stored energy, and that energy (J); 0 where it does not or has no state.
+  bool has_storage() const { return face_->has_storage(); }
+  S storage(Mode mode, std::span<const S> z) const { return face_->storage(mode, z); }
+  bool needs_drive() const { return face_->needs_drive(); }
+  /// Whether the output depends on the input itself, not only on its rate and the state.
+  bool follows_position() const { return face_->follows_position(); }
 
  private:
   std::shared_ptr<const Element<double>> element_;

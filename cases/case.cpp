@@ -7,20 +7,6 @@
 namespace limcycle {
 namespace {
 
-/// Sections that a lone element has no use for, or of commands of later versions: they do not change the loop, so that
-/// one case file serves every command and version.
-const std::vector<std::string> foreign_tables = {"sensitivity", "dissipativity"};
-
-void check_foreign(const case_file::Section& top) {
-  for (const auto& name : foreign_tables) top.section(name);  // throws unless it is a table
-  const auto claims = top.find("claim");
-  if (!claims) return;
-  const auto* list = claims->value.as<case_file::Value::List>();
-  if (list == nullptr) throw claims->wrong_type("a list of tables [[claim]]");
-  for (std::size_t i = 0; i < list->size(); ++i)
-    if ((*list)[i].as<case_file::Value::Table>() == nullptr) throw claims->item(i).wrong_type("a table");
-}
-
 Case read_document(const case_file::Document& document) {
   const case_file::Section top(document, document.root, "");
   top.allow({"title", "loop", "search", "df", "simulate", "predict", "sensitivity", "dissipativity", "claim"});
@@ -40,9 +26,10 @@ Case read_document(const case_file::Document& document) {
     if (!result.loop) throw simulate->document().error_at("simulate", "needs a loop: add [loop.plant]");
     result.simulate = case_file::read_simulate(*simulate, state_names(build_loop(*result.loop)));
   }
-  check_foreign(top);
+  if (const auto energy = top.section("dissipativity")) result.dissipativity = case_file::read_dissipativity(*energy);
   if (const auto sensitivity = top.section("sensitivity"); sensitivity && result.loop)
     result.sensitivity = case_file::read_sensitivity(*sensitivity, result);
+  if (const auto claims = top.find("claim")) result.claims = case_file::read_claims(*claims, result);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include "limcycle/analysis/frequency/describing_function.hpp"
 #include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/study/claims/user_claim.hpp"
 #include "limcycle/analysis/study/parameter_spread.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 #include "limcycle/cases/input_error.hpp"
@@ -23,6 +24,12 @@ struct DfSection {
   std::vector<DfPoint> points() const;
 };
 
+/// [dissipativity]: speeds that a question of energy is about.
+struct DissipativitySection {
+  double speed = 1.0;           ///< |v| up to which the force is bounded, m/s
+  double top_speed = infinite;  ///< |v| that the motions have from which energy may be taken, m/s
+};
+
 /// A case file, read and validated.
 struct Case {
   std::string title;                   ///< default: name of the file without folder and extension
@@ -38,6 +45,8 @@ struct Case {
   std::optional<DfSection> df;
   std::optional<SimulateOptions> simulate;  ///< duration, initial, force, reference, stepper, rtol, sample are set
   std::optional<ParameterSpread> sensitivity;
+  DissipativitySection dissipativity;
+  std::vector<UserClaim> claims;
   PredictOptions predict;  ///< search (from [search]), starts and accuracy are set
 };
 
@@ -60,6 +69,9 @@ const SimulateOptions& need_simulate(const Case& from);
 /// The element whose describing function `df` computes: the lone element, else the friction, else the forward element,
 /// else the one on the error.
 const Element<double>& df_element(const Case& from);
+
+/// The case's own claims, ready to be tested.
+std::vector<Claim> claims_of(const Case& from);
 
 /// Kind of a law, element, plant or controller as a case file spells it.
 template <class... Kinds>

@@ -33,8 +33,12 @@ void append(std::vector<CaseNumber>& list, const std::string& section, const std
 }  // namespace
 
 std::vector<CaseNumber> numbers_of(const Case& from) {
-  const LoopParts& parts = need_loop(from);
   std::vector<CaseNumber> list;
+  if (!from.loop) {
+    append(list, from.element_path, *from.element);
+    return list;
+  }
+  const LoopParts& parts = *from.loop;
   append(list, "loop.plant", parts.plant);
   append(list, "loop.controller", parts.controller);
   if (parts.friction) append(list, "loop.friction", *parts.friction);
@@ -64,7 +68,7 @@ CaseNumber number_at(const Case& from, const std::string& flag, const std::strin
                     .suggestion = suggest(path, paths)});
 }
 
-std::optional<LoopParts> parts_with(const Case& from, std::span<const std::pair<std::string, double>> values) {
+std::optional<Case> case_with(const Case& from, std::span<const std::pair<std::string, double>> values) {
   auto overrides = from.overrides;
   for (const auto& [path, value] : values) {
     char text[40];
@@ -73,10 +77,15 @@ std::optional<LoopParts> parts_with(const Case& from, std::span<const std::pair<
     overrides.push_back(path + "=" + number + (number.find_first_of(".en") == std::string::npos ? ".0" : ""));
   }
   try {
-    return need_loop(read_case(from.text, from.file, overrides));
+    return read_case(from.text, from.file, overrides);
   } catch (const InputError&) {
     return std::nullopt;
   }
+}
+
+std::optional<LoopParts> parts_with(const Case& from, std::span<const std::pair<std::string, double>> values) {
+  const auto changed = case_with(from, values);
+  return changed ? std::optional(need_loop(*changed)) : std::nullopt;
 }
 
 std::optional<Loop> loop_with(const Case& from, const std::string& path, double value) {

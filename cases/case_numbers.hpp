@@ -19,11 +19,14 @@ struct CaseNumber {
   bool follows = false;  ///< it is not written and has the value of another one (Fs_minus, of Fs)
 };
 
-/// All of them: plant, controller, friction, elements, then reference and load.
+/// All of them: plant, controller, friction, elements, then reference and load; of a lone element its own.
 std::vector<CaseNumber> numbers_of(const Case& from);
 
 /// The number at a path. Throws InputError (of `flag`, such as "--parameter") if there is none.
 CaseNumber number_at(const Case& from, const std::string& flag, const std::string& path);
+
+/// The case with other values at some paths, read as `--set` would; empty where that is not a valid case.
+std::optional<Case> case_with(const Case& from, std::span<const std::pair<std::string, double>> values);
 
 /// The parts of the case's loop with other values at some paths, read as `--set` would; empty where that is not a valid
 /// case.

@@ -70,6 +70,14 @@ SearchBox read_search(const Section& section) {
   return {.amplitude_min = a, .amplitude_max = A, .frequency_min = w, .frequency_max = W};
 }
 
+DissipativitySection read_dissipativity(const Section& section) {
+  section.allow({"speed", "top_speed"});
+  DissipativitySection result;
+  if (const auto speed = section.find("speed")) result.speed = read_number(*speed, positive, "m/s");
+  if (const auto top = section.find("top_speed")) result.top_speed = read_number(*top, positive, "m/s");
+  return result;
+}
+
 DfSection read_df(const Section& section) {
   section.allow({"amplitude", "frequency", "bias", "harmonics", "accuracy", "method"});
   DfSection df;

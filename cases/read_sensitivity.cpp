@@ -76,22 +76,26 @@ SpreadParameter read_parameter(const Section& section, const std::vector<CaseNum
 
 }  // namespace
 
-ParameterSpread read_sensitivity(const Section& section, const Case& from) {
-  section.allow({"parameters", "samples", "seed"});
-  ParameterSpread spread;
-  const Place list = section.at("parameters", "list of {path, distribution, ...}");
+std::vector<SpreadParameter> read_spread_list(const Place& list, const std::vector<CaseNumber>& numbers) {
   const auto* items = list.value.as<Value::List>();
   if (items == nullptr) throw list.wrong_type("a list of tables {path, distribution, ...}");
   if (items->empty() || items->size() > most_parameters)
     throw list.error(fmt::format("must have 1 to {} entries", most_parameters));
-  const auto numbers = numbers_of(from);
+  std::vector<SpreadParameter> parameters;
   for (std::size_t i = 0; i < items->size(); ++i) {
     const Place item = list.item(i);
-    spread.parameters.push_back(read_parameter(Section(item.document, item.value, item.path), numbers));
-    const auto& path = spread.parameters.back().path;
-    if (std::ranges::count(spread.parameters, path, &SpreadParameter::path) > 1)
+    parameters.push_back(read_parameter(Section(item.document, item.value, item.path), numbers));
+    const auto& path = parameters.back().path;
+    if (std::ranges::count(parameters, path, &SpreadParameter::path) > 1)
       throw item.error(path + " stands in the list twice");
   }
+  return parameters;
+}
+
+ParameterSpread read_sensitivity(const Section& section, const Case& from) {
+  section.allow({"parameters", "samples", "seed"});
+  ParameterSpread spread;
+  spread.parameters = read_spread_list(section.at("parameters", "list of {path, distribution, ...}"), numbers_of(from));
   if (const auto samples = section.find("samples")) spread.samples = read_integer(*samples, 1, most_samples);
   if (const auto seed = section.find("seed"))
     spread.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, 2147483647));

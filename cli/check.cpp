@@ -49,6 +49,7 @@ CheckSummary summary_of(const Case& from) {
     summary.sections.push_back(fmt::format("df: {} x {} x {} points", from.df->amplitude.size(),
                                            from.df->frequency.size(), from.df->bias.size()));
   if (from.simulate) summary.sections.push_back(fmt::format("simulate: {} s", from.simulate->duration));
+  if (!from.claims.empty()) summary.sections.push_back(fmt::format("claims: {} of the case's own", from.claims.size()));
   if (from.sensitivity)
     summary.sections.push_back(fmt::format("sensitivity: {} parameters, {} samples",
                                            from.sensitivity->parameters.size(), from.sensitivity->samples));

@@ -56,7 +56,9 @@ Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 // Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.
 void add_adequate(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
+void add_claims(CLI::App& program, Action& action);
 void add_continue(CLI::App& program, Action& action);
+void add_dissipativity(CLI::App& program, Action& action);
 void add_df(CLI::App& program, Action& action);
 void add_experiment(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);

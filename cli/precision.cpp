@@ -6,6 +6,7 @@
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
+#include "limcycle/reports/atlas.hpp"
 #include "limcycle/reports/precision.hpp"
 
 namespace limcycle {
@@ -13,6 +14,9 @@ namespace {
 
 struct PrecisionFlags : CommonFlags {
   std::string html;           ///< --html
+  std::string picture;        ///< --svg, of the atlas
+  bool stability = false;     ///< --stability
+  bool families = false;      ///< --families
   bool no_stiffness = false;  ///< --no-stiffness
 };
 
@@ -47,9 +51,45 @@ PrecisionReport compute(const Case& from, const PrecisionFlags& flags) {
   return precision(from.loop ? &*from.loop : nullptr, element_of(from), points_of(from), options);
 }
 
+StepperAtlas compute_atlas(const Case& from, const PrecisionFlags& flags) {
+  if (!from.loop || !from.loop->friction)
+    throw std::invalid_argument("loop.friction: precision --stability asks a loop with friction");
+  Progress progress(flags.quiet);
+  AtlasOptions options;
+  options.predict = from.predict;
+  options.threads = flags.threads;
+  options.stop = interrupted;
+  options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
+  catch_interrupts();
+  return stepper_atlas(flags.families ? law_families(*from.loop) : own_law(*from.loop), options);
+}
+
+/// Where steppers fail, instead of how fast they are.
+int run_atlas(const Case& from, const PrecisionFlags& flags) {
+  Output output(flags);
+  output.check_file("--html", flags.html);
+  output.check_file("--svg", flags.picture);
+  const StepperAtlas atlas = compute_atlas(from, flags);
+  const auto made = provenance(flags, &from);
+  if (!flags.html.empty()) output.file(flags.html, atlas_page(atlas, made, from.text));
+  if (!flags.picture.empty()) output.file(flags.picture, atlas_picture(atlas));
+  output.text(atlas_text(from.title, atlas));
+  if (output.wants_json()) output.json(atlas_json(made, atlas));
+  if (output.wants_csv()) output.csv(atlas_csv(atlas));
+  output.finish();
+  if (atlas.status != Status::interrupted) return atlas.points.empty() ? exit_no_answer : exit_done;
+  if (!flags.quiet) std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  return exit_done;
+}
+
 int run(PrecisionFlags flags) {
+  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  flags.stability = flags.stability || flags.families;
+  if (!flags.picture.empty() && !flags.stability)
+    throw std::invalid_argument("--svg: precision has a picture with --stability only");
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
+  if (flags.stability) return run_atlas(from, flags);
   const Units units = from.loop ? units_of(*from.loop) : Units{};
   Output output(flags);
   output.check_file("--html", flags.html);
@@ -76,6 +116,11 @@ void add_precision(CLI::App& program, Action& action) {
   CLI::App* command = add_command(program, action, "precision", "Speed against accuracy of every method", true, flags,
                                   [flags] { return run(*flags); });
   command->add_flag("--no-stiffness", flags->no_stiffness, "Leave out the runs over the stiffness of the bristles");
+  command->add_flag("--stability", flags->stability,
+                    "Instead: where steppers fail, over stiffness and tolerance, for the case's law");
+  command->add_flag("--families", flags->families, "The same for families of laws in its place");
+  command->add_option("--svg", flags->picture, "Write the map of --stability to FILE (so does -o FILE.svg)")
+      ->type_name("FILE");
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
 }

@@ -14,12 +14,15 @@ namespace {
 
 struct SimulateFlags : CommonFlags {
   bool no_check = false;  ///< --no-check
+  bool no_audit = false;  ///< --no-audit
 };
 
-/// The run, and what a second one at other tolerances says of it, if that is wanted and there was time for it.
+/// The run, what a second one at other tolerances says of it, if that is wanted and there was time for it, and where
+/// the energy of the first one went.
 struct Answered {
   Simulation run;
   std::optional<Agreement> second;
+  std::optional<EnergyBalance> energy;
 };
 
 Answered compute(const Case& from, const SimulateFlags& flags) {
@@ -30,7 +33,16 @@ Answered compute(const Case& from, const SimulateFlags& flags) {
   options.stop = interrupted;
   options.progress = [&](double fraction) { progress.show(share * fraction, "simulation"); };
   catch_interrupts();
-  Answered result{simulate(loop, options), {}};
+  std::optional<EnergyAudit> audit;
+  if (!flags.no_audit && has_energy(*from.loop)) {
+    audit.emplace(*from.loop, loop, options.rtol);
+    options.watch = [&](LoopField& field, March& march, const std::vector<Mode>& modes) {
+      audit->step(field, march, modes);
+    };
+  }
+  Answered result{simulate(loop, options), {}, {}};
+  if (audit) result.energy = audit->balance();
+  options.watch = {};
   if (flags.no_check || result.run.status != Status::converged) return result;
   options.progress = [&](double fraction) { progress.show(share + (1.0 - share) * fraction, "at other tolerances"); };
   const Agreement second = agreement(loop, options, result.run);
@@ -44,14 +56,17 @@ int run(SimulateFlags flags) {
   const Case from = load_case(flags);
   need_simulate(from);
   Output output(flags);
-  const auto [result, second] = compute(from, flags);
-  std::string text = simulate_text(from.title, result, second);
+  const auto [result, second, energy] = compute(from, flags);
+  std::string text = simulate_text(from.title, result, second, energy);
   if (!output.wants_csv() && !output.wants_json()) text += "\nThe samples: --csv FILE, --csv - or -o FILE.\n";
   output.text(text);
-  if (output.wants_json()) output.json(simulate_json(provenance(flags, &from), result, second));
+  if (output.wants_json()) output.json(simulate_json(provenance(flags, &from), result, second, energy));
   if (output.wants_csv()) output.csv(simulate_csv(result));
   output.finish();
   if (second && !second->agrees && !flags.quiet) std::cerr << "limcycle: " << agreement_in_words(*second) << '\n';
+  if (!flags.quiet)
+    for (const auto& note : result.notes) std::cerr << "limcycle: " << note << '\n';
+  if (energy && !energy->balanced() && !flags.quiet) std::cerr << "limcycle: " << energy_in_words(*energy) << '\n';
   if (result.status == Status::converged) return exit_done;
   if (!flags.quiet) std::cerr << "limcycle: " << (result.why.empty() ? to_string(result.status) : result.why) << '\n';
   return result.status == Status::interrupted && !result.rows.empty() ? exit_done : exit_no_answer;
@@ -64,6 +79,7 @@ void add_simulate(CLI::App& program, Action& action) {
   CLI::App* command = add_command(program, action, "simulate", "Time-domain run from a given state, as CSV", true,
                                   flags, [flags] { return run(*flags); });
   command->add_flag("--no-check", flags->no_check, "Do not check the run by a second one at tighter tolerances");
+  command->add_flag("--no-audit", flags->no_audit, "Do not count where the energy goes");
 }
 
 }  // namespace limcycle

@@ -36,6 +36,30 @@ Json agreement_json(const Agreement& second) {
           {"why", second.why}};
 }
 
+/// Terms that do not apply to the loop are null, not zero.
+Json energy_json(const EnergyBalance& energy) {
+  const auto if_ = [](bool applies, double value) { return applies ? number(value) : Json(nullptr); };
+  const bool plant = energy.of_plant, law = energy.of_friction, storage = energy.of_storage;
+  return {{"of", plant ? "loop" : "friction"},
+          {"supplied",
+           {{"command", if_(plant, energy.command)},
+            {"load", if_(plant, energy.load)},
+            {"drive", if_(plant && law, energy.drive)},
+            {"friction", if_(law, energy.rubbing)}}},
+          {"stored",
+           {{"kinetic", if_(plant, energy.kinetic)},
+            {"potential", if_(plant, energy.potential)},
+            {"friction", if_(storage, energy.in_friction)}}},
+          {"dissipated",
+           {{"viscous", if_(plant, energy.viscous)},
+            {"friction", if_(law, energy.friction)},
+            {"impulses", if_(energy.checks(), energy.impulses)}}},
+          {"turnover", number(energy.turnover)},
+          {"balance_difference", if_(energy.checks(), std::abs(energy.error()))},
+          {"allowed", if_(energy.checks(), energy.allowed)},
+          {"balanced", energy.checks() ? Json(energy.balanced()) : Json(nullptr)}};
+}
+
 std::string text_of(const std::string& command, const Provenance& provenance, const Json& body) {
   return json_document(command, provenance, body.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
@@ -184,7 +208,8 @@ std::string predict_json(const Provenance& provenance, const PredictReport& repo
   return text_of("predict", provenance, top);
 }
 
-std::string simulate_json(const Provenance& provenance, const Simulation& run, const std::optional<Agreement>& second) {
+std::string simulate_json(const Provenance& provenance, const Simulation& run, const std::optional<Agreement>& second,
+                          const std::optional<EnergyBalance>& energy) {
   Json top;
   top["columns"] = run.columns;
   top["rows"] = Json::array();
@@ -199,9 +224,11 @@ std::string simulate_json(const Provenance& provenance, const Simulation& run, c
   top["period"] = run.outcome == Outcome::cycle ? number(run.period) : Json(nullptr);
   top["amplitude"] = run.outcome == Outcome::cycle ? number(run.amplitude) : Json(nullptr);
   top["agreement"] = second ? agreement_json(*second) : Json(nullptr);
+  top["energy"] = energy ? energy_json(*energy) : Json(nullptr);
   top["stepper"] = run.stepper;
   top["steps"] = run.steps;
   top["status"] = to_string(run.status);
+  top["notes"] = run.notes;
   top["why"] = run.why;
   return text_of("simulate", provenance, top);
 }

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/analysis/energy/audit.hpp"
 #include "limcycle/analysis/frequency/describing_function.hpp"
 #include "limcycle/analysis/orbit/agreement.hpp"
 #include "limcycle/analysis/study/predict.hpp"
@@ -21,8 +22,9 @@ std::string df_json(const Provenance& provenance, const std::vector<DfPoint>& po
 
 std::string predict_json(const Provenance& provenance, const PredictReport& report);
 
-/// `second`: what a run of other tolerances says; "agreement" is null without one.
+/// `second`: what a run of other tolerances says; "agreement" is null without one. `energy`: where it went; likewise.
 std::string simulate_json(const Provenance& provenance, const Simulation& run,
-                          const std::optional<Agreement>& second = std::nullopt);
+                          const std::optional<Agreement>& second = std::nullopt,
+                          const std::optional<EnergyBalance>& energy = std::nullopt);
 
 }  // namespace limcycle

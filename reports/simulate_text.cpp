@@ -34,7 +34,44 @@ std::string outcome_in_words(const Simulation& run) {
   return fmt::format("It comes to {}.", to_string(run.outcome));
 }
 
+/// What is zero to the last bit is not part of the motion and left out.
+Table energy_table(const EnergyBalance& energy) {
+  Table table{{{"energy", "", Align::left}, {"", "", Align::left}, {"J", ""}}, {}};
+  const auto add = [&](const char* what, const char* where, double value) {
+    if (value == 0.0) return;
+    const bool first =
+        table.rows.empty() || std::ranges::none_of(table.rows, [&](const auto& row) { return row[0] == what; });
+    table.rows.push_back({first ? what : "", where, with_digits(value, digits)});
+  };
+  if (energy.of_plant) {
+    add("supplied", "by the command", energy.command);
+    add("supplied", "by the load", energy.load);
+    add("supplied", "by what moves the other surface", energy.drive);
+  } else {
+    add("supplied", "to the friction", energy.rubbing);
+  }
+  add("stored", "in motion", energy.kinetic);
+  add("stored", "in springs and weight", energy.potential);
+  add("stored", "in the friction", energy.in_friction);
+  add("dissipated", "by dampers", energy.viscous);
+  add("dissipated", energy.of_storage ? "by friction" : "by friction (or stored in it)", energy.friction);
+  add("dissipated", "at switches, by impulses", energy.impulses);
+  return table;
+}
+
 }  // namespace
+
+std::string energy_in_words(const EnergyBalance& energy) {
+  if (!energy.checks()) return "The law does not tell the energy that it stores, so that there is no balance to check.";
+  const std::string off = fmt::format("{} of {} J turned over", as_error(std::abs(energy.relative_error())),
+                                      with_digits(energy.turnover, 4));
+  if (energy.balanced()) return fmt::format("The energy balances to {}.", off);
+  return fmt::format(
+      "Warning: the energy does not balance: it is off by {}, more than the tolerance of the run permits. Try a "
+      "smaller "
+      "simulate.rtol",
+      off);
+}
 
 std::string agreement_in_words(const Agreement& second) {
   const std::string other = fmt::format("a second run with rtol = {}", as_error(second.rtol));
@@ -50,19 +87,21 @@ std::string agreement_in_words(const Agreement& second) {
   return out + ".";
 }
 
-std::string simulate_text(const std::string& title, const Simulation& run, const std::optional<Agreement>& second) {
+std::string simulate_text(const std::string& title, const Simulation& run, const std::optional<Agreement>& second,
+                          const std::optional<EnergyBalance>& energy) {
   std::string out = wrapped(title) + "\n";
   out += fmt::format("{} samples, {} steps of {}", run.rows.size(), run.steps, run.stepper);
   out += run.status == Status::converged ? ".\n" : fmt::format("; ended early: {}.\n", to_string(run.status));
   if (!run.why.empty()) out += wrapped(run.why);
   if (const auto outcome = outcome_in_words(run); !outcome.empty()) out += wrapped(outcome);
   if (second) out += wrapped(agreement_in_words(*second));
+  if (energy) out += wrapped(energy_in_words(*energy)) + "\n" + energy_table(*energy).text();
   if (!run.rows.empty()) out += "\n" + ranges(run).text();
   std::map<std::string, std::size_t> kinds;
   for (const auto& event : run.events) ++kinds[event.what];
   if (!kinds.empty()) out += "\nLocated events\n";
   for (const auto& [what, n] : kinds) out += fmt::format("{:>8}  {}\n", n, what);
-  return out;
+  return out + notes_text(run.notes);
 }
 
 }  // namespace limcycle

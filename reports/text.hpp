@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/analysis/energy/audit.hpp"
 #include "limcycle/analysis/frequency/describing_function.hpp"
 #include "limcycle/analysis/orbit/agreement.hpp"
 #include "limcycle/analysis/study/predict.hpp"
@@ -20,10 +21,14 @@ std::string df_text(const std::string& title, const std::vector<DfPoint>& points
                     const std::vector<DescribingFunction>& results);
 inline constexpr std::size_t longest_table = 200;
 
-/// Summary of a run: how it ended, what the motion comes to, whether a second run agrees (if there was one), the range
-/// of each column, the located events.
+/// Summary of a run: how it ended, what the motion comes to, whether a second run agrees (if there was one), where the
+/// energy went (if that was counted), the range of each column, the located events.
 std::string simulate_text(const std::string& title, const Simulation& run,
-                          const std::optional<Agreement>& second = std::nullopt);
+                          const std::optional<Agreement>& second = std::nullopt,
+                          const std::optional<EnergyBalance>& energy = std::nullopt);
+
+/// Whether the energy of a run balances, one sentence; begins with "Warning" where it does not.
+std::string energy_in_words(const EnergyBalance& energy);
 
 /// What a second run says of `run`, one or two sentences; begins with "Warning" where they disagree.
 std::string agreement_in_words(const Agreement& second);

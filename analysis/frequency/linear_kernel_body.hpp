@@ -2,6 +2,7 @@
 #include <cstddef>
 
 #include "limcycle/analysis/frequency/linear_kernel.hpp"
+#include "limcycle/analysis/lanes/elimination.hpp"
 #include "limcycle/analysis/lanes/pack.hpp"
 
 namespace limcycle {
@@ -135,29 +136,10 @@ class LinearPass {
       for (int j = 0; j < S; ++j) m[i][j] = P(numbers_.inverse[i * S + j]);
       m[i][i] += rate.decay * scale;
     }
-#pragma GCC unroll 8
-    for (int k = 0; k < S; ++k) {
-      const P pivot = 1.0 / m[k][k];
-      m[k][k] = pivot;
-#pragma GCC unroll 8
-      for (int i = k + 1; i < S; ++i) {
-        const P factor = m[i][k] * pivot;
-#pragma GCC unroll 8
-        for (int j = k + 1; j < S; ++j) m[i][j] = m[i][j] - factor * m[k][j];
-        x[i] = x[i] - factor * x[k];
-        if constexpr (Both) y[i] = y[i] - factor * y[k];
-      }
-    }
-#pragma GCC unroll 8
-    for (int i = S - 1; i >= 0; --i) {
-#pragma GCC unroll 8
-      for (int j = i + 1; j < S; ++j) {
-        x[i] = x[i] - m[i][j] * x[j];
-        if constexpr (Both) y[i] = y[i] - m[i][j] * y[j];
-      }
-      x[i] = x[i] * m[i][i];
-      if constexpr (Both) y[i] = y[i] * m[i][i];
-    }
+    if constexpr (Both)
+      eliminate(m, x, y);
+    else
+      eliminate(m, x);
   }
 
   /// The periodic state at all nodes.

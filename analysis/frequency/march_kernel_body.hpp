@@ -3,17 +3,18 @@
 
 #include "limcycle/analysis/frequency/march_laws.hpp"
 #include "limcycle/analysis/frequency/march_nodes.hpp"
+#include "limcycle/analysis/lanes/elimination.hpp"
 #include "limcycle/analysis/lanes/pack.hpp"
 
 namespace limcycle {
 
 /// Marches the points of a task, each in a lane of its own, which takes the next one when it has come to its end.
 template <class P, int S, class Law>
-class March {
+class MarchPass {
  public:
   using Mask = typename P::Mask;
 
-  March(const MarchNumbers& numbers, const MarchTask& task)
+  MarchPass(const MarchNumbers& numbers, const MarchTask& task)
       : law_(numbers), task_(task), mesh_(*task.mesh), collocation_(*task.collocation), polynomial_{collocation_} {}
 
   void run() {
@@ -359,7 +360,7 @@ class March {
 
 template <class P, int S, template <class> class Law>
 void march(const MarchNumbers& numbers, const MarchTask& task) {
-  March<P, S, Law<P>>(numbers, task).run();
+  MarchPass<P, S, Law<P>>(numbers, task).run();
 }
 
 template <class P>

@@ -53,32 +53,4 @@ struct MarchPolynomial {
   }
 };
 
-/// Solves m x = b for two right-hand sides, in their place; without row exchange, as for the linear kernel.
-template <class P, int S>
-[[gnu::always_inline]] inline void eliminate(P (&m)[S][S], P (&x)[S], P (&y)[S]) {
-#pragma GCC unroll 8
-  for (int k = 0; k < S; ++k) {
-    const P pivot = 1.0 / m[k][k];
-    m[k][k] = pivot;
-#pragma GCC unroll 8
-    for (int i = k + 1; i < S; ++i) {
-      const P factor = m[i][k] * pivot;
-#pragma GCC unroll 8
-      for (int j = k + 1; j < S; ++j) m[i][j] = m[i][j] - factor * m[k][j];
-      x[i] = x[i] - factor * x[k];
-      y[i] = y[i] - factor * y[k];
-    }
-  }
-#pragma GCC unroll 8
-  for (int i = S - 1; i >= 0; --i) {
-#pragma GCC unroll 8
-    for (int j = i + 1; j < S; ++j) {
-      x[i] = x[i] - m[i][j] * x[j];
-      y[i] = y[i] - m[i][j] * y[j];
-    }
-    x[i] = x[i] * m[i][i];
-    y[i] = y[i] * m[i][i];
-  }
-}
-
 }  // namespace limcycle

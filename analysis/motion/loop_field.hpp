@@ -64,6 +64,8 @@ class LoopField {
   /// Inputs and output of element i at the last evaluated point.
   const Input<double>& input(std::size_t i) const { return inputs_[i]; }
   double output(std::size_t i) const { return w_[i]; }
+  /// Signals from outside at the last evaluated point.
+  const External& external() const { return ext_; }
   double y(const State& x) const;
   double y_rate(const State& dx) const;
   /// Position of the first state of element i.

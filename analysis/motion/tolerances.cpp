@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "limcycle/models/linear/dense.hpp"
 
@@ -56,10 +57,12 @@ State typical_sizes(const Loop& loop) {
   return result;
 }
 
-ErrorWeights loop_weights(const Loop& loop, double rtol) {
+ErrorWeights loop_weights(const Loop& loop, double rtol) { return loop_weights(loop, rtol, typical_sizes(loop)); }
+
+ErrorWeights loop_weights(const Loop& loop, double rtol, State typical) {
   if (!(rtol > 0.0 && rtol <= 0.1))
     throw std::invalid_argument("rtol must be in (0, 0.1], got " + std::to_string(rtol));
-  ErrorWeights weights{rtol, typical_sizes(loop)};
+  ErrorWeights weights{rtol, std::move(typical)};
   const auto n = static_cast<std::size_t>(loop.states());
   for (std::size_t i = 0; i < n; ++i) weights.atol[i] *= 1e-3;
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {

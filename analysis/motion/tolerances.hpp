@@ -19,5 +19,7 @@ State typical_sizes(const Loop& loop);
 /// typical size, or the law's own scale where that is smaller (a loose tolerance on v breaks stiction early and lands
 /// on a false cycle). Throws std::invalid_argument if rtol is not in (0, 0.1].
 ErrorWeights loop_weights(const Loop& loop, double rtol);
+/// The same, where typical_sizes() are known already.
+ErrorWeights loop_weights(const Loop& loop, double rtol, State typical);
 
 }  // namespace limcycle

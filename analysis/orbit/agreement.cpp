@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/outcome_watch.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
@@ -22,29 +23,21 @@ class Curve {
     const auto i = static_cast<std::size_t>(after - trace_.t.begin());
     if (i == 0) return trace_.y.front();
     if (i == trace_.t.size()) return trace_.y.back();
-    return within(i - 1, (t - trace_.t[i - 1]) / (trace_.t[i] - trace_.t[i - 1]));
+    const OutputStep step = piece(i - 1);
+    return step.value((t - step.t) / step.h);
   }
 
   /// Time between samples `from` and `to` at which y first reaches `level`.
   double reaches(double level, std::size_t from, std::size_t to) const {
-    for (std::size_t i = from; i < to; ++i) {
-      const double a = trace_.y[i] - level, b = trace_.y[i + 1] - level;
-      if (a * b > 0.0) continue;
-      double low = 0.0, high = 1.0;
-      for (int k = 0; k < 50; ++k) {
-        const double middle = 0.5 * (low + high);
-        ((within(i, middle) - level) * a > 0.0 ? low : high) = middle;
-      }
-      return trace_.t[i] + low * (trace_.t[i + 1] - trace_.t[i]);
-    }
+    for (std::size_t i = from; i < to; ++i)
+      if ((trace_.y[i] - level) * (trace_.y[i + 1] - level) <= 0.0) return piece(i).crossing(level);
     return trace_.t[to];
   }
 
  private:
-  double within(std::size_t i, double theta) const {
-    const double h = trace_.t[i + 1] - trace_.t[i], chord = trace_.y[i + 1] - trace_.y[i];
-    const double bend = h * trace_.rate[i] - chord, twist = 2.0 * chord - h * (trace_.rate[i] + trace_.rate[i + 1]);
-    return trace_.y[i] + theta * (chord + (1.0 - theta) * (bend + theta * twist));
+  OutputStep piece(std::size_t i) const {
+    return OutputStep::through(trace_.t[i], trace_.t[i + 1], trace_.y[i], trace_.y[i + 1], trace_.rate[i],
+                               trace_.rate[i + 1]);
   }
 
   const Trace& trace_;
@@ -160,6 +153,7 @@ double other_tolerance(double rtol) { return rtol >= 1e-10 ? std::min(0.01 * rto
 
 Agreement agreement(const Loop& loop, SimulateOptions options, const Simulation& run, double rtol) {
   const double told = std::exchange(options.rtol, rtol);
+  options.watch = {};
   const Simulation second = simulate(loop, options);
   Agreement found;
   found.rtol = rtol;

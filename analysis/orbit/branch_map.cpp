@@ -90,16 +90,12 @@ BranchMap::Value BranchMap::at(const VectorXd& u, double s, With with, double rt
   value.r = frame_.chart.coordinates(value.motion.state.x, value.start.x);
   value.time = value.motion.time;
   if (with == With::nothing) return value;
-  const double low = value.motion.extremes.low, high = value.motion.extremes.high;
-  const auto& reflection = here.map->reflection();
-  const double middle = reflection ? (frame_.section.C * reflection->centre).value() : 0.5 * (low + high);
-  value.amplitude = std::max(high - middle, middle - low);
-  if (with == With::derivatives) differentiate(value, high - middle >= middle - low);
+  value.amplitude = here.map->amplitude(value.motion);
+  if (with == With::derivatives) differentiate(*here.map, value);
   return value;
 }
 
-/// `upper`: of a half period, that the amplitude is met above the middle.
-void BranchMap::differentiate(Value& value, bool upper) const {
+void BranchMap::differentiate(const ReturnMap& map, Value& value) const {
   const auto& motion = value.motion;
   if (motion.derivative.size() == 0) {
     value.status = Status::stalled;  // a switch is touched, not crossed: there is no derivative
@@ -109,10 +105,7 @@ void BranchMap::differentiate(Value& value, bool upper) const {
   const MatrixXd lift = chart.scale.asDiagonal() * chart.basis;
   value.D = chart.restricted(motion.derivative);
   value.time_slope = motion.time_gradient * lift;
-  if (!frame_.half)
-    value.amplitude_slope = 0.5 * (motion.high_gradient - motion.low_gradient) * lift;
-  else
-    value.amplitude_slope = (upper ? motion.high_gradient : -motion.low_gradient) * lift;
+  value.amplitude_slope = map.amplitude_gradient(motion) * lift;
   if (!value.D.allFinite() || !value.time_slope.allFinite() || !value.amplitude_slope.allFinite())
     value.status = Status::not_finite;
 }

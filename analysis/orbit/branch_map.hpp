@@ -82,7 +82,7 @@ class BranchMap {
     std::unique_ptr<ReturnMap> map;  ///< of the present frame; null where it does not fit
   };
   Prepared& prepared(double s);
-  void differentiate(Value& value, bool upper) const;
+  void differentiate(const ReturnMap& map, Value& value) const;
 
   LoopFamily family_;
   ParameterScale scale_;

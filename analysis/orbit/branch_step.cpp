@@ -7,6 +7,7 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/orbit/shooting.hpp"
+#include "limcycle/analysis/orbit/two_tolerances.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -16,8 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double loose_factor = 100.0;  ///< of the second integration tolerance, for derivatives and errors
-constexpr double caution = 6.0;         ///< errors go about with the tolerance; this much more is stated
+constexpr double loosest = 3e-6;  ///< of the second integration, for derivatives and errors
 constexpr double tightest = 3e-13;
 constexpr double near_switch = 2e-3;  ///< share of the period in which the section should not meet a switch
 constexpr long steps_a_map = 200000;
@@ -63,7 +63,7 @@ bool nearly_neutral(const BranchSpot& spot) {
 
 }  // namespace
 
-double BranchSolver::loose_rtol() const { return std::min(loose_factor * map_.rtol(), 3e-6); }
+double BranchSolver::loose_rtol() const { return loose_tolerance(map_.rtol(), loosest); }
 
 /// A step in s that moves the image by about 1e-4 of the orbit, more with a loose integration: small against the
 /// distance to where the branch ends, large against the noise of the integration.
@@ -86,7 +86,7 @@ std::optional<BranchSpot> BranchSolver::solve(const VectorXd& w, const VectorXd&
   while (true) {
     if (!converge(spot, normal, jacobian) || !complete(spot, normal, jacobian, derivatives)) return std::nullopt;
     if (spot.orbit_error <= accuracy_ || map_.rtol() <= tightest) break;
-    map_.set_rtol(std::max(std::clamp(0.5 * accuracy_ / spot.orbit_error, 0.03, 0.5) * map_.rtol(), tightest));
+    map_.set_rtol(std::max(tightening(accuracy_, spot.orbit_error) * map_.rtol(), tightest));
     jacobian = spot.jacobian;
   }
   if (!fill_cycle(spot)) return std::nullopt;
@@ -101,6 +101,11 @@ bool BranchSolver::converge(BranchSpot& spot, const VectorXd& normal, BranchJaco
   const double tolerance = std::max(3.0 * map_.rtol(), accuracy_);
   double last = infinite;
   int refreshed = 0;
+  const auto refresh = [&] {
+    ++refreshed;
+    return differentiate(spot, loose_rtol(), Derivatives::rough, jacobian).has_value();
+  };
+  const auto wild = [m](const VectorXd& step) { return !step.allFinite() || step.head(m).norm() > 1.0; };
   VectorXd step, before;
   failure_ = Status::stalled;
   invalid_ = false;
@@ -113,18 +118,13 @@ bool BranchSolver::converge(BranchSpot& spot, const VectorXd& normal, BranchJaco
     if (i > 0) learn(jacobian, step, before, r);
     const bool poor = b.norm() > 0.3 * last;
     if (poor && (b.norm() > 100.0 * last || refreshed > 3)) return false;
-    if (jacobian.D.size() == 0 || poor) {
-      if (!differentiate(spot, loose_rtol(), Derivatives::rough, jacobian)) return false;
-      ++refreshed;
-    }
+    if ((jacobian.D.size() == 0 || poor) && !refresh()) return false;
     step = solve_fully_pivoted(bordered(jacobian, normal), -b);
-    const bool wild = !step.allFinite() || step.head(m).norm() > 1.0;
-    if (wild && refreshed == 0) {  // the Jacobian was too old
-      if (!differentiate(spot, loose_rtol(), Derivatives::rough, jacobian)) return false;
-      ++refreshed;
+    if (wild(step) && refreshed == 0) {  // the Jacobian was too old
+      if (!refresh()) return false;
       step = solve_fully_pivoted(bordered(jacobian, normal), -b);
     }
-    if (!step.allFinite() || step.head(m).norm() > 1.0) return false;
+    if (wild(step)) return false;
     last = b.norm();
     before = r;
     spot.w += step;
@@ -193,7 +193,7 @@ void BranchSolver::polish(BranchSpot& spot, const BranchMap::Value& loose) const
   const auto [time, amplitude] = corrected(spot.value, left);
   const auto [loose_time, loose_amplitude] = corrected(loose, other);
   const double second_order = 10.0 * left.squaredNorm() + 1e-4 * left.norm();
-  const double share = std::min(1.0, caution * map_.rtol() / loose_rtol());  // of the difference of the two
+  const double share = stated_share(map_.rtol(), loose_rtol());  // of the difference of the two
   spot.w += left;
   spot.value.start.x = map_.frame().chart.lift(map_.frame().origin.x, spot.u());
   spot.value.time = time;

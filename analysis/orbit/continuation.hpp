@@ -62,7 +62,7 @@ struct Branch {
 /// Throws std::invalid_argument for a bad range or a start outside it.
 /// Limits: a pair of folds, or of changes of stability, that lies within one step is not seen (max_step narrows that);
 /// a cycle whose multipliers exceed some thousands is followed only for a while.
-/// Cost: two or three return maps a point, and five loose ones for the derivatives there.
+/// Cost: one or two return maps a point, and two loose ones, of which one with its derivative.
 Branch continue_cycle(const LoopFamily& family, const Cycle& start, double p0, const ContinuationOptions& options);
 
 }  // namespace limcycle

@@ -29,15 +29,19 @@ double root(const F& f, double share) {
 
 }  // namespace
 
+OutputStep OutputStep::through(double t0, double t1, double y0, double y1, double rate0, double rate1) {
+  OutputStep out{t0, t1 - t0, y0, y1, {}};
+  const double d0 = out.h * rate0, d1 = out.h * rate1, chord = y1 - y0;
+  out.bend[0] = d0 - chord;
+  out.bend[1] = 2.0 * chord - d0 - d1;
+  return out;
+}
+
 OutputStep OutputStep::through(const Loop& loop, const Step& step) {
   const auto y = [&](const State& x) {
     return loop.C_y.dot(Eigen::Map<const Eigen::RowVectorXd>(x.data(), loop.C_y.size()));
   };
-  OutputStep out{step.t0, step.t1 - step.t0, y(step.x0), y(step.x1), {}};
-  const double d0 = out.h * y(step.dx0), d1 = out.h * y(step.dx1), chord = out.y1 - out.y0;
-  out.bend[0] = d0 - chord;
-  out.bend[1] = 2.0 * chord - d0 - d1;
-  return out;
+  return through(step.t0, step.t1, y(step.x0), y(step.x1), y(step.dx0), y(step.dx1));
 }
 
 double OutputStep::value(double theta) const {

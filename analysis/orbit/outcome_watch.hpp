@@ -14,7 +14,9 @@ struct OutputStep {
   double y0 = 0.0, y1 = 0.0;
   double bend[3] = {};
 
-  /// The cubic through the values and rates of a step of a march.
+  /// The cubic through the values and rates at both ends.
+  static OutputStep through(double t0, double t1, double y0, double y1, double rate0, double rate1);
+  /// The same for a step of a march.
   static OutputStep through(const Loop& loop, const Step& step);
 
   /// y at the fraction theta of the step, and its derivative by theta.

@@ -8,11 +8,9 @@ namespace limcycle {
 /// Watches whether a motion dies out, by looks at it that are at least the slowest time constant, and a third of the
 /// time since the start, apart. Rest shows by either of two signs, three times in a row:
 /// - what the rates would still move the state by, were they to last as long again, fades, compared with the size of
-/// the
-///   state. Rates as small as the noise of the integration count as none.
+///   the state. Rates as small as the noise of the integration count as none.
 /// - on the mean since the last look, no rate is more than that noise. A body at rest on a bristle may tremble, and
-/// even
-///   creep, for ever within the tolerances, with rates of the moment that are those of the bristle.
+///   even creep, for ever within the tolerances, with rates of the moment that are those of the bristle.
 /// A body that sticks while an integrator winds up shows neither: in its slowest time constant, the integrator moves by
 /// a good part of its size.
 class RestWatch {

@@ -47,7 +47,7 @@ std::optional<Reflection> symmetry(const Loop& loop) {
 ReturnMap::ReturnMap(const Loop& loop, Section section, std::optional<Reflection> half, Options options)
     : loop_(&loop),
       typical_(typical_sizes(loop)),
-      weights_(loop_weights(loop, options.rtol)),
+      weights_(loop_weights(loop, options.rtol, typical_)),
       kind_(choose_stepper(loop, options.rtol)),
       field_(std::make_unique<LoopField>(loop)),
       section_(std::move(section)),
@@ -139,6 +139,22 @@ void ReturnMap::close_derivative(Result& result, const LoopState& from, const Se
   result.flow_defect = (whole * f0 - f1).cwiseQuotient(size).norm() / f1.cwiseQuotient(size).norm();
   result.time_gradient = -normal * whole / crossing;
   result.derivative = whole + f1 * result.time_gradient;
+}
+
+/// Of the swing: what a half period is reflected at, else halfway between the extremes.
+double ReturnMap::middle(const Result& result) const {
+  if (half_) return (section_.C * half_->centre).value();
+  return 0.5 * (result.extremes.low + result.extremes.high);
+}
+
+double ReturnMap::amplitude(const Result& result) const {
+  return std::max(result.extremes.high - middle(result), middle(result) - result.extremes.low);
+}
+
+Eigen::RowVectorXd ReturnMap::amplitude_gradient(const Result& result) const {
+  if (!half_) return 0.5 * (result.high_gradient - result.low_gradient);
+  const bool above = result.extremes.high - middle(result) >= middle(result) - result.extremes.low;
+  return above ? result.high_gradient : -result.low_gradient;
 }
 
 ReturnMap::Result ReturnMap::approach(const LoopState& from) { return run(from, section_); }

@@ -64,6 +64,11 @@ class ReturnMap {
   /// From anywhere to the section.
   Result approach(const LoopState& from);
 
+  /// Half the swing of y over the whole period, of a map with its extremes.
+  double amplitude(const Result& result) const;
+  /// d(amplitude)/d(from), of a map with its extremes and derivative (one return).
+  Eigen::RowVectorXd amplitude_gradient(const Result& result) const;
+
   const Section& section() const { return section_; }
   bool half() const { return half_.has_value(); }
   const std::optional<Reflection>& reflection() const { return half_; }
@@ -78,6 +83,7 @@ class ReturnMap {
   Result run(const LoopState& from, const Section& target);
   Result once(const LoopState& from);
   March& march();
+  double middle(const Result& result) const;
   void close_derivative(Result& result, const LoopState& from, const Section& target);
 
   const Loop* loop_;

@@ -9,6 +9,7 @@
 #include "limcycle/analysis/orbit/floquet.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/orbit/section_chart.hpp"
+#include "limcycle/analysis/orbit/two_tolerances.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -17,9 +18,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double loose_factor = 100.0;  ///< of the second integration tolerance, for derivatives and errors
-constexpr double loosest = 1e-6;        ///< beyond, a cycle with stick may be lost
-constexpr double caution = 6.0;         ///< errors go about with the tolerance; this much more is stated
+constexpr double loosest = 1e-6;  ///< beyond, a cycle with stick may be lost
 constexpr double tightest = 1e-13;
 
 /// Newton on the return map.
@@ -58,8 +57,8 @@ class Shooter {
     while (r.norm() > tolerance) {
       if (maps_ > options_.max_maps) return Status::max_iterations;
       if (jacobian_.size() == 0) {
-        const double loose = std::max(rtol, std::min(loose_factor * rtol, loosest));
-        if (const Status status = linearise(std::max(loose, 1e-8)); status != Status::converged) return status;
+        const double loose = std::max(loose_tolerance(rtol, loosest), 1e-8);
+        if (const Status status = linearise(loose); status != Status::converged) return status;
         fresh = true;
       }
       if (newton(image, r, fresh)) {
@@ -83,7 +82,7 @@ class Shooter {
     residual_ = r.norm();
     time_ = image.time;
     largest_ = image.largest;
-    amplitude_ = amplitude(image);
+    amplitude_ = map_.amplitude(image);
     trace_ = std::move(image.trace);
     return Status::converged;
   }
@@ -96,13 +95,7 @@ class Shooter {
     const VectorXd step = newton_step(chart_->coordinates(linear_.state.x, linear_at_.x));
     const VectorXd moved = chart_->scale.cwiseProduct(chart_->basis * step);
     const double time = linear_.time + linear_.time_gradient.dot(moved);
-    double size = amplitude(linear_);
-    if (!map_.half())
-      size += 0.5 * (linear_.high_gradient - linear_.low_gradient).dot(moved);
-    else if (linear_.extremes.high + linear_.extremes.low > 2.0 * middle())
-      size += linear_.high_gradient.dot(moved);
-    else
-      size -= linear_.low_gradient.dot(moved);
+    const double size = map_.amplitude(linear_) + map_.amplitude_gradient(linear_).dot(moved);
     difference = std::max(std::abs(time / time_ - 1.0), std::abs(size / amplitude_ - 1.0));
     return Status::converged;
   }
@@ -209,12 +202,6 @@ class Shooter {
     return status;
   }
 
-  double middle() const { return (map_.section().C * map_.reflection()->centre).value(); }
-  double amplitude(const ReturnMap::Result& motion) const {
-    const double low = motion.extremes.low, high = motion.extremes.high;
-    return map_.half() ? std::max(high - middle(), middle() - low) : 0.5 * (high - low);
-  }
-
   /// Finds the combinations of element states that the map keeps, whatever the state is, and with a half map those that
   /// it turns round (a whole period keeps them): left eigenvectors of its derivative on element states alone.
   void find_kept() {
@@ -313,12 +300,12 @@ Status refine(Shooter& shooter, const ShootingOptions& options, double& rtol, do
   double tolerance = options.tolerance;
   while (true) {
     if (const Status status = shooter.solve(rtol, tolerance); status != Status::converged) return status;
-    const double loose = std::max(rtol, std::min(loose_factor * rtol, loosest));
+    const double loose = loose_tolerance(rtol, loosest);
     double difference = 0.0;
     if (const Status status = shooter.compare(loose, difference); status != Status::converged) return status;
-    error = std::max({std::min(1.0, caution * rtol / loose) * difference, shooter.residual_size(), rtol});
+    error = std::max({stated_share(rtol, loose) * difference, shooter.residual_size(), rtol});
     if (options.accuracy == 0.0 || error <= options.accuracy || rtol <= tightest) return Status::converged;
-    const double by = std::clamp(0.5 * options.accuracy / error, 0.03, 0.5);
+    const double by = tightening(options.accuracy, error);
     rtol = std::max(by * rtol, tightest);
     tolerance *= by;
   }
@@ -350,7 +337,7 @@ int returns_of(const Section& section, const Trace& trace) {
 
 ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& section, bool half,
                      const ShootingOptions& options) {
-  const double coarse = std::clamp(loose_factor * options.rtol, 1e-7, loosest);
+  const double coarse = std::clamp(loose_tolerance(options.rtol, loosest), 1e-7, loosest);
   const bool exact = choose_stepper(loop, options.rtol) == StepperKind::exact;
   std::optional<Reflection> reflection;
   if (half) reflection = symmetry(loop);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/stepper_limits.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/outcome_watch.hpp"
 
@@ -105,6 +106,7 @@ class Running {
       if (given[i] != 0.0) x[i] = given[i];  // an element's own state that the case names
     March march(field_, stepper_kind(options_.stepper), loop_weights(loop_, options_.rtol));
     run_.stepper = to_string(march.kind());
+    run_.notes = stepper_notes(loop_, march.kind(), options_.rtol);
     march.begin(x, 0.0);
     begin(x);
     for (const auto& [until, is_sample] : times_) {
@@ -136,8 +138,10 @@ class Running {
 
   void step(March& march, double until) {
     if (options_.stop && options_.stop()) run_.status = Status::interrupted;
+    if (options_.watch) modes_ = field_.modes();
     if (run_.status == Status::converged) run_.status = march.step(until);
     if (run_.status != Status::converged) return;
+    if (options_.watch) options_.watch(field_, march, modes_);
     if (march.last().switched && march.last().t1 == march.t())
       run_.events.push_back({march.t(), loop_.ports[*march.last().switched].path});
     trace(march.x(), march.t());
@@ -195,6 +199,7 @@ class Running {
   std::optional<OutcomeWatch> watch_;
   Simulation run_;
   State dx_;
+  std::vector<Mode> modes_;  ///< before a step, for who watches
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/orbit/settle.hpp"
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/models/loop.hpp"
@@ -36,6 +37,8 @@ struct SimulateOptions {
   double sample = 0.0;  ///< output interval, s; 0: duration/1000
   std::function<bool()> stop;
   std::function<void(double)> progress;  ///< fraction done
+  /// Sees every step, with the field as it is after the step, and the modes in which the step was made.
+  std::function<void(LoopField&, March&, const std::vector<Mode>& modes)> watch;
 };
 
 struct Simulation {
@@ -55,6 +58,7 @@ struct Simulation {
   std::string stepper;                   ///< the one used
   Status status = Status::converged;
   std::string why;
+  std::vector<std::string> notes;  ///< what its user should know of it, sentences
   long steps = 0;
 };
 

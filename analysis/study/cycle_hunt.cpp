@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "limcycle/analysis/motion/stepper_limits.hpp"
 #include "limcycle/analysis/orbit/edge.hpp"
 #include "limcycle/analysis/study/output_per_input.hpp"
 #include "limcycle/analysis/study/verdicts.hpp"
@@ -12,6 +13,7 @@ CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const Sear
   const double unit = output_per_input(loop);
   settle_.amplitude_floor = unit * box.amplitude_min;
   settle_.amplitude_ceiling = 1e4 * unit * box.amplitude_max;
+  settle_.rtol = std::clamp(0.1 * loosest_stiff_tolerance(loop), 1e-12, settle_.rtol);
   settle_.shooting.accuracy = options.accuracy;
   settle_.shooting.rtol = std::clamp(options.accuracy, 1e-13, 1e-8);
   settle_.shooting.tolerance = 0.1 * settle_.shooting.rtol;

@@ -22,6 +22,8 @@ class CycleHunt {
 
   const std::vector<Cycle>& cycles() const { return cycles_; }
   const std::vector<OutcomeOfStart>& outcomes() const { return outcomes_; }
+  /// Of the simulations: that of SettleOptions, or less where bristles are too stiff for it.
+  double rtol() const { return settle_.rtol; }
 
  private:
   std::optional<std::size_t> keep(const ShootingResult& shot);

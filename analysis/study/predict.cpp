@@ -61,6 +61,10 @@ class Study {
     time_ = std::move(treated.loop);
     pade_order_ = treated.pade_order;
     hunt_.emplace(time_, options_, box_);
+    if (hunt_->rtol() < SettleOptions{}.rtol)
+      report_.notes.push_back("bristles as stiff as these need a tolerance of " + short_number(hunt_->rtol(), 2) +
+                              " in simulations (usual is " + short_number(SettleOptions{}.rtol) +
+                              "): a looser one breaks stiction early");
     run_starts();
     end_df();
     end_composite();

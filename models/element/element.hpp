@@ -163,6 +163,15 @@ concept HasExactDescribingFunction = requires(const E e, double a) {
   { e.exact_describing_function(a, a, a) } -> std::same_as<std::optional<std::complex<double>>>;
 };
 
+/// Optional: a storage function U(z) >= 0 of the internal state, J, with U = 0 for an element without history and no
+/// rise at a switch. A friction law is passive where v F >= dU/dt in every state and mode it can be in and for every v;
+/// what is left, v F - dU/dt, it dissipates. A law may have a U without being passive (LuGre). One that has a U for
+/// some of its parameters only offers `has_storage()`.
+template <class E, class S>
+concept HasStorage = requires(const E e, Mode mode, std::span<const S> z) {
+  { e.storage(mode, z) } -> std::same_as<S>;
+};
+
 /// Base of elements without internal state, modes or memory.
 template <class S>
 struct Memoryless {
@@ -170,6 +179,7 @@ struct Memoryless {
   void rate(const Input<S>&, Mode, std::span<const S>, std::span<S>) const {}
   Mode mirror(Mode mode) const { return {-mode.value}; }
   double state_scale(int) const { return 1.0; }
+  S storage(Mode, std::span<const S>) const { return S(0.0); }
 };
 
 }  // namespace limcycle

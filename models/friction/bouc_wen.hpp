@@ -70,6 +70,10 @@ struct BoucWen {
     return alpha * k * in.x + (S(1.0) - alpha) * k * D * z[0];
   }
 
+  /// Energy of the hysteretic part, (1 - alpha) k D^2 z^2/(2 A); that of the spring, alpha k x^2/2, comes on top. It
+  /// proves passivity for |gamma| <= beta only.
+  S storage(Mode, std::span<const S> z) const { return (S(1.0) - alpha) * k * D * D / (S(2.0) * A) * z[0] * z[0]; }
+
   int guards(Mode mode) const { return mode.value == 0 ? 0 : band(mode) == 0 ? 1 : 2; }
   void guard(const Input<S>&, Mode mode, std::span<const S> z, std::span<S> g) const {
     if (mode.value == 0) return;

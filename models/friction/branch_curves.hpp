@@ -34,4 +34,29 @@ S rational_curve(const S& xi, const S& shape) {
   return (1.0 + shape) * xi / (1.0 + shape * abs(xi));
 }
 
+/// @name Energy under the curves
+/// int_0^xi eta phi'(eta) d eta for xi >= 0: what is stored in the springs of the stop elements that a curve stands
+/// for, loaded along it from rest, in units of level times way. Errors: those of roundings of 1.
+/// @{
+template <class S>
+S koizumi_shibazaki_energy(const S& xi) {
+  using std::log;
+  const S least(1e-18);
+  if (xi >= 1.0) return S(0.25);
+  return 0.25 * xi * xi * (1.0 - 2.0 * log(select(xi > least, xi, least)));
+}
+template <class S>
+S exponential_energy(const S& xi, const S& shape) {
+  using std::exp;
+  const S u = shape * xi, left = exp(-u);
+  return (1.0 - left - u * left) / (shape * (1.0 - exp(-shape)));
+}
+template <class S>
+S rational_energy(const S& xi, const S& shape) {
+  using std::log;
+  const S u = shape * xi;
+  return (1.0 + shape) / (shape * shape) * (log(1.0 + u) - u / (1.0 + u));
+}
+/// @}
+
 }  // namespace limcycle

@@ -44,6 +44,7 @@ struct Dahl {
     dz[0] = in.v * sign(left) * power(abs(left), exponent);
   }
   S output(const Input<S>&, Mode, std::span<const S> z) const { return sigma0 * z[0]; }
+  S storage(Mode, std::span<const S> z) const { return S(0.5) * sigma0 * z[0] * z[0]; }
   bool is_linear_in_state() const { return exponent == 1.0; }
   bool has_constant_damping() const { return true; }
   LinearRate<S> linear_rate(const Input<S>& in) const {

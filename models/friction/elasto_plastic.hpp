@@ -83,6 +83,9 @@ struct ElastoPlastic : StribeckCurve<S> {
     return sigma0 * z[0] + damping * dz[0] + sigma2 * in.v;
   }
 
+  /// Energy of the bristles.
+  S storage(Mode, std::span<const S> z) const { return S(0.5) * sigma0 * z[0] * z[0]; }
+
   int guards(Mode mode) const { return mode.value == 2 || mode.value == -2 ? 1 : 2; }
   void guard(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> g) const {
     if (mode.value == 0) {

@@ -77,6 +77,12 @@ struct Iwan {
     return Stack{shape}.force(ReturnMode::of(mode), z);
   }
 
+  /// Energy in the springs of the elements.
+  S storage(Mode mode, std::span<const S> z) const {
+    const Virgin shape(*this);
+    return Stack{shape}.energy(ReturnMode::of(mode), z);
+  }
+
   /// The velocity in the direction of the branch; the way to its end; the way to the next element that yields.
   int guards(Mode) const { return kinks() > 0 ? 3 : 2; }
   void guard(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> g) const {
@@ -150,6 +156,22 @@ struct Iwan {
           return law.Fs * z / law.Zb;
       }
     }
+    S virgin_energy(const S& z) const {
+      using std::exp;
+      using std::log;
+      const S u = z / law.Zb;
+      if (law.elements > 0.0 && law.curve.index != 3) return law.energy_of_elements(u);
+      switch (law.curve.index) {
+        case 0:
+          return law.Fs * law.Zb * (1.0 - exp(-u) - u * exp(-u));
+        case 1:
+          return law.Fs * law.Zb * (log(1.0 + u) - u / (1.0 + u));
+        case 2:
+          return law.Fs * law.Zb * koizumi_shibazaki_energy(u);
+        default:
+          return 0.5 * law.Fs * law.Zb * u * u;
+      }
+    }
   };
   using Stack = ReturnPoints<S, Virgin>;
   friend struct Virgin;
@@ -176,6 +198,16 @@ struct Iwan {
       sum = sum + select(u < y, u / y, S(1.0));
     }
     return Fs / static_cast<double>(count) * sum;
+  }
+
+  S energy_of_elements(const S& u) const {
+    const int count = static_cast<int>(value_of(elements));
+    S sum(0.0);
+    for (int i = 0; i < count; ++i) {
+      const double y = quantile(i);
+      sum = sum + select(u < y, u * u / (2.0 * y), S(0.5 * y));
+    }
+    return Fs * Zb / static_cast<double>(count) * sum;
   }
 
   /// Yield displacement of element i, counted from 0, in units of Zb: where the elements that have yielded carry

@@ -38,6 +38,8 @@ struct Jenkins {
   }
   S output(const Input<S>&, Mode, std::span<const S> s) const { return k * s[0]; }
 
+  S storage(Mode, std::span<const S> s) const { return 0.5 * k * s[0] * s[0]; }
+
   /// Sticking: force left before it slips, forwards and backwards. Slipping: the rate in the direction of slip.
   int guards(Mode mode) const { return slip_direction(mode) == 0 ? 2 : 1; }
   void guard(const Input<S>& in, Mode mode, std::span<const S> s, std::span<S> g) const {

@@ -53,6 +53,8 @@ struct Kikuuwe : StribeckCurve<S> {
     return (mode.value == 0 ? trial(in, e[0]) : cap(in, mode.value > 0)) + sigma2 * in.v;
   }
 
+  S storage(Mode, std::span<const S> e) const { return 0.5 * K * e[0] * e[0]; }
+
   int guards(Mode mode) const { return mode.value == 0 ? 2 : 1; }
   /// The modes overlap by a few roundings of the force, so that a force at the cap to the last bit switches once.
   void guard(const Input<S>& in, Mode mode, std::span<const S> e, std::span<S> g) const {

@@ -31,7 +31,10 @@ struct Leuven : StribeckCurve<S>, StopElements<S> {
       .rate =
           "in pre-sliding sigma1; in sliding the level g(v), which is followed with a lag over a distance, and sigma2 "
           "v",
-      .passivity = "not established here",
+      .passivity =
+          "if sigma2/sigma1 >= (Fs/Fc)^n - 1 (in each direction), so for sigma1 = 0, with the storage sum k_i s_i^2/2: "
+          "what is lost is |F_h v| |F_h/g|^n and W_i times the distance slipped, and dz/dt >= -v ((Fs/Fc)^n - 1); for "
+          "less, at unbounded speed, not: slide slowly, then step to a high speed",
       .evidence =
           "the abstract of 2002 was read (Maxwell-slip elements, a modified state equation); both equations are "
           "quoted from knowledge, not confirmed; s(v) must be odd"};

@@ -74,6 +74,8 @@ struct LuGre : StribeckCurve<S> {
     if (vd > 0.0) return {sigma0, sigma1 * exp(-(in.v / vd) * (in.v / vd)), sigma2 * in.v};
     return {sigma0, sigma1, sigma2 * in.v};
   }
+  /// Energy of the bristles, sigma0 z^2/2.
+  S storage(Mode, std::span<const S> z) const { return S(0.5) * sigma0 * z[0] * z[0]; }
   bool odd() const { return this->symmetric(); }
   Mode mirror(Mode mode) const { return mode; }
   Scales scales() const {

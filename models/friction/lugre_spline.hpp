@@ -78,6 +78,9 @@ struct LuGreSpline {
     return sigma0 * z[0] + sigma1 * dz[0] + sigma2 * in.v;
   }
 
+  /// Energy of the bristles.
+  S storage(Mode, std::span<const S> z) const { return S(0.5) * sigma0 * z[0] * z[0]; }
+
   /// Spans overlap a little: nothing is lost by it where the curve is C2, and v resting on a knot does not switch.
   int guards(Mode mode) const { return mode.value == 0 || beyond(mode) ? 1 : 2; }
   void guard(const Input<S>& in, Mode mode, std::span<const S>, std::span<S> g) const {

@@ -87,6 +87,13 @@ struct NonDrift : StribeckCurve<S> {
     return capped + sigma2 * in.v;
   }
 
+  /// Energy of the elements whose hysteresis f_h is; two-point branches are not that of elements, and have none known.
+  bool has_storage() const { return memory.index == 0; }
+  S storage(Mode mode, std::span<const S> z) const {
+    const Curve rule(*this);
+    return has_storage() ? Stack{rule}.energy(ReturnMode::of(mode), z) : S(0.0);
+  }
+
   /// The rate of z in the direction of its branch, and the way to its end; below the cap the distances from the upper
   /// and the lower one, at a cap how far the trial force is beyond it. A rate of rounding size does not turn the branch
   /// back.
@@ -145,6 +152,19 @@ struct NonDrift : StribeckCurve<S> {
       return direction < 0.0 ? law.Fs_minus : law.Fs;
     }
     S virgin(const S& way, double direction) const { return level(direction) * phi(way / law.Zb); }
+    S virgin_energy(const S& way) const { return level(1.0) * law.Zb * energy(way / law.Zb); }
+    S energy(const S& xi) const {
+      switch (law.branch.index) {
+        case 0:
+          return koizumi_shibazaki_energy(xi);
+        case 1:
+          return exponential_energy(xi, law.shape);
+        case 2:
+          return rational_energy(xi, law.shape);
+        default:
+          return 0.5 * xi * xi;
+      }
+    }
     S phi(const S& xi) const {
       switch (law.branch.index) {
         case 0:

@@ -24,7 +24,8 @@ namespace limcycle {
 ///    side;
 ///  - `end`: way along the virgin curve at which it saturates, infinite if it never does;
 ///  - `virgin(way, direction)` >= 0: force there; `level(direction)` > 0: force of saturation in that direction;
-///  - `phi(xi)`, phi(0) = 0, phi(1) = 1: only where `masing` may be false.
+///  - `phi(xi)`, phi(0) = 0, phi(1) = 1: only where `masing` may be false;
+///  - `virgin_energy(way)` = int_0^way u f_v'(u) du: only where the energy is asked for, see ReturnPoints::energy.
 
 /// What a mode holds of the stack, in its lowest six bits. Mode{} is the virgin state, about to move forwards.
 struct ReturnMode {
@@ -74,6 +75,26 @@ struct ReturnPoints {
     if (at.saturated) return d * shape.level(d);
     if (at.depth == 0) return d * shape.virgin(z[0], d);
     return at.outermost() * ((shape.masing ? masing(at, z) : two_point(at, z)) + z[offset]);
+  }
+
+  /// Energy (J) in the springs of the stop elements whose hysteresis this is, for `masing` and a concave virgin curve.
+  /// Stop elements of yield y and stiffness k(y) dy make the virgin curve f_v(x) = int k min(x, y) dy; loading them to
+  /// x stores int k min(x, y)^2/2 dy = int_0^x u f_v'(u) du. Along a branch of length L from the force F_r to F the
+  /// work is F_r L + 4 Phi(L/2) and what the elements lose 4 Phi(L/2) - L f_v(L/2), Phi being the integral of f_v, so
+  /// that the energy changes by exactly L (F_r + F)/2, the trapezium under the ends of the branch. Derived. Closing a
+  /// loop leaves it as it was; a full stack that forgets a loop forgets its energy, too.
+  S energy(ReturnMode at, std::span<const S> z) const {
+    if (at.saturated) return shape.virgin_energy(shape.end);
+    const double d0 = at.outermost();
+    S last = shape.virgin(length_of(0, at.depth, z), d0), sum = shape.virgin_energy(length_of(0, at.depth, z));
+    double side = -1.0;
+    for (int k = 1; k <= at.depth; ++k, side = -side) {
+      const S& way = length_of(k, at.depth, z);
+      const S force = last + side * 2.0 * shape.virgin(0.5 * way, d0);
+      sum = sum + side * 0.5 * way * (last + force);
+      last = force;
+    }
+    return sum;
   }
 
   /// >= 0 until the present branch has arrived where it leads to.

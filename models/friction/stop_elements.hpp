@@ -112,6 +112,12 @@ struct StopElements {
     for (std::size_t i = 0; i < k.size(); ++i) sum += k[i] * s[i];
     return sum;
   }
+  /// Energy in the springs, sum k_i s_i^2/2.
+  S storage(Mode, std::span<const S> s) const {
+    S sum(0.0);
+    for (std::size_t i = 0; i < k.size(); ++i) sum += 0.5 * k[i] * s[i] * s[i];
+    return sum;
+  }
   /// Rates of the stretches when all are driven at the rate `drive` (m/s).
   void stretch_rates(const S& drive, Mode mode, std::span<S> ds) const {
     for (int i = 0; i < states(); ++i) ds[at(i)] = slider(mode, i) == Slider::sticks ? drive : S(0.0);

@@ -61,6 +61,12 @@ struct Wojewoda : StribeckCurve<S> {
     return (mode.value > 0 ? level : -level) + viscous;
   }
 
+  /// Energy of the spring; while slipping, of that which takes over at v = 0. It drops where the spring gives way.
+  S storage(Mode mode, std::span<const S> z) const {
+    const S left = mode.value >= 0 ? S(2.0) * this->Fc - this->Fs : S(2.0) * this->Fc_minus - this->Fs_minus;
+    return mode.value == 0 ? S(0.5) * ks * z[0] * z[0] : S(0.5) * left * left / ks;
+  }
+
   int guards(Mode mode) const { return mode.value == 0 || phase(mode) != faster ? 2 : 1; }
   void guard(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> g) const {
     if (mode.value == 0) {

@@ -92,6 +92,13 @@ struct Xiong : StribeckCurve<S> {
     return sum;
   }
 
+  /// Energy in the springs, sum K_i a_i^2/2.
+  S storage(Mode, std::span<const S> z) const {
+    S sum(0.0);
+    for (std::size_t i = 0; i < K.size(); ++i) sum = sum + 0.5 * K[i] * z[i] * z[i];
+    return sum;
+  }
+
   /// Below the cap: the distances from both, element by element; at a cap: how far beyond it the trial force is. The
   /// modes overlap, so that an element that comes to rest at its cap stays in one.
   int guards(Mode mode) const {

@@ -91,3 +91,22 @@ TEST_CASE("precision: Ctrl-C ends it soon and keeps what was computed") {
   CHECK_THAT(scratch.get("err"), Contains("interrupted"));
   CHECK(Json::parse(scratch.get("r.json"))["status"] == "interrupted");
 }
+
+TEST_CASE("precision: where steppers fail") {
+  const Scratch scratch;
+  const auto ran = run({"precision", shipped("belt-coulomb.toml"), "--stability", "--json", scratch.file("a.json"),
+                        "--csv", scratch.file("a.csv"), "--html", scratch.file("a.html"), "-o", scratch.file("a.svg")});
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("Right everywhere") && Contains("coulomb"));
+  const auto document = Json::parse(scratch.get("a.json"));
+  CHECK(document["reference"][0]["verified"] == true);
+  CHECK(document["points"].size() > 60);
+  CHECK(document["points"][0]["stepper"] == "exact");
+  CHECK(document["points"][0]["result"] == "right");
+  CHECK_THAT(scratch.get("a.svg"), StartsWith("<svg"));
+  CHECK_THAT(scratch.get("a.html"), Contains("<svg"));
+  CHECK_THAT(scratch.get("a.csv"), StartsWith("law,stiffness"));
+
+  CHECK(run({"precision", shipped("relay-integrator.toml"), "--stability"}).code == 2);
+  CHECK(run(relay({"--svg", scratch.file("b.svg")})).code == 2);
+}

@@ -71,3 +71,31 @@ TEST_CASE("simulate: a second run at tighter tolerances checks the first one") {
   CHECK(Json::parse(told.out)["agreement"]["agrees"] == false);
   CHECK(Json::parse(told.out)["agreement"]["why"].get<std::string>().size() > 10);
 }
+
+TEST_CASE("simulate: where the energy goes") {
+  const std::vector<std::string> servo = {"simulate", shipped("pid-lugre.toml"), "--no-check", "--json", "-"};
+  const auto energy = Json::parse(run(servo).out)["energy"];
+  CHECK(energy["of"] == "loop");
+  CHECK(energy["balanced"] == true);
+  // Nothing is left of it but what the command did against the friction.
+  CHECK(energy["supplied"]["command"].get<double>() ==
+        Approx(energy["dissipated"]["friction"].get<double>()).epsilon(1e-5));
+  CHECK(energy["balance_difference"].get<double>() < 1e-7 * energy["turnover"].get<double>());
+  auto without = servo;
+  without.emplace_back("--no-audit");
+  CHECK(Json::parse(run(without).out)["energy"].is_null());
+  CHECK_THAT(run({"simulate", shipped("pid-lugre.toml"), "--no-check"}).out, Contains("The energy balances to"));
+}
+
+TEST_CASE("simulate: a tolerance that is too loose for the stiffness is told") {
+  const std::vector<std::string> stiff = {"simulate",  shipped("pid-lugre.toml"),  "--set", "loop.friction.sigma0=1e8",
+                                          "--set",     "loop.friction.sigma1=1e4", "--set", "simulate.duration=1.0",
+                                          "--no-check"};
+  CHECK(run(stiff).err.empty());
+  auto loose = stiff;
+  loose.insert(loose.end(), {"--set", "simulate.rtol=1e-4", "--json", "-"});
+  const auto ran = run(loose);
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.err, Contains("too loose for bristles") && Contains("1e-06"));
+  CHECK_THAT(Json::parse(ran.out)["notes"].dump(), Contains("too loose for bristles"));
+}

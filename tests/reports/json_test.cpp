@@ -202,6 +202,30 @@ TEST_CASE("simulate: columns, rows, events") {
   CHECK(both["agreement"]["why"] == "because");
 }
 
+TEST_CASE("simulate: energy, with null for what the loop does not have") {
+  Simulation run;
+  run.notes = {"take care"};
+  CHECK(Json::parse(simulate_json(made(), run))["energy"].is_null());
+  CHECK(Json::parse(simulate_json(made(), run))["notes"] == Json::array({"take care"}));
+  EnergyBalance energy;
+  energy.of_friction = energy.of_storage = true;
+  energy.rubbing = 2.0;
+  energy.in_friction = 0.5;
+  energy.friction = 1.25;
+  energy.turnover = 2.0;
+  auto document = Json::parse(simulate_json(made(), run, std::nullopt, energy))["energy"];
+  CHECK(document["of"] == "friction");
+  CHECK(document["supplied"]["friction"] == 2.0);
+  CHECK(document["supplied"]["command"].is_null());
+  CHECK(document["stored"]["friction"] == 0.5);
+  CHECK(document["balance_difference"] == 0.25);
+  CHECK(document["balanced"] == false);
+  energy.of_storage = false;
+  document = Json::parse(simulate_json(made(), run, std::nullopt, energy))["energy"];
+  CHECK(document["balanced"].is_null());
+  CHECK(document["dissipated"]["friction"] == 1.25);
+}
+
 TEST_CASE("text from a user cannot break a document") {
   auto from = made();
   from.title = "quote \" backslash \\ newline \n </script> \xFF\xFE";

@@ -196,6 +196,30 @@ TEST_CASE("simulate: how it went and where it has been") {
   CHECK_THAT(simulate_text("x", run), Contains("ended early: stalled") && Contains("too small"));
 }
 
+TEST_CASE("simulate: where the energy went") {
+  Simulation run;
+  run.notes = {"take care"};
+  EnergyBalance energy;
+  energy.of_plant = energy.of_friction = true;
+  energy.command = 4.0;
+  energy.kinetic = 1.0;
+  energy.friction = 2.999;
+  energy.turnover = 4.0;
+  energy.allowed = 0.01;
+  const auto text = simulate_text("x", run, std::nullopt, energy);
+  CHECK_THAT(text, Contains("The energy balances to 2.5e-04 of 4.000 J turned over.") && Contains("take care"));
+  CHECK_THAT(text, Contains("by the command") && Contains("2.99900") && Contains("by friction (or stored in it)"));
+  CHECK_THAT(text, !Contains("by the load") && !Contains("dampers"));  // zeros
+  CHECK(widest(text) <= 80);
+  energy.allowed = 1e-4;
+  CHECK_THAT(energy_in_words(energy), Catch::Matchers::StartsWith("Warning: the energy does not balance"));
+  energy.of_plant = false;
+  energy.rubbing = 2.999;
+  CHECK_THAT(energy_in_words(energy), Contains("no balance"));
+  CHECK_THAT(simulate_text("x", run, std::nullopt, energy), Contains("to the friction"));
+  CHECK_THAT(simulate_text("x", run), !Contains("nergy"));
+}
+
 TEST_CASE("simulate: what it comes to, and what a second run says of it") {
   Simulation run;
   run.outcome = Outcome::cycle;

@@ -17,6 +17,17 @@ Loop mass_with(const Element<double>& law, double mass) {
   return build_loop(parts);
 }
 
+/// A body that does not feel the law which rubs on it.
+Loop moved_law(const Element<double>& law) {
+  StateSpacePlant plant;
+  plant.A = Eigen::Matrix2d{{0.0, 1.0}, {0.0, 0.0}};
+  plant.B = Eigen::Vector2d(0.0, 1.0);
+  plant.C = Eigen::RowVector2d(1.0, 0.0);
+  plant.B_friction = Eigen::Vector2d::Zero();
+  LoopParts parts{plant, NoController{}, std::nullopt, law, std::nullopt};
+  return build_loop(parts);
+}
+
 class Recorder {
  public:
   Recorder(LoopField& field, const Signal& force, ForcedRun& run) : field_(field), force_(force), run_(run) {}
@@ -39,8 +50,10 @@ class Recorder {
 
 }  // namespace
 
-ForcedRun run_forced(const Element<double>& law, const Signal& force, const ForcedOptions& options) {
-  const Loop loop = mass_with(law, options.mass);
+namespace {
+
+ForcedRun run_driven(const Loop& loop, bool stateless, StepperKind stepper, const Signal& force,
+                     const ForcedOptions& options) {
   LoopField field(loop);
   double next_break = infinite;
   field.set_external([&](double time, External& value, External& rate) {
@@ -63,11 +76,10 @@ ForcedRun run_forced(const Element<double>& law, const Signal& force, const Forc
   };
   ForcedRun run;
   Recorder record(field, force, run);
-  const bool stateless = std::visit([](const auto& one) { return one.states() == 0; }, law);
   State x(field.size(), 0.0);
   next_break = break_after(0.0);
   field.start(x, 0.0);
-  March march(field, StepperKind::automatic, loop_weights(loop, options.rtol));
+  March march(field, stepper, loop_weights(loop, options.rtol));
   march.limit_step(options.longest_step);
   march.begin(x, 0.0);
   record.add(x, 0.0);
@@ -92,6 +104,21 @@ ForcedRun run_forced(const Element<double>& law, const Signal& force, const Forc
     march.begin(march.x(), march.t());
   }
   return run;
+}
+
+bool is_stateless(const Element<double>& law) {
+  return std::visit([](const auto& one) { return one.states() == 0; }, law);
+}
+
+}  // namespace
+
+ForcedRun run_forced(const Element<double>& law, const Signal& force, const ForcedOptions& options) {
+  return run_driven(mass_with(law, options.mass), is_stateless(law), StepperKind::automatic, force, options);
+}
+
+ForcedRun run_accelerated(const Element<double>& law, const Signal& acceleration, const ForcedOptions& options,
+                          const std::string& stepper) {
+  return run_driven(moved_law(law), is_stateless(law), stepper_kind(stepper), acceleration, options);
 }
 
 std::size_t ForcedRun::at(double time) const {

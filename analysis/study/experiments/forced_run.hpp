@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "limcycle/analysis/orbit/simulate.hpp"
@@ -34,6 +35,11 @@ struct ForcedOptions {
 };
 
 ForcedRun run_forced(const Element<double>& law, const Signal& force, const ForcedOptions& options);
+
+/// A law under prescribed motion from rest: dv/dt = acceleration(t) whatever its force. `u` is the acceleration;
+/// `stepper` as in SimulateOptions.
+ForcedRun run_accelerated(const Element<double>& law, const Signal& acceleration, const ForcedOptions& options,
+                          const std::string& stepper = "auto");
 
 /// Piecewise linear signal through these points.
 Signal signal_through(std::vector<double> times, std::vector<double> values);

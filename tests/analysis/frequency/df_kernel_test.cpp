@@ -5,7 +5,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "limcycle/tests/analysis/frequency/df_laws.hpp"
+#include "limcycle/tests/analysis/frequency/random_points.hpp"
 
 using namespace df_test;
 using std::numbers::pi;
@@ -13,17 +13,6 @@ using std::numbers::pi;
 namespace {
 
 using Complex = std::complex<double>;
-
-class Random {
- public:
-  explicit Random(unsigned seed) : source_(seed) {}
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(source_); }
-  double spread(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-  bool coin() { return uniform(0.0, 1.0) < 0.5; }
-
- private:
-  std::mt19937 source_;
-};
 
 /// `tame`: of the kind whose error is bounded beforehand.
 LuGre<double> random_lugre(Random& random, bool tame) {
@@ -40,12 +29,6 @@ LuGre<double> random_lugre(Random& random, bool tame) {
   return law;
 }
 
-DfOptions asking(double accuracy, Isa isa = Isa::scalar, int harmonics = 7) {
-  DfOptions options = with(DfMethod::automatic, accuracy, harmonics);
-  options.isa = isa;
-  return options;
-}
-
 std::vector<DescribingFunction> by_kernel(const Element<double>& element, const std::vector<DfPoint>& points,
                                           const DfOptions& options) {
   const auto kernel = DfKernel::of(element, options);
@@ -54,12 +37,6 @@ std::vector<DescribingFunction> by_kernel(const Element<double>& element, const 
   kernel->compute(points, results);
   return results;
 }
-
-struct Tally {
-  int points = 0, unanswered = 0, broken = 0;
-  std::string which;              ///< the broken ones, in words
-  std::vector<double> looseness;  ///< estimate over true error, where that can be told from roundings
-};
 
 /// Random laws at random points, against the finest mesh, and where that gives no answer against the quadrature.
 Tally tally(bool tame, int laws, unsigned seed) {

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "limcycle/analysis/frequency/df_kernel.hpp"
-#include "limcycle/tests/analysis/frequency/df_laws.hpp"
+#include "limcycle/tests/analysis/frequency/random_points.hpp"
 
 using namespace df_test;
 using std::numbers::pi;
@@ -13,17 +13,6 @@ using std::numbers::pi;
 namespace {
 
 using Complex = std::complex<double>;
-
-class Random {
- public:
-  explicit Random(unsigned seed) : source_(seed) {}
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(source_); }
-  double spread(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-  bool coin() { return uniform(0.0, 1.0) < 0.5; }
-
- private:
-  std::mt19937 source_;
-};
 
 template <class Law>
 void random_level(Random& random, Law& law, bool smooth) {
@@ -95,18 +84,6 @@ Element<double> random_bouc_wen(Random& random) {
   law.n = random.coin() ? 1.0 : random.coin() ? 2.0 : random.uniform(2.0, 4.0);
   return law;
 }
-
-DfOptions asking(double accuracy, Isa isa = Isa::scalar, int harmonics = 7) {
-  DfOptions options = with(DfMethod::automatic, accuracy, harmonics);
-  options.isa = isa;
-  return options;
-}
-
-struct Tally {
-  int points = 0, unanswered = 0, broken = 0;
-  std::string which;              ///< the broken ones, in words
-  std::vector<double> looseness;  ///< estimate over true error, where that can be told from roundings
-};
 
 /// Random laws at random points, against a mesh that is far finer or, where that has no answer and at one point of each
 /// law, against the quadrature.

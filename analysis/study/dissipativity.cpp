@@ -1,0 +1,187 @@
+#include "limcycle/analysis/study/dissipativity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "limcycle/analysis/energy/one_state_law.hpp"
+
+namespace limcycle {
+namespace {
+
+bool is_friction(const Element<double>& element) {
+  return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
+}
+
+std::string_view kind_of(const Element<double>& element) {
+  return std::visit([]<class E>(const E&) { return E::kind; }, element);
+}
+
+std::optional<double> number_of(const Element<double>& element, std::string_view key) {
+  return std::visit(
+      [key]<class E>(const E& e) -> std::optional<double> {
+        if constexpr (requires { E::parameters(); })
+          for (const auto& parameter : E::parameters())
+            if (const auto* number = std::get_if<double E::*>(&parameter.member); number && parameter.key == key)
+              return e.*(*number);
+        return std::nullopt;
+      },
+      element);
+}
+
+std::vector<std::string> names_of_states(const Element<double>& element) {
+  const int n = std::visit([](const auto& e) { return e.states(); }, element);
+  std::vector<std::string> names;
+  names.reserve(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) names.push_back(n == 1 ? "z" : "z" + std::to_string(i + 1));
+  return names;
+}
+
+/// The verdict of one of many questions, which does not move the progress bar.
+Passive verdict(const Element<double>& law, const DissipativityOptions& options) {
+  PassivityOptions quiet = options.passivity;
+  quiet.progress = {};
+  return passivity(law, quiet).passive;
+}
+
+ThresholdOptions threshold_options(const Element<double>& element, const DissipativityOptions& options) {
+  ThresholdOptions threshold;
+  threshold.top_speed = options.passivity.top_speed;
+  threshold.stop = options.passivity.stop;
+  if (!OneStateLaw::fits(element))
+    threshold.verdict = [&options](const Element<double>& law) { return verdict(law, options); };
+  return threshold;
+}
+
+/// The least sigma2: computed for a law with one state; 0 for another law that is passive without it.
+std::optional<SigmaThreshold> least_damping(const Element<double>& element, const DissipativityOptions& options,
+                                            Passive as_it_is) {
+  const auto own = number_of(element, "sigma2");
+  if (!own) return std::nullopt;
+  if (OneStateLaw::fits(element)) {
+    const LeastDamping least = least_sigma2(element, threshold_options(element, options));
+    if (std::isnan(least.value)) return std::nullopt;
+    return SigmaThreshold{least.value, least.error};
+  }
+  if (as_it_is != Passive::yes) return std::nullopt;
+  if (*own == 0.0) return SigmaThreshold{};
+  const auto without = family_of(element, "sigma2")(0.0);
+  if (without && verdict(*without, options) == Passive::yes) return SigmaThreshold{};
+  return std::nullopt;
+}
+
+/// The speed of the other surface: where it stands in the parts, and the loop at another one.
+struct SlidingSpeed {
+  std::string path;
+  double value = 0.0;
+  std::function<Loop(double)> family;
+};
+
+std::optional<SlidingSpeed> sliding_speed(const LoopParts& parts) {
+  if (const auto* belt = std::get_if<Belt>(&parts.plant); belt && belt->speed != 0.0)
+    return SlidingSpeed{"loop.plant.speed", belt->speed, [parts](double v) {
+                          LoopParts other = parts;
+                          std::get<Belt>(other.plant).speed = v;
+                          return build_loop(other);
+                        }};
+  if (const auto* froude = std::get_if<FroudePendulum>(&parts.plant); froude && froude->shaft_speed != 0.0)
+    return SlidingSpeed{"loop.plant.shaft_speed", froude->shaft_speed, [parts](double v) {
+                          LoopParts other = parts;
+                          std::get<FroudePendulum>(other.plant).shaft_speed = v;
+                          return build_loop(other);
+                        }};
+  if (parts.reference_rate != 0.0)
+    return SlidingSpeed{"loop.reference.rate", parts.reference_rate, [parts](double v) {
+                          LoopParts other = parts;
+                          other.reference_rate = v;
+                          return build_loop(other);
+                        }};
+  return std::nullopt;
+}
+
+void look_at_sliding(const LoopParts& parts, const DissipativityOptions& options, DissipativityReport& report) {
+  const auto speed = sliding_speed(parts);
+  if (!speed || !parts.friction) return;
+  report.speed_of_sliding = speed->path;
+  HopfOptions hopf;
+  hopf.stop = options.passivity.stop;
+  const double size = std::abs(speed->value), sign = speed->value < 0.0 ? -1.0 : 1.0;
+  report.sliding_changes =
+      sliding_stability_changes([&](double v) { return speed->family(sign * v); }, 1e-3 * size, 1e3 * size, hopf);
+  for (auto& point : report.sliding_changes) point.speed *= sign;
+}
+
+}  // namespace
+
+DissipativityReport dissipativity(const Element<double>& element, const std::string& path,
+                                  const DissipativityOptions& options) {
+  DissipativityReport report;
+  report.kind = kind_of(element);
+  report.path = path;
+  report.friction = is_friction(element);
+  report.states = names_of_states(element);
+  report.top_speed = options.passivity.top_speed;
+  PassivityOptions first = options.passivity;
+  first.progress = [&](double fraction, std::string_view what) {
+    if (options.passivity.progress) options.passivity.progress(0.6 * fraction, what);
+  };
+  report.passivity = passivity(element, first);
+  const auto stopped = [&] { return options.passivity.stop && options.passivity.stop(); };
+  if (report.friction && !stopped()) {
+    BoundsOptions bounding;
+    bounding.seed = options.passivity.seed;
+    bounding.stop = options.passivity.stop;
+    bounding.top_speed = options.passivity.top_speed;
+    report.over_all = bounds(element, bounding);
+    bounding.top_speed = options.speed;
+    report.up_to_speed = bounds(element, bounding);
+    if (options.passivity.progress) options.passivity.progress(0.75, "thresholds");
+    report.threshold = least_damping(element, options, report.passivity.passive);
+    if (OneStateLaw::fits(element)) {
+      const PassiveSpeed speed = passive_speed(element, threshold_options(element, options));
+      if (!std::isnan(speed.value)) report.passive_speed = speed;
+    }
+  }
+  if (options.range && !stopped()) {
+    ThresholdOptions scan = threshold_options(element, options);
+    if (!OneStateLaw::fits(element)) {  // every verdict may be a search
+      scan.scan = 9;
+      scan.accuracy = 1e-3;
+    }
+    scan.logarithmic = options.range->from > 0.0 && options.range->to > 10.0 * options.range->from;
+    report.asked = options.range;
+    report.range =
+        passivity_threshold(family_of(element, options.range->key), options.range->from, options.range->to, scan);
+  }
+  if (stopped() || report.passivity.status == Status::interrupted) report.status = Status::interrupted;
+  return report;
+}
+
+DissipativityReport dissipativity(const LoopParts& parts, const DissipativityOptions& options) {
+  if (!parts.friction && !parts.element)
+    throw std::invalid_argument("dissipativity needs a friction law or a forward element");
+  DissipativityReport report = parts.friction ? dissipativity(*parts.friction, "loop.friction", options)
+                                              : dissipativity(*parts.element, "loop.element", options);
+  if (report.status == Status::interrupted) return report;
+  const Loop loop = build_loop(parts);
+  LoopDissipationOptions energy;
+  energy.stop = options.passivity.stop;
+  if (parts.friction && report.threshold) {
+    energy.deficit = report.threshold->value - number_of(*parts.friction, "sigma2").value_or(0.0);
+  } else if (parts.friction && report.passivity.passive == Passive::yes) {
+    energy.deficit = 0.0;
+  }
+  report.loop = loop_dissipation(loop, energy);
+  look_at_sliding(parts, options, report);
+  if (report.loop->no_cycle.decision == Decision::yes) {
+    PredictOptions check = options.predict;
+    check.nyquist = false;
+    check.stop = options.passivity.stop;
+    const PredictReport found = predict(loop, check);
+    if (found.status != Status::interrupted) report.agrees = found.cycles.empty();
+  }
+  if (options.passivity.stop && options.passivity.stop()) report.status = Status::interrupted;
+  return report;
+}
+
+}  // namespace limcycle
