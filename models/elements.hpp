@@ -76,4 +76,18 @@ using Elements = JoinedKinds<SeriesElements, KindList<Quantizer>, MadeElements>:
 template <class S>
 using Element = Elements::On<S>;
 
+/// Name of the kind, as in a case file.
+inline std::string_view kind_of(const Element<double>& element) {
+  return std::visit([]<class E>(const E&) { return E::kind; }, element);
+}
+
+inline bool is_friction(const Element<double>& element) {
+  return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
+}
+
+/// Typical sizes of what goes in and comes out.
+inline Scales scales_of(const Element<double>& element) {
+  return std::visit([](const auto& e) { return e.scales(); }, element);
+}
+
 }  // namespace limcycle

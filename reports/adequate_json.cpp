@@ -1,16 +1,12 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "limcycle/reports/adequate.hpp"
 #include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// null: not asked, or no answer; an error without bound is another verdict, which the verdict itself tells.
 Json answer_json(const SceneAnswer& answer) {

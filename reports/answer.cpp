@@ -10,7 +10,7 @@
 namespace limcycle {
 namespace {
 
-constexpr int digits = 4;  // in sentences; the tables show all that are right
+constexpr int sentence_digits = 4;  // in sentences; the tables show all that are right
 
 std::string counted(std::size_t n, const std::string& noun) {
   return n == 1 ? "one " + noun : fmt::format("{} {}s", n, noun);
@@ -22,8 +22,8 @@ std::string capital(std::string text) {
 }
 
 std::string size_of(const Cycle& cycle, const Units& units) {
-  return fmt::format("period {} s and amplitude {}", with_digits(cycle.period, digits),
-                     Units::attach(with_digits(cycle.amplitude, digits), units.y));
+  return fmt::format("period {} s and amplitude {}", with_digits(cycle.period, sentence_digits),
+                     Units::attach(with_digits(cycle.amplitude, sentence_digits), units.y));
 }
 
 std::size_t count(const PredictReport& report, Outcome outcome) {
@@ -109,9 +109,9 @@ std::string deviation(double predicted, double truth) {
 }
 
 std::string of_one(const PredictReport& report, const Prediction& one, const Units& units) {
-  const std::string size =
-      fmt::format("amplitude {}, frequency {} rad/s", Units::attach(with_digits(one.amplitude, digits), units.y),
-                  with_digits(one.frequency, digits));
+  const std::string size = fmt::format("amplitude {}, frequency {} rad/s",
+                                       Units::attach(with_digits(one.amplitude, sentence_digits), units.y),
+                                       with_digits(one.frequency, sentence_digits));
   if (one.verdict == Verdict::wrong) return "predicts a limit cycle (" + size + ") that does not exist";
   if (one.verdict == Verdict::undecided || !one.cycle || *one.cycle >= report.cycles.size())
     return "predicts a limit cycle (" + size + ") that could be neither confirmed nor refuted";
@@ -166,8 +166,8 @@ std::string method_in_words(const std::string& method) {
   return method;
 }
 
-Answer answer(const PredictReport& report, const Units& units) {
-  Answer out;
+CycleAnswer answer(const PredictReport& report, const Units& units) {
+  CycleAnswer out;
   out.what_happens = report.cycles.empty() ? without_cycle(report) : with_cycles(report, units);
   if (report.status == Status::interrupted) out.what_happens = "Interrupted; as far as it went: " + out.what_happens;
   std::vector<std::string> methods;

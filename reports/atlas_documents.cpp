@@ -1,17 +1,13 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "limcycle/reports/atlas.hpp"
 #include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/html_parts.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json point_json(const AtlasPoint& point) {
   return {{"law", point.law},

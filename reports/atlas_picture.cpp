@@ -28,8 +28,8 @@ constexpr std::array<Look, 9> looks{{{RunClass::right, "#2e9e5b", ""},
 
 const Look& look_of(RunClass kind) { return *std::ranges::find(looks, kind, &Look::kind); }
 
-constexpr double cell_width = 17.0, cell_height = 13.0, panel_width = 150.0, width = 760.0, margin = 10.0;
-constexpr std::string_view style =
+constexpr double square_width = 17.0, square_height = 13.0, stepper_width = 150.0, width = 760.0, margin = 10.0;
+constexpr std::string_view atlas_style =
     "text{font:11px system-ui,sans-serif;fill:#59636e}.title{font-size:14px;font-weight:600}.law{font-size:13px;"
     "font-weight:600}.cell{fill:#fff;text-anchor:middle;font-weight:600}.dark{fill:#1f2328}rect{stroke:#8b949e;"
     "stroke-opacity:.35}";
@@ -55,12 +55,12 @@ std::string cell(double x, double y, const AtlasPoint& point) {
                                         point.setting, to_string(point.kind), point.why.empty() ? "" : ", ", point.why);
   std::string out =
       fmt::format(R"(<g><title>{}</title><rect x="{:.1f}" y="{:.1f}" width="{:.0f}" height="{:.0f}" fill="{}"/>)",
-                  html_escaped(words), x, y, cell_width, cell_height, look.colour);
+                  html_escaped(words), x, y, square_width, square_height, look.colour);
   if (*look.letter != 0) {
     const bool light =
         point.kind == RunClass::rough || point.kind == RunClass::creeps || point.kind == RunClass::too_slow;
     out += fmt::format(R"(<text class="cell{}" x="{:.1f}" y="{:.1f}">{}</text>)", light ? " dark" : "",
-                       x + 0.5 * cell_width, y + cell_height - 3.5, look.letter);
+                       x + 0.5 * square_width, y + square_height - 3.5, look.letter);
   }
   return out + "</g>\n";
 }
@@ -72,16 +72,16 @@ std::string panel(double left, double top, const std::vector<const AtlasPoint*>&
   std::string out = text(left, top, "", points.front()->stepper);
   const double x0 = left + 36.0, y0 = top + 6.0;
   for (std::size_t i = 0; i < settings.size(); ++i)
-    out += text(left, y0 + cell_height * static_cast<double>(i + 1) - 3.0, "", fmt::format("{:.0e}", settings[i]));
+    out += text(left, y0 + square_height * static_cast<double>(i + 1) - 3.0, "", fmt::format("{:.0e}", settings[i]));
   for (const auto* point : points) {
     const auto column = std::ranges::find(columns, stiffness_or_zero(*point)) - columns.begin();
     const auto row = std::ranges::find(settings, point->setting) - settings.begin();
-    out += cell(x0 + cell_width * static_cast<double>(column), y0 + cell_height * static_cast<double>(row), *point);
+    out += cell(x0 + square_width * static_cast<double>(column), y0 + square_height * static_cast<double>(row), *point);
   }
-  const double below = y0 + cell_height * static_cast<double>(settings.size()) + 11.0;
+  const double below = y0 + square_height * static_cast<double>(settings.size()) + 11.0;
   for (std::size_t i = 0; i < columns.size(); ++i)
     if (columns[i] > 0.0)
-      out += text(x0 + cell_width * static_cast<double>(i) + 4.0, below, "",
+      out += text(x0 + square_width * static_cast<double>(i) + 4.0, below, "",
                   fmt::format("{:.0f}", std::log10(columns[i])));
   return out;
 }
@@ -101,14 +101,14 @@ Drawn law_panels(const StepperAtlas& atlas, const std::string& law, double top) 
     std::vector<const AtlasPoint*> points;
     std::ranges::copy_if(own, std::back_inserter(points), [&](const auto* point) { return point->stepper == stepper; });
     const auto rows = distinct<double>(points, [](const AtlasPoint& point) { return point.setting; }).size();
-    const double height = 40.0 + cell_height * static_cast<double>(rows);
-    if (left + panel_width > width) {
+    const double height = 40.0 + square_height * static_cast<double>(rows);
+    if (left + stepper_width > width) {
       left = margin;
       drawn.bottom += row_height;
       row_height = 0.0;
     }
     drawn.markup += panel(left, drawn.bottom + 8.0, points);
-    left += panel_width;
+    left += stepper_width;
     row_height = std::max(row_height, height);
   }
   drawn.bottom += row_height;
@@ -123,7 +123,7 @@ std::string legend(double top) {
     sample.kind = look.kind;
     const std::string name(to_string(look.kind));
     out += fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.0f}" height="{:.0f}" fill="{}"/>)", left, top,
-                       cell_width, cell_height, look.colour) +
+                       square_width, square_height, look.colour) +
            text(left + 21.0, top + 10.0, "", std::string(look.letter) + (*look.letter == 0 ? "" : " ") + name);
     left += 36.0 + 6.0 * static_cast<double>(name.size() + 1);
   }
@@ -148,7 +148,7 @@ std::string atlas_picture(const StepperAtlas& atlas) {
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
              "height=\"{1:.0f}\" role=\"img\" aria-label=\"{2}\">\n<style>{3}</style>\n",
-             width, top, html_escaped(atlas_answer(atlas)), style) +
+             width, top, html_escaped(atlas_answer(atlas)), atlas_style) +
          body + "</svg>\n";
 }
 

@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string line(const std::string& name, const std::string& value) { return fmt::format("{:<12}{}\n", name, value); }
 
@@ -27,11 +24,6 @@ std::string search_text(const SearchBox& box, bool from_case) {
   return fmt::format("amplitude {} .. {}, frequency {} .. {} rad/s ({})", number(box.amplitude_min),
                      number(box.amplitude_max), number(box.frequency_min), number(box.frequency_max),
                      from_case ? "from the case" : "from the loop's own scales");
-}
-
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
 }
 
 std::vector<std::string> parts(const CheckSummary& summary) {

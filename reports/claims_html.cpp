@@ -6,7 +6,7 @@
 namespace limcycle {
 namespace {
 
-std::string line(const std::string& label, const std::string& text) {
+std::string detail(const std::string& label, const std::string& text) {
   return text.empty() ? "" : "<p><strong>" + html_escaped(label) + ":</strong> " + html_escaped(text) + "</p>\n";
 }
 
@@ -17,10 +17,10 @@ std::string one_html(const TestedClaim& one) {
                                 one.as_expected() ? "" : " open", verdict,
                                 one.as_expected() ? "" : " (expected: " + std::string(to_string(claim.expected)) + ")",
                                 html_escaped(claim.statement));
-  out += line("Formula", claim.formula);
-  out += line("Source", claim.source + " (" + std::string(in_words(claim.evidence)) + ")");
-  out += line("Range", claim.range) + line("Test", claim.test) + line("Finding", one.result.finding);
-  out += line("Counter-example", one.result.counterexample);
+  out += detail("Formula", claim.formula);
+  out += detail("Source", claim.source + " (" + std::string(in_words(claim.evidence)) + ")");
+  out += detail("Range", claim.range) + detail("Test", claim.test) + detail("Finding", one.result.finding);
+  out += detail("Counter-example", one.result.counterexample);
   if (!one.result.checks.empty()) out += html_table(checks_table(one.result), "Comparisons of " + claim.id);
   return out + "</details>\n";
 }

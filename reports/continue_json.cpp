@@ -1,16 +1,12 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "limcycle/reports/continue.hpp"
 #include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json point_json(std::size_t part, const BranchPoint& point) {
   const Cycle& cycle = point.cycle;
@@ -43,7 +39,7 @@ Json event_json(std::size_t part, const BranchEvent& event) {
 
 std::string cell(double value) { return shortest(value); }
 
-const char* yes_no(const std::optional<bool>& value) { return value ? (*value ? "true" : "false") : ""; }
+const char* stable_cell(const std::optional<bool>& value) { return value ? (*value ? "true" : "false") : ""; }
 
 }  // namespace
 
@@ -72,7 +68,7 @@ std::string continue_csv(const ContinueReport& report) {
     for (const auto& [parameter, cycle] : report.found.branches[part].points) {
       const bool known = !cycle.multipliers.empty();
       out += csv_line({"point", std::to_string(part), cell(parameter), cell(cycle.amplitude), cell(cycle.period),
-                       yes_no(cycle.stable), known ? cell(cycle.multipliers.front().real()) : "",
+                       stable_cell(cycle.stable), known ? cell(cycle.multipliers.front().real()) : "",
                        known ? cell(cycle.multipliers.front().imag()) : "", cell(cycle.first_harmonic),
                        cell(cycle.offset), cell(cycle.sticking_fraction), cell(cycle.error), ""});
     }

@@ -10,7 +10,7 @@
 namespace limcycle {
 namespace {
 
-constexpr std::string_view style =
+constexpr std::string_view branch_style =
     "text{font:12px system-ui,sans-serif;fill:#59636e}.frame{fill:none;stroke:#8b949e;stroke-opacity:.5}"
     ".stable{fill:none;stroke:#2f81c7;stroke-width:2}.unstable{fill:none;stroke:#2f81c7;stroke-width:2;"
     "stroke-dasharray:6 4}.fold{fill:#d9661f}.stability{fill:none;stroke:#d9661f;stroke-width:2}"
@@ -44,7 +44,7 @@ struct Axis {
   }
 };
 
-struct Panel {
+struct BranchPanel {
   double left, top, width, height;
   Axis x, y;
   std::string at(double px, double py) const {
@@ -52,10 +52,10 @@ struct Panel {
   }
 };
 
-using Quantity = double (*)(const BranchPoint&);
+using OfPoint = double (*)(const BranchPoint&);
 
 /// The branch as runs of equal stability; neighbouring runs share their border point.
-std::string curves(const Panel& panel, const Branch& branch, Quantity quantity) {
+std::string curves(const BranchPanel& panel, const Branch& branch, OfPoint quantity) {
   std::string out, d;
   std::optional<bool> kind;
   const auto flush = [&] {
@@ -78,7 +78,7 @@ std::string curves(const Panel& panel, const Branch& branch, Quantity quantity) 
   return out;
 }
 
-std::string marks(const Panel& panel, const Branch& branch, Quantity quantity) {
+std::string marks(const BranchPanel& panel, const Branch& branch, OfPoint quantity) {
   std::string out;
   for (const auto& event : branch.events) {
     const BranchPoint& point = branch.points[event.point];
@@ -92,7 +92,7 @@ std::string marks(const Panel& panel, const Branch& branch, Quantity quantity) {
   return out;
 }
 
-std::string drawn(Panel panel, const ContinueReport& report, Quantity quantity, const std::string& name,
+std::string drawn(BranchPanel panel, const ContinueReport& report, OfPoint quantity, const std::string& name,
                   const std::string& unit, const std::string& below) {
   for (const auto& branch : report.found.branches)
     for (const auto& point : branch.points) {
@@ -134,7 +134,8 @@ std::string continue_picture(const ContinueReport& report, const Units& units) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 760 {0}\" width=\"760\" height=\"{0}\" role=\"img\" "
       "aria-label=\"{1}\">\n<style>{2}</style>\n<text class=\"title\" x=\"10\" y=\"20\">{3}</text>\n{4}</svg>\n",
-      any ? 345 : 36, html_escaped(words), style, html_escaped(any ? "Limit cycles over " + report.path : words), body);
+      any ? 345 : 36, html_escaped(words), branch_style, html_escaped(any ? "Limit cycles over " + report.path : words),
+      body);
 }
 
 }  // namespace limcycle

@@ -12,7 +12,7 @@ namespace {
 
 std::string yes_no(const std::optional<bool>& value) { return value ? (*value ? "true" : "false") : ""; }
 
-std::string index(const std::optional<std::size_t>& value) { return value ? std::to_string(*value) : ""; }
+std::string index_cell(const std::optional<std::size_t>& value) { return value ? std::to_string(*value) : ""; }
 
 /// Columns of predict: a row fills those it knows by name, the others stay empty.
 constexpr std::string_view predict_columns[] = {
@@ -63,7 +63,7 @@ void add_prediction(std::string& out, std::size_t i, const Prediction& predictio
                 {"stable", yes_no(prediction.stable)},
                 {"residual", shortest(prediction.residual)},
                 {"verdict", std::string(to_string(prediction.verdict))},
-                {"cycle", index(prediction.cycle)},
+                {"cycle", index_cell(prediction.cycle)},
                 {"why", prediction.why}});
 }
 
@@ -118,7 +118,7 @@ std::string predict_csv(const PredictReport& report) {
     const auto& outcome = report.outcomes[i];
     add_row(out, {{"kind", "outcome"},
                   {"index", std::to_string(i)},
-                  {"cycle", index(outcome.cycle)},
+                  {"cycle", index_cell(outcome.cycle)},
                   {"start", outcome.start},
                   {"outcome", std::string(to_string(outcome.outcome))},
                   {"why", outcome.why}});

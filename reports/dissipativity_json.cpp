@@ -1,23 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "limcycle/reports/dissipativity.hpp"
 #include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json numbers(const std::vector<double>& values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(number(value));
-  return list;
-}
 
 Json decision(Decision decision) {
   if (decision == Decision::yes || decision == Decision::no) return decision == Decision::yes;

@@ -41,7 +41,7 @@ std::string eigenvalue(std::complex<double> value) {
   return with_digits(value.real(), 4) + " +- j " + with_digits(std::abs(value.imag()), 4);
 }
 
-std::string extent(const Extent& extent, int digits = 5) {
+std::string extent_text(const Extent& extent, int digits = 5) {
   return extent.low == extent.high ? with_digits(extent.low, digits)
                                    : with_digits(extent.low, digits) + " to " + with_digits(extent.high, digits);
 }
@@ -159,8 +159,8 @@ namespace {
 
 std::string stuck_text(const StuckSet& stuck) {
   if (stuck.answer.decision != Decision::yes) return "";
-  std::string text = item("F", 10, extent(stuck.force) + " N");
-  text += item("y", 10, extent(stuck.output));
+  std::string text = item("F", 10, extent_text(stuck.force) + " N");
+  text += item("y", 10, extent_text(stuck.output));
   text += item("dimension", 10, std::to_string(stuck.dimension));
   if (stuck.tried > 0)
     text += item("marches", 10, fmt::format("{} of {} from nearby came to rest in it", stuck.returned, stuck.tried));

@@ -1,22 +1,12 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "limcycle/reports/experiment.hpp"
 #include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json numbers(const std::vector<double>& values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(number(value));
-  return list;
-}
 
 Json figure_json(const ExperimentFigure& figure) {
   Json panels = Json::array();

@@ -10,13 +10,15 @@
 namespace limcycle {
 namespace {
 
-constexpr double panel_width = 206, panel_height = 140, left_margin = 44, top_margin = 24, bottom_margin = 34, gap = 16;
-constexpr double cell_width = left_margin + panel_width + gap, cell_height = top_margin + panel_height + bottom_margin;
+constexpr double panel_width = 206, panel_height = 140, left_margin = 44, top_margin = 24, bottom_margin = 34,
+                 panel_gap = 16;
+constexpr double cell_width = left_margin + panel_width + panel_gap,
+                 cell_height = top_margin + panel_height + bottom_margin;
 constexpr int columns = 4;
 constexpr double picture_width = columns * cell_width;
 constexpr std::size_t colours = 10;
 
-constexpr std::string_view style =
+constexpr std::string_view figures_style =
     "text{font:11px system-ui,sans-serif;fill:#6b7680}.frame{fill:none;stroke:#8b949e;stroke-opacity:.5}"
     ".tick{stroke:#8b949e;stroke-opacity:.25}.name{font-weight:600;font-size:12px}.title{font-size:14px;font-weight:"
     "600}"
@@ -193,7 +195,7 @@ std::string svg(const std::string& body, double height, const std::string& label
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "role=\"img\" aria-label=\"{2}\">\n<style>{3}</style>\n{4}</svg>\n",
-      picture_width, height, html_escaped(label), style, body);
+      picture_width, height, html_escaped(label), figures_style, body);
 }
 
 }  // namespace

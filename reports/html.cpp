@@ -57,7 +57,7 @@ std::string tables(const PredictReport& report, const Units& units) {
 
 std::string predict_page(const PredictReport& report, const Provenance& provenance, const std::string& case_text,
                          const Units& units) {
-  const Answer words = answer(report, units);
+  const CycleAnswer words = answer(report, units);
   const auto figures = predict_figures(report, units);
   std::string body = tables(report, units) + html_notes(report.notes);
   if (!figures.empty()) body += "<h2>Figures</h2>\n" + figures_html(figures);

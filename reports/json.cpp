@@ -1,24 +1,15 @@
 #include "limcycle/reports/json.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/json_values.hpp"
 
 namespace limcycle {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json pair(std::complex<double> value) { return Json::array({number(value.real()), number(value.imag())}); }
-
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json agreement_json(const Agreement& second) {
   return {{"rtol", second.rtol},

@@ -14,12 +14,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t widest = 48;  // columns of the ones shown
 constexpr double negligible = 1e-6;
-constexpr int digits = 3;
+constexpr int shown_digits = 3;
 
 std::string in_words(std::complex<double> value, bool pair) {
-  std::string real = with_digits(value.real(), digits);
+  std::string real = with_digits(value.real(), shown_digits);
   if (value.imag() == 0.0) return real;
-  const std::string imaginary = with_digits(std::abs(value.imag()), digits) + "j";
+  const std::string imaginary = with_digits(std::abs(value.imag()), shown_digits) + "j";
   return real + (pair ? " ± " : value.imag() < 0.0 ? " - " : " + ") + imaginary;
 }
 
@@ -67,7 +67,7 @@ std::optional<Figure> multiplier_figure(const PredictReport& report) {
     }
     cycles.push_back({{"name", fmt::format("limit cycle {}", i)}, {"re", re}, {"im", im}});
     words += fmt::format("{} {} of limit cycle {}", words.empty() ? "" : ",",
-                         with_digits(std::abs(cycle.multipliers.front()), digits), i);
+                         with_digits(std::abs(cycle.multipliers.front()), shown_digits), i);
   }
   if (cycles.empty()) return std::nullopt;
   return Figure{"multipliers", "Floquet multipliers and the unit circle",

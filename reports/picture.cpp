@@ -13,7 +13,7 @@
 namespace limcycle {
 namespace {
 
-constexpr std::string_view style =
+constexpr std::string_view prediction_style =
     "text{font:12px system-ui,sans-serif;fill:#59636e}.frame{fill:none;stroke:#8b949e;stroke-opacity:.5}"
     ".one{fill:none;stroke:#2f81c7;stroke-width:2}.two{fill:none;stroke:#d9661f;stroke-width:2}"
     ".stuck{fill:none;stroke:#d9661f;stroke-width:6;stroke-linecap:round}.title{font-size:14px;font-weight:600}";
@@ -123,7 +123,7 @@ std::string predict_picture(const PredictReport& report, const Units& units) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 760 {0}\" width=\"760\" height=\"{0}\" role=\"img\" "
       "aria-label=\"{1}\">\n<style>{2}</style>\n<text class=\"title\" x=\"10\" y=\"20\">{3}</text>\n{4}</svg>\n",
-      cycle ? 315 : 36, words, style, first, cycle ? panels(*cycle, units) : "");
+      cycle ? 315 : 36, words, prediction_style, first, cycle ? panels(*cycle, units) : "");
 }
 
 }  // namespace limcycle

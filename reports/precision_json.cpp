@@ -1,16 +1,12 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/precision.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json point_json(const WorkPoint& point) {
   return {{"method", point.method},

@@ -11,14 +11,14 @@ namespace limcycle {
 namespace {
 
 constexpr double levels[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
-constexpr double shown[] = {1e-3, 1e-6, 1e-9};  // of them three fit into 80 columns
+constexpr double shown_levels[] = {1e-3, 1e-6, 1e-9};  // of them three fit into 80 columns
 
-std::string short_name(const std::string& method) {
+std::string column_of(const std::string& method) {
   if (method == "describing-function") return "DF";
   return method == "composite-describing-function" ? "composite DF" : method;
 }
 
-std::string power(double value) { return fmt::format("{:.0e}", value); }
+std::string power_of_ten(double value) { return fmt::format("{:.0e}", value); }
 
 const std::string& question_in_words(const WorkChart& chart) {
   static const std::string cycle = "Period and amplitude of the cycle", df = "Describing function of the element";
@@ -96,9 +96,10 @@ std::string front_in_words(const WorkChart& chart) {
     std::size_t last = k;
     while (last + 1 < std::size(levels) && cheapest(chart.points, levels[last + 1]) == i) ++last;
     const WorkPoint& point = chart.points[i];
-    out += fmt::format("{}for {}: {} ({}), {}", out.empty() ? "Cheapest " : "; ",
-                       last == k ? power(levels[k]) : power(levels[k]) + " to " + power(levels[last]), point.method,
-                       point.setting, as_duration(point.seconds));
+    out +=
+        fmt::format("{}for {}: {} ({}), {}", out.empty() ? "Cheapest " : "; ",
+                    last == k ? power_of_ten(levels[k]) : power_of_ten(levels[k]) + " to " + power_of_ten(levels[last]),
+                    point.method, point.setting, as_duration(point.seconds));
     k = last;
   }
   if (out.empty()) return chart.points.empty() ? "" : "No method comes within 1 % of the reference.";
@@ -134,12 +135,12 @@ std::string conditions() {
 
 Table method_table(const WorkChart& chart) {
   Table table{{{"method", "", Align::left}}, {}};
-  for (const double level : shown) table.columns.push_back({power(level), ""});
+  for (const double level : shown_levels) table.columns.push_back({power_of_ten(level), ""});
   table.columns.push_back({"least error", ""});
   table.columns.push_back({"not right", "", Align::left});
   for (const auto& method : chart.methods) {
-    std::vector<std::string> row{short_name(method)};
-    for (const double level : shown) {
+    std::vector<std::string> row{column_of(method)};
+    for (const double level : shown_levels) {
       const WorkPoint* best = cheapest_of(chart, method, level);
       row.push_back(best ? as_duration(best->seconds) : "-");
     }
@@ -182,7 +183,7 @@ Table stiffness_table(const StiffnessStudy& study) {
   }
   for (const auto& stepper : steppers) table.columns.push_back({stepper, ""});
   for (const auto& [sigma0, setting] : rows) {
-    std::vector<std::string> cells{power(sigma0), setting};
+    std::vector<std::string> cells{power_of_ten(sigma0), setting};
     for (const auto& stepper : steppers) {
       std::string cell = "-";
       for (const auto& point : study.points)

@@ -10,7 +10,7 @@
 namespace limcycle {
 namespace {
 
-constexpr int digits = 6;
+constexpr int run_digits = 6;
 
 Table ranges(const Simulation& run) {
   Table table{{{"column", "", Align::left}, {"first", ""}, {"least", ""}, {"greatest", ""}, {"last", ""}}, {}};
@@ -20,8 +20,9 @@ Table ranges(const Simulation& run) {
       least = std::min(least, row.at(i));
       greatest = std::max(greatest, row.at(i));
     }
-    table.rows.push_back({run.columns[i], with_digits(run.rows.front().at(i), digits), with_digits(least, digits),
-                          with_digits(greatest, digits), with_digits(run.rows.back().at(i), digits)});
+    table.rows.push_back({run.columns[i], with_digits(run.rows.front().at(i), run_digits),
+                          with_digits(least, run_digits), with_digits(greatest, run_digits),
+                          with_digits(run.rows.back().at(i), run_digits)});
   }
   return table;
 }
@@ -41,7 +42,7 @@ Table energy_table(const EnergyBalance& energy) {
     if (value == 0.0) return;
     const bool first =
         table.rows.empty() || std::ranges::none_of(table.rows, [&](const auto& row) { return row[0] == what; });
-    table.rows.push_back({first ? what : "", where, with_digits(value, digits)});
+    table.rows.push_back({first ? what : "", where, with_digits(value, run_digits)});
   };
   if (energy.of_plant) {
     add("supplied", "by the command", energy.command);

@@ -12,9 +12,9 @@
 namespace limcycle {
 namespace {
 
-std::string index(const std::optional<std::size_t>& value) { return value ? std::to_string(*value) : "-"; }
+std::string cycle_number(const std::optional<std::size_t>& value) { return value ? std::to_string(*value) : "-"; }
 
-std::string section(const std::string& heading, const std::string& body) { return "\n" + heading + "\n" + body; }
+std::string titled(const std::string& heading, const std::string& body) { return "\n" + heading + "\n" + body; }
 
 std::string outcomes(const PredictReport& report) {
   std::string out;
@@ -27,7 +27,7 @@ std::string outcomes(const PredictReport& report) {
 }
 
 /// "1.69974 to 1.75964", or "unknown" for a band without ends.
-std::string ends(const Interval& interval) {
+std::string ends_text(const Interval& interval) {
   if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "unknown";
   return with_digits(interval.low, 4) + " to " + with_digits(interval.high, 4);
 }
@@ -84,7 +84,7 @@ Table prediction_table(const PredictReport& report, const Units& units) {
   for (std::size_t i = 0; i < report.predictions.size(); ++i) {
     const auto& one = report.predictions[i];
     table.rows.push_back({std::to_string(i), one.method, with_digits(one.amplitude, 6), with_digits(one.frequency, 6),
-                          yes_or_no(one.stable), std::string(to_string(one.verdict)), index(one.cycle)});
+                          yes_or_no(one.stable), std::string(to_string(one.verdict)), cycle_number(one.cycle)});
   }
   return table;
 }
@@ -104,7 +104,7 @@ Table trust_table(const PredictReport& report, const Units& units) {
     const Band& band = trust->band;
     table.rows.push_back(
         {std::to_string(i), with_digits(trust->filter_ratio, 2), with_digits(trust->harmonic_residual, 2),
-         as_percent(trust->sticking_fraction), ends(band.frequency), ends(band.amplitude),
+         as_percent(trust->sticking_fraction), ends_text(band.frequency), ends_text(band.amplitude),
          std::string(band.kind == BandKind::rigorous ? to_string(band.verdict) : to_string(band.kind))});
   }
   return table;
@@ -118,22 +118,22 @@ std::string absence_in_words(const PredictReport& report) {
 }
 
 std::string predict_text(const std::string& title, const PredictReport& report, const Units& units) {
-  const Answer words = answer(report, units);
+  const CycleAnswer words = answer(report, units);
   std::string out = wrapped(title) + "\n" + wrapped(words.what_happens);
   for (const auto& sentence : words.worth) out += wrapped(sentence);
-  if (!report.cycles.empty()) out += section("Limit cycles", cycle_table(report, units).text());
+  if (!report.cycles.empty()) out += titled("Limit cycles", cycle_table(report, units).text());
   if (const Table multipliers = multiplier_table(report); !multipliers.rows.empty())
-    out += section("Floquet multipliers, without the trivial 1", multipliers.text());
+    out += titled("Floquet multipliers, without the trivial 1", multipliers.text());
   if (!report.predictions.empty())
-    out += section("Predictions", prediction_table(report, units).text() + reasons(report));
+    out += titled("Predictions", prediction_table(report, units).text() + reasons(report));
   if (const Table trust = trust_table(report, units); !trust.rows.empty())
-    out += section("Trust in the predictions, and where the true cycles may lie", trust.text() + sentences(report));
-  if (report.absence) out += section("Absence of oscillations", wrapped(absence_in_words(report)));
-  if (!report.outcomes.empty()) out += section("Reached in simulation", outcomes(report));
+    out += titled("Trust in the predictions, and where the true cycles may lie", trust.text() + sentences(report));
+  if (report.absence) out += titled("Absence of oscillations", wrapped(absence_in_words(report)));
+  if (!report.outcomes.empty()) out += titled("Reached in simulation", outcomes(report));
   const auto& box = report.search;
-  out += section("Search box",
-                 wrapped(fmt::format("amplitude of the element's input {:g} to {:g}, frequency {:g} to {:g} rad/s",
-                                     box.amplitude_min, box.amplitude_max, box.frequency_min, box.frequency_max)));
+  out += titled("Search box",
+                wrapped(fmt::format("amplitude of the element's input {:g} to {:g}, frequency {:g} to {:g} rad/s",
+                                    box.amplitude_min, box.amplitude_max, box.frequency_min, box.frequency_max)));
   out += notes_text(report.notes);
   if (report.status != Status::converged && report.status != Status::no_cycle)
     out += fmt::format("\nStatus: {}\n", to_string(report.status));

@@ -1,16 +1,10 @@
 #include "limcycle/reports/work_figures.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include "limcycle/reports/json_values.hpp"
 
 namespace limcycle {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-}  // namespace
+namespace {}  // namespace
 
 Figure work_figure(const std::string& id, const std::string& heading, const std::string& finding,
                    const std::string& x_title, const std::string& y_title, const std::vector<WorkSeries>& series) {

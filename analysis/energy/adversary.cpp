@@ -136,7 +136,7 @@ Attack attack(const ErasedElement<double>& element, const MotionScales& scales, 
 }
 
 std::optional<Counterexample> counterexample_of(const ErasedElement<double>& element, const Strokes& input) {
-  const Port port = port_of(element.element());
+  const DrivenBy port = port_of(element.element());
   const auto pieces = pieces_of(input, port);
   SupplyMarch first(element, rough), second(element, fine);
   const CycleSupply loose = periodic_supply(first, pieces, fine_cycles, 1e-8);
@@ -157,8 +157,8 @@ std::optional<Counterexample> counterexample_of(const ErasedElement<double>& ele
   return found;
 }
 
-std::string words_of(std::span<const SignalPiece> pieces, Port port) {
-  const std::string unit = port == Port::velocity ? " m/s" : "";
+std::string words_of(std::span<const SignalPiece> pieces, DrivenBy port) {
+  const std::string unit = port == DrivenBy::velocity ? " m/s" : "";
   std::string words;
   for (const SignalPiece& piece : pieces) {
     if (!words.empty()) words += ", then ";

@@ -26,6 +26,6 @@ std::optional<Counterexample> counterexample_of(const ErasedElement<double>& ele
 Passivity searched_passivity(const ErasedElement<double>& element, const PassivityOptions& options);
 
 /// The input in words, piece by piece.
-std::string words_of(std::span<const SignalPiece> pieces, Port port);
+std::string words_of(std::span<const SignalPiece> pieces, DrivenBy port);
 
 }  // namespace limcycle

@@ -138,10 +138,6 @@ struct Analytic {
   }
 };
 
-bool is_friction(const Element<double>& element) {
-  return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
-}
-
 /// Speeds and ways of the inputs of a search.
 class Inputs {
  public:

@@ -144,9 +144,9 @@ Certificate certify(const ErasedElement<double>& element, const MotionScales& sc
   certificate.holds = true;
   certificate.least = 1.0;
   StorageCheck check(element, scales, options.top_speed);
-  std::vector<Strokes> motions = known_strokes(scales, Port::velocity);
+  std::vector<Strokes> motions = known_strokes(scales, DrivenBy::velocity);
   std::mt19937_64 random(options.seed);
-  for (int k = 0; k < 60 * options.effort; ++k) motions.push_back(random_strokes(scales, Port::velocity, random));
+  for (int k = 0; k < 60 * options.effort; ++k) motions.push_back(random_strokes(scales, DrivenBy::velocity, random));
   for (const Strokes& motion : motions) {
     if (options.stop && options.stop()) {
       certificate.status = Status::interrupted;
@@ -154,7 +154,7 @@ Certificate certify(const ErasedElement<double>& element, const MotionScales& sc
       return certificate;
     }
     // A motion that cannot be marched to its end tells nothing beyond it; too few states are no certificate.
-    check.follow(pieces_of(motion, Port::velocity), certificate);
+    check.follow(pieces_of(motion, DrivenBy::velocity), certificate);
     if (!certificate.holds) return certificate;
   }
   if (certificate.states < 100) certificate.holds = false;

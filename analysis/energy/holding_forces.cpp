@@ -10,10 +10,6 @@
 namespace limcycle {
 namespace {
 
-Scales scales_of(const Element<double>& law) {
-  return std::visit([](const auto& e) { return e.scales(); }, law);
-}
-
 /// Speed that counts as none for this law, m/s.
 double creep(const Element<double>& law) {
   const Scales scales = scales_of(law);

@@ -94,7 +94,7 @@ std::vector<Strokes> strokes_of_velocity(const MotionScales& scales) {
 
 MotionScales motion_scales(const ErasedElement<double>& element, double top_speed) {
   MotionScales scales;
-  if (port_of(element.element()) == Port::input) {
+  if (port_of(element.element()) == DrivenBy::input) {
     const double own = largest_parameter(element.element(), "1"), time = largest_parameter(element.element(), "s");
     if (own > 0.0) scales.signal = own;
     scales.shortest = scales.longest = time > 0.0 ? time : 1.0;
@@ -119,13 +119,13 @@ MotionScales motion_scales(const ErasedElement<double>& element, double top_spee
   return scales;
 }
 
-std::vector<SignalPiece> pieces_of(const Strokes& strokes, Port port) {
+std::vector<SignalPiece> pieces_of(const Strokes& strokes, DrivenBy port) {
   std::vector<SignalPiece> pieces;
   double last = strokes.back().sign * std::pow(10.0, strokes.back().size);
   for (const Stroke& stroke : strokes) {
     const double to = stroke.sign * std::pow(10.0, stroke.size), from = stroke.ramp ? last : to;
     const double speed = 0.5 * (std::abs(from) + std::abs(to)), length = std::pow(10.0, stroke.length);
-    const double duration = stroke.by_time || port == Port::input ? length : length / speed;
+    const double duration = stroke.by_time || port == DrivenBy::input ? length : length / speed;
     last = to;
     if (from == to && !pieces.empty() && pieces.back().from == to && pieces.back().to == to)
       pieces.back().duration += duration;
@@ -135,7 +135,7 @@ std::vector<SignalPiece> pieces_of(const Strokes& strokes, Port port) {
   return pieces;
 }
 
-Strokes random_strokes(const MotionScales& scales, Port port, std::mt19937_64& random) {
+Strokes random_strokes(const MotionScales& scales, DrivenBy port, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   const auto between = [&](double low, double high) {
     return std::log10(low) + unit(random) * (std::log10(high) - std::log10(low));
@@ -144,7 +144,7 @@ Strokes random_strokes(const MotionScales& scales, Port port, std::mt19937_64& r
   for (Stroke& stroke : strokes) {
     stroke.sign = unit(random) < 0.5 ? 1 : -1;
     stroke.ramp = unit(random) < 0.25;
-    stroke.by_time = port == Port::input || unit(random) < 0.3;
+    stroke.by_time = port == DrivenBy::input || unit(random) < 0.3;
     stroke.size = between(scales.least, scales.most);
     stroke.length = stroke.by_time ? between(0.03 * scales.shortest, 100.0 * scales.longest)
                                    : between(1e-2 * scales.way, 300.0 * scales.way);
@@ -152,8 +152,8 @@ Strokes random_strokes(const MotionScales& scales, Port port, std::mt19937_64& r
   return strokes;
 }
 
-std::vector<Strokes> known_strokes(const MotionScales& scales, Port port) {
-  return port == Port::input ? strokes_of_inputs(scales) : strokes_of_velocity(scales);
+std::vector<Strokes> known_strokes(const MotionScales& scales, DrivenBy port) {
+  return port == DrivenBy::input ? strokes_of_inputs(scales) : strokes_of_velocity(scales);
 }
 
 }  // namespace limcycle

@@ -28,15 +28,15 @@ struct Stroke {
   double length = 0.0;   ///< log10 of way or duration
 };
 using Strokes = std::vector<Stroke>;
-std::vector<SignalPiece> pieces_of(const Strokes& strokes, Port port);
+std::vector<SignalPiece> pieces_of(const Strokes& strokes, DrivenBy port);
 
 /// Strokes of 2 to 6 pieces with sizes and lengths drawn log-uniformly from what the scales span. The same generator
 /// gives the same strokes.
-Strokes random_strokes(const MotionScales& scales, Port port, std::mt19937_64& random);
+Strokes random_strokes(const MotionScales& scales, DrivenBy port, std::mt19937_64& random);
 
 /// Inputs that are known to take energy out of some law: load fast, creep long, reverse fast, creep long (laws whose
 /// force relaxes in time); slide slowly, then step to a high speed (laws with damped states); speed up at once, slow
 /// down at leisure (laws that tell one from the other); for elements: go there and back and stay.
-std::vector<Strokes> known_strokes(const MotionScales& scales, Port port);
+std::vector<Strokes> known_strokes(const MotionScales& scales, DrivenBy port);
 
 }  // namespace limcycle

@@ -10,7 +10,7 @@ namespace {
 constexpr double most_growth = 2.0;  // of a small difference in one cycle: ten cycles then leave twelve digits
 
 /// Gains over states, of one velocity.
-using Row = std::vector<double>;
+using GainRow = std::vector<double>;
 
 /// What two velocities take out, and where.
 struct Pair {
@@ -38,7 +38,7 @@ class PairSearch {
     choose_velocities(survey, slowest);
     for (const double v : velocities_)
       for (const int direction : {1, -1}) {
-        Row row;
+        GainRow row;
         for (const double z : z_) row.push_back(law.gain(z, v, direction));
         (direction > 0 ? up_ : down_).push_back(std::move(row));
       }
@@ -86,7 +86,9 @@ class PairSearch {
       for (const double v : {speed, -speed}) velocities_.push_back(v);
   }
 
-  double panel(const Row& gains, std::size_t i) const { return 0.5 * (gains[i] + gains[i + 1]) * (z_[i + 1] - z_[i]); }
+  double panel(const GainRow& gains, std::size_t i) const {
+    return 0.5 * (gains[i] + gains[i + 1]) * (z_[i + 1] - z_[i]);
+  }
 
   /// For each pair the run of states over which it takes out most (Kadane).
   std::vector<Pair> all_pairs() const {
@@ -157,7 +159,7 @@ class PairSearch {
 
   const OneStateLaw& law_;
   std::vector<double> z_, velocities_;
-  std::vector<Row> up_, down_;
+  std::vector<GainRow> up_, down_;
 };
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace limcycle {
 namespace {
 
-constexpr double creep = 1e-60;  // velocity scales: the limit v -> 0+, where exp(-|v/vs|^0.2) too is 1 to the last bit
+constexpr double slowest_creep =
+    1e-60;  // velocity scales: the limit v -> 0+, where exp(-|v/vs|^0.2) too is 1 to the last bit
 constexpr double unbounded = 1048576.0;  // state scales beyond which a state counts as unbounded
 
 /// Speeds where a curve made of pieces may turn.
@@ -75,7 +76,7 @@ void OneStateLaw::choose_speeds() {
     speeds_ = {velocity_scale_};
     return;
   }
-  speeds_ = {creep * velocity_scale_};
+  speeds_ = {slowest_creep * velocity_scale_};
   const auto add = [this](double from, double to, int a_decade) {
     const int count = static_cast<int>(std::lround(a_decade * std::log10(to / from)));
     for (int k = 0; k <= count; ++k) speeds_.push_back(velocity_scale_ * from * std::pow(to / from, 1.0 * k / count));

@@ -21,7 +21,7 @@ constexpr double agreement = 1e-4;
 
 /// Whether the independent simulation takes the same energy out, from the state in which the motion repeats.
 bool confirm(const ErasedElement<double>& element, const PassivityOptions& options, Counterexample& example) {
-  if (port_of(element.element()) == Port::input) {
+  if (port_of(element.element()) == DrivenBy::input) {
     example.confirmed = -stepped_supply(element, example.input, example.z0, example.mode0);
   } else {
     ResimulationOptions how;
@@ -111,7 +111,7 @@ Passivity passivity(const Element<double>& law, const PassivityOptions& options)
   if (element.states() == 0) return without_states(element, options);
   if (element.follows_position())
     return unanswered(Status::undefined, "none", "its output depends on where it is, not only on its rate");
-  if (port_of(law) == Port::velocity) {
+  if (port_of(law) == DrivenBy::velocity) {
     const Certificate certificate = certify(element, motion_scales(element, options.top_speed), options);
     if (certificate.holds) return certified(certificate);
     if (certificate.status == Status::interrupted)

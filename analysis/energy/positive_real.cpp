@@ -15,9 +15,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double on_axis = 1e-10;   ///< |Re s| below this share of the matrix: on the imaginary axis
-constexpr double accuracy = 1e-10;  ///< of the least value, relative to the size of Re H
-constexpr double rounding = 1e-12;  ///< of an evaluated H, relative
+constexpr double on_axis = 1e-10;              ///< |Re s| below this share of the matrix: on the imaginary axis
+constexpr double accuracy = 1e-10;             ///< of the least value, relative to the size of Re H
+constexpr double evaluation_rounding = 1e-12;  ///< of an evaluated H, relative
 
 /// H(s) + H(-s) - 2 level.
 StateSpace spectral(const StateSpace& H, double level, double size) {
@@ -69,7 +69,7 @@ void RealPart::take_out_axis_poles() {
     residues_positive_ = residues_positive_ && residue.real() > 0.0;
     rest_.B -= 2.0 * (V.col(i) * excited(i)).real();
   }
-  if (rest_.B.norm() <= rounding * reduced_.H.B.norm())  // nothing else was there
+  if (rest_.B.norm() <= evaluation_rounding * reduced_.H.B.norm())  // nothing else was there
     rest_ = {MatrixXd(0, 0), MatrixXd(0, 1), MatrixXd(1, 0), rest_.D};
 }
 
@@ -84,7 +84,7 @@ void RealPart::scale_of_frequencies() {
 double RealPart::at(double w) const { return rest_.at({0.0, w})(0, 0).real(); }
 
 /// What of at(w) may be rounding.
-double RealPart::noise(double w) const { return rounding * (std::abs(rest_.at({0.0, w})(0, 0)) + size_); }
+double RealPart::noise(double w) const { return evaluation_rounding * (std::abs(rest_.at({0.0, w})(0, 0)) + size_); }
 
 bool RealPart::near_axis_pole(double w) const {
   return std::ranges::any_of(axis_poles_, [w](double pole) { return std::abs(w - pole) < 1e-6 * pole; });
@@ -192,7 +192,7 @@ Decision RealPart::above(double level) const {
   if (!points) return Decision::no;  // equal everywhere
   bool sure = true;
   for (const double w : *points) {
-    const double over = at(w) - level, doubt = noise(w) + rounding * std::abs(level);
+    const double over = at(w) - level, doubt = noise(w) + evaluation_rounding * std::abs(level);
     if (over < -doubt) return Decision::no;
     sure = sure && over > doubt;
   }

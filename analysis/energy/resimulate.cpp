@@ -19,7 +19,7 @@ struct Piece {
   double duration, v, slope, drive;
 };
 
-std::vector<Piece> pieces_of(const VelocityCycle& input) {
+std::vector<Piece> odeint_pieces(const VelocityCycle& input) {
   if (input.time.size() < 2 || input.time.size() != input.velocity.size() || !(input.period() > 0.0))
     throw std::invalid_argument("a velocity cycle needs two points or more and a positive period");
   std::vector<Piece> pieces;
@@ -202,13 +202,13 @@ class Run {
 
 Resimulation resimulate(const ErasedElement<double>& law, const VelocityCycle& input, std::vector<double> z, Mode mode,
                         int cycles, const ResimulationOptions& options) {
-  const auto pieces = pieces_of(input);
+  const auto pieces = odeint_pieces(input);
   return Run(law, options, std::move(z), mode).through(pieces, cycles);
 }
 
 Resimulation resimulate_virgin(const ErasedElement<double>& law, const VelocityCycle& input, int cycles,
                                const ResimulationOptions& options) {
-  const auto pieces = pieces_of(input);
+  const auto pieces = odeint_pieces(input);
   std::vector<double> z(static_cast<std::size_t>(law.states()), 0.0);
   const Mode mode = law.start({0.0, pieces.front().v, pieces.front().drive}, z);
   return Run(law, options, std::move(z), mode).through(pieces, cycles);

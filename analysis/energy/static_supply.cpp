@@ -19,13 +19,13 @@ constexpr std::size_t most_modes = 400;
 /// Signals of both signs on a logarithmic grid around the scale, and the drives that go with them.
 std::vector<Input<double>> inputs_of(const ErasedElement<double>& element, double top_signal) {
   const MotionScales scales = motion_scales(element, top_signal);
-  const Port port = port_of(element.element());
+  const DrivenBy port = port_of(element.element());
   const double force = element.scales().output;
   std::vector<double> sizes, drives{-infinite, infinite};
   for (int k = -90; k <= 60; ++k)
     if (const double size = scales.signal * std::pow(10.0, 0.1 * k); size <= top_signal) sizes.push_back(size);
   sizes.push_back(std::min(top_signal, scales.signal * 1e9));
-  if (element.needs_drive() || port == Port::input) {
+  if (element.needs_drive() || port == DrivenBy::input) {
     for (const double share : {0.0, 0.3, 0.999999, 1.000001, 3.0, 1e3})
       for (const double sign : {1.0, -1.0}) drives.push_back(sign * share * force);
   }
@@ -34,8 +34,8 @@ std::vector<Input<double>> inputs_of(const ErasedElement<double>& element, doubl
     for (const double sign : {1.0, -1.0})
       for (const double drive : drives)
         for (const double turn : {1.0, -1.0})
-          inputs.push_back(port == Port::velocity ? Input<double>{0.0, sign * size, drive}
-                                                  : Input<double>{sign * size, turn * scales.signal, drive});
+          inputs.push_back(port == DrivenBy::velocity ? Input<double>{0.0, sign * size, drive}
+                                                      : Input<double>{sign * size, turn * scales.signal, drive});
   return inputs;
 }
 
@@ -148,7 +148,7 @@ std::optional<Counterexample> held_up(const ErasedElement<double>& law) {
 
 LeastSupply least_supply(const ErasedElement<double>& element, double top_signal) {
   LeastSupply least;
-  const Port port = port_of(element.element());
+  const DrivenBy port = port_of(element.element());
   const double scale = element.scales().output;
   const auto inputs = inputs_of(element, top_signal);
   for (const auto value : modes_of(element, inputs)) {
@@ -159,7 +159,7 @@ LeastSupply least_supply(const ErasedElement<double>& element, double top_signal
     for (const auto& in : inputs) {
       element.guard(in, mode, {}, guards);
       if (!std::ranges::all_of(guards, [](double g) { return g >= 0.0; })) continue;
-      const double signal = port == Port::velocity ? in.v : in.x;
+      const double signal = port == DrivenBy::velocity ? in.v : in.x;
       const double output = element.output(in, mode, {});
       if (!std::isfinite(output)) continue;  // no value at this drive
       ++least.points;

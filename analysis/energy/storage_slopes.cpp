@@ -11,9 +11,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double roundings = 64.0 * epsilon, doubtful = 1e-9;
 
 /// One state, looked at over all velocities of one sign after the other.
-class Scan {
+class SlopeScan {
  public:
-  Scan(const OneStateLaw& law, double z) : law_(law) { result_.z = z; }
+  SlopeScan(const OneStateLaw& law, double z) : law_(law) { result_.z = z; }
 
   SlopeGap run() {
     for (const double side : {1.0, -1.0}) {
@@ -197,7 +197,7 @@ Passive SlopeGap::verdict() const {
   return sum <= roundings * terms ? Passive::yes : sum <= doubtful * terms ? Passive::undecided : Passive::no;
 }
 
-SlopeGap slope_gap(const OneStateLaw& law, double z) { return Scan(law, z).run(); }
+SlopeGap slope_gap(const OneStateLaw& law, double z) { return SlopeScan(law, z).run(); }
 
 SlopeSurvey survey_slopes(const OneStateLaw& law, bool complete, const std::function<bool()>& stop) {
   SlopeSurvey survey;

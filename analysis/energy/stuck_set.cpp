@@ -20,10 +20,6 @@ using Eigen::VectorXd;
 
 constexpr double negligible = 1e-10;
 
-Scales scales_of(const Element<double>& law) {
-  return std::visit([](const auto& e) { return e.scales(); }, law);
-}
-
 /// The affine set A X + B F + E ext = 0, C_v X + c_v ext = 0 in the unknowns (X, F), in the sizes of the loop.
 struct Equilibria {
   VectorXd point;   ///< one of them, nearest to nothing; (X, F)

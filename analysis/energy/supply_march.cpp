@@ -29,11 +29,11 @@ double slope_of(const SignalPiece& piece) { return (piece.to - piece.from) / pie
 
 }  // namespace
 
-Port port_of(const Element<double>& element) {
+DrivenBy port_of(const Element<double>& element) {
   return std::visit(
       []<class E>(const E&) {
         const bool of_rate = std::is_same_v<E, Compensation<double>> || std::is_same_v<E, OutputRate<double>>;
-        return FrictionLaws::contains<E> || of_rate ? Port::velocity : Port::input;
+        return FrictionLaws::contains<E> || of_rate ? DrivenBy::velocity : DrivenBy::input;
       },
       element);
 }
@@ -72,7 +72,7 @@ Input<double> SupplyMarch::input(const SignalPiece& piece, double t, double x) c
   const double value = signal_at(piece, t), slope = slope_of(piece);
   const double heading = slope != 0.0 ? slope : value;  // a constant velocity counts as one that has been speeding up
   const double drive = heading < 0.0 ? -infinite : infinite;
-  if (port_ == Port::input) return {value, slope, drive};
+  if (port_ == DrivenBy::input) return {value, slope, drive};
   return {x + 0.5 * (piece.from + value) * t, value, drive};
 }
 
@@ -152,7 +152,7 @@ struct SupplyMarch::Field {
     const Input<double> in = input(t);
     const double signal = signal_at(piece, t), slope = slope_of(piece);
     const auto& table = march.slopes_.response(in, at.mode, x.data());
-    const bool velocity = march.port_ == Port::velocity;
+    const bool velocity = march.port_ == DrivenBy::velocity;
     const double by_x = velocity ? signal : slope, by_v = velocity ? slope : 0.0;
     const Eigen::Index n = march.slopes_.states();
     for (Eigen::Index row = 0; row <= n; ++row) {
@@ -259,7 +259,7 @@ Status SupplyMarch::cross_smooth(const SignalPiece& piece, ElementPoint& at) {
     if (watch) watch(in, at, supplied_);
     h = first_step({piece.duration, at.signal, piece.to}, at);
   }
-  if (port_ == Port::velocity) at.x += 0.5 * (piece.from + piece.to) * piece.duration;
+  if (port_ == DrivenBy::velocity) at.x += 0.5 * (piece.from + piece.to) * piece.duration;
   return Status::converged;
 }
 

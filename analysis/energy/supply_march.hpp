@@ -16,8 +16,8 @@ class ControlledRodas5p;
 
 /// The signal that is paired with an element's output to a power: the velocity of a friction law, the input of another
 /// element.
-enum class Port { velocity, input };
-Port port_of(const Element<double>& element);
+enum class DrivenBy { velocity, input };
+DrivenBy port_of(const Element<double>& element);
 
 /// A piece of a signal, linear from one value to the other.
 struct SignalPiece {
@@ -31,7 +31,7 @@ VelocityCycle cycle_of(std::span<const SignalPiece> pieces);
 struct ElementPoint {
   std::vector<double> z;
   Mode mode{};
-  double x = 0.0;       ///< displacement; only for Port::velocity
+  double x = 0.0;       ///< displacement; only for DrivenBy::velocity
   double signal = 0.0;  ///< the signal at this point
 };
 
@@ -45,7 +45,7 @@ class SupplyMarch {
   ~SupplyMarch();
 
   const ErasedElement<double>& element() const { return element_; }
-  Port port() const { return port_; }
+  DrivenBy port() const { return port_; }
 
   /// The element without history, about to follow that piece.
   ElementPoint virgin(const SignalPiece& first) const;
@@ -76,7 +76,7 @@ class SupplyMarch {
   double first_step(const SignalPiece& piece, const ElementPoint& at) const;
 
   ErasedElement<double> element_;
-  Port port_;
+  DrivenBy port_;
   ElementSlopes slopes_;
   std::unique_ptr<ControlledRodas5p> stepper_;
   std::vector<double> guards_;

@@ -34,9 +34,9 @@ Interval bisect(const std::function<bool(double)>& is, double low, double high, 
   return {low, high};
 }
 
-class Search {
+class ThresholdSearch {
  public:
-  Search(const LawFamily& family, const ThresholdOptions& options) : family_(family), options_(options) {}
+  ThresholdSearch(const LawFamily& family, const ThresholdOptions& options) : family_(family), options_(options) {}
 
   /// No verdict where the value is not valid.
   std::optional<Passive> at(double value) {
@@ -98,7 +98,7 @@ Threshold passivity_threshold(const LawFamily& family, double low, double high, 
     throw std::invalid_argument("a range of thresholds must ascend, from above 0 if logarithmic: " +
                                 std::to_string(low) + " to " + std::to_string(high));
   if (options.scan < 2) throw std::invalid_argument("a scan needs two values, not " + std::to_string(options.scan));
-  Search search(family, options);
+  ThresholdSearch search(family, options);
   struct Known {
     double value;
     Passive passive;
@@ -135,7 +135,7 @@ Threshold passivity_threshold(const LawFamily& family, double low, double high, 
 
 LeastDamping least_sigma2(const Element<double>& element, const ThresholdOptions& options) {
   const LawFamily family = family_of(element, "sigma2");
-  Search search(family, options);
+  ThresholdSearch search(family, options);
   const Passive undamped = search.at(0.0).value_or(Passive::undecided);
   if (undamped == Passive::yes) return {};
   if (undamped == Passive::undecided) return {nothing, nothing, Status::incomplete};

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double negligible = 1e-13;
+constexpr double negligible_part = 1e-13;
 
 /// u such that I - 2 u u'/(u' u) takes v to a multiple of e1; zero if v is along e1 already. Not normalised: where only
 /// the order of the states changes the reflection is exact.
@@ -73,7 +73,7 @@ Index staircase(StateSpace& H, double A_size) {
   const double size = std::max(H.A.norm(), A_size);
   for (Index k = 0; k < n; ++k) {
     const VectorXd next = k == 0 ? VectorXd(H.B.col(0)) : VectorXd(H.A.col(k - 1).tail(n - k));
-    if (next.norm() <= (k == 0 ? 0.0 : negligible * size)) return k;
+    if (next.norm() <= (k == 0 ? 0.0 : negligible_part * size)) return k;
     reflect(H, k, reflection(next));
   }
   return n;
@@ -84,7 +84,7 @@ VectorXd null_direction(const MatrixXd& A, double size) {
   const Index n = A.rows();
   if (n == 0) return VectorXd(0);
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
-  if (std::abs(qr.matrixR()(n - 1, n - 1)) > negligible * size) return VectorXd(0);
+  if (std::abs(qr.matrixR()(n - 1, n - 1)) > negligible_part * size) return VectorXd(0);
   return qr.householderQ() * VectorXd::Unit(n, n - 1);
 }
 
@@ -116,12 +116,12 @@ std::optional<Eigen::VectorXcd> zeros(const StateSpace& of) {
   if (H.D(0, 0) != 0.0) return eigenvalues(H.A - H.B * H.C / H.D(0, 0));
   while (H.states() > 0) {
     const Index n = H.states();
-    if (H.C.norm() <= negligible * size) return std::nullopt;
+    if (H.C.norm() <= negligible_part * size) return std::nullopt;
     reflect(H, 0, reflection(H.C.transpose()));
     const double b = H.B(0, 0);
     const auto rest = H.B.bottomRows(n - 1);
-    if (std::abs(b) > negligible * B_size && n == 1) return Eigen::VectorXcd(0);
-    if (std::abs(b) > negligible * B_size)
+    if (std::abs(b) > negligible_part * B_size && n == 1) return Eigen::VectorXcd(0);
+    if (std::abs(b) > negligible_part * B_size)
       return eigenvalues(H.A.bottomRightCorner(n - 1, n - 1) - rest / b * H.A.topRightCorner(1, n - 1));
     const MatrixXd row = H.A.topRightCorner(1, n - 1);
     H = block(H, 1, n - 1);
@@ -139,7 +139,7 @@ std::optional<Inverse> inverse(const StateSpace& of) {
   if (n == 0 || H.C.isZero(0.0)) return std::nullopt;
   reflect(H, 0, reflection(H.C.transpose()));
   const double c = H.C(0, 0), b = H.B(0, 0);
-  if (std::abs(b) <= negligible * H.B.norm()) return std::nullopt;
+  if (std::abs(b) <= negligible_part * H.B.norm()) return std::nullopt;
   // y = c x1; x1' = a11 x1 + A12 x2 + b u gives u; x2 - (b2/b) x1 has no y' in its rate.
   const double a11 = H.A(0, 0);
   const MatrixXd A12 = H.A.topRightCorner(1, n - 1), A21 = H.A.bottomLeftCorner(n - 1, 1);
@@ -148,7 +148,7 @@ std::optional<Inverse> inverse(const StateSpace& of) {
   const double feed = a11 + (A12 * ratio).sum();
   const double terms = std::abs(a11) + (A12.cwiseAbs() * ratio.cwiseAbs()).sum() + H.A.norm();
   const double A_made_of = H.A.norm() * (1.0 + ratio.norm());
-  const double D_inverse = std::abs(feed) <= negligible * terms ? 0.0 : -feed / (b * c);
+  const double D_inverse = std::abs(feed) <= negligible_part * terms ? 0.0 : -feed / (b * c);
   return Inverse{1.0 / (b * c),
                  {Z, (Z * ratio + A21 - ratio * a11) / c, -A12 / b, MatrixXd::Constant(1, 1, D_inverse)},
                  {A_made_of, terms / std::abs(b * c)}};
@@ -193,7 +193,7 @@ ZeroModes zero_modes(const MatrixXd& A, double A_size) {
   if (A.rows() == 0) return result;
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
   for (Index i = 0; i < A.rows(); ++i)
-    if (std::abs(qr.matrixR()(i, i)) <= negligible * size) ++result.directions;
+    if (std::abs(qr.matrixR()(i, i)) <= negligible_part * size) ++result.directions;
   return result;
 }
 

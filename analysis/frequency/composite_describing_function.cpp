@@ -1,12 +1,12 @@
 #include "limcycle/analysis/frequency/composite_describing_function.hpp"
 
-#include <sstream>
 #include <stdexcept>
 #include <variant>
 
 #include "limcycle/analysis/erased_element.hpp"
 #include "limcycle/analysis/frequency/composite_period.hpp"
 #include "limcycle/analysis/frequency/drive_dependence.hpp"
+#include "limcycle/analysis/frequency/refuse.hpp"
 
 namespace limcycle {
 
@@ -23,13 +23,6 @@ struct CompositeDescribingFunction::Solver {
 };
 
 namespace {
-
-[[noreturn]] void refuse(const char* what, double value, const char* rule) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "composite describing function: " << what << " = " << value << " " << rule;
-  throw std::invalid_argument(text.str());
-}
 
 template <int D>
 class SolverOf : public CompositeDescribingFunction::Solver {
@@ -68,18 +61,24 @@ std::unique_ptr<CompositeDescribingFunction::Solver> solver_of(const Element<dou
 }
 
 void check(const CompositePoint& p, const CompositeOptions& o) {
-  if (!(p.force > 0.0 && std::isfinite(p.force))) refuse("force", p.force, "must be > 0 and finite");
-  if (!(p.frequency > 0.0 && std::isfinite(p.frequency))) refuse("frequency", p.frequency, "must be > 0 and finite");
-  if (p.bias && !std::isfinite(*p.bias)) refuse("bias", *p.bias, "must be finite");
-  if (!std::isfinite(p.mean_velocity)) refuse("mean velocity", p.mean_velocity, "must be finite");
-  if (o.harmonics < 1 || o.harmonics > 64) refuse("harmonics", o.harmonics, "must lie in 1..64");
-  if (!(o.accuracy >= 1e-11 && o.accuracy <= 0.1)) refuse("accuracy", o.accuracy, "must lie in 1e-11..0.1");
+  if (!(p.force > 0.0 && std::isfinite(p.force)))
+    refuse("composite describing function", "force", p.force, "must be > 0 and finite");
+  if (!(p.frequency > 0.0 && std::isfinite(p.frequency)))
+    refuse("composite describing function", "frequency", p.frequency, "must be > 0 and finite");
+  if (p.bias && !std::isfinite(*p.bias)) refuse("composite describing function", "bias", *p.bias, "must be finite");
+  if (!std::isfinite(p.mean_velocity))
+    refuse("composite describing function", "mean velocity", p.mean_velocity, "must be finite");
+  if (o.harmonics < 1 || o.harmonics > 64)
+    refuse("composite describing function", "harmonics", o.harmonics, "must lie in 1..64");
+  if (!(o.accuracy >= 1e-11 && o.accuracy <= 0.1))
+    refuse("composite describing function", "accuracy", o.accuracy, "must lie in 1e-11..0.1");
 }
 
 }  // namespace
 
 CompositeDescribingFunction::CompositeDescribingFunction(const Element<double>& friction, double mass) {
-  if (!(mass > 0.0 && std::isfinite(mass))) refuse("mass", mass, "must be > 0 and finite");
+  if (!(mass > 0.0 && std::isfinite(mass)))
+    refuse("composite describing function", "mass", mass, "must be > 0 and finite");
   solver_ = solver_of(friction, mass);
 }
 
@@ -110,7 +109,7 @@ void CompositeDescribingFunction::stop_with(std::function<bool()> stop) { solver
 
 double CompositeDescribingFunction::break_away(double frequency, double relative, double guess) {
   const double level = solver_->level();
-  if (!(frequency > 0.0)) refuse("frequency", frequency, "must be > 0");
+  if (!(frequency > 0.0)) refuse("composite describing function", "frequency", frequency, "must be > 0");
   if (!solver_->has_front()) return level;
   double low = guess > 0.0 ? guess : level, high = low, widen = guess > 0.0 ? 3e-4 : 0.01;
   for (int i = 0; i < 60 && solver_->tears_loose(low, frequency); ++i, widen *= 2.0) {

@@ -5,7 +5,6 @@
 #include <map>
 #include <mutex>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
 #include "limcycle/analysis/erased_element.hpp"
@@ -13,22 +12,12 @@
 #include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/frequency/fft_route.hpp"
 #include "limcycle/analysis/frequency/quadrature_route.hpp"
+#include "limcycle/analysis/frequency/refuse.hpp"
 #include "limcycle/analysis/on_threads.hpp"
 
 namespace limcycle {
 
 namespace {
-
-[[noreturn]] void refuse(const char* what, double value, const char* rule) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "describing function: " << what << " = " << value << " " << rule;
-  throw std::invalid_argument(text.str());
-}
-
-bool is_friction(const Element<double>& element) {
-  return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
-}
 
 bool is_rate_independent(const Element<double>& element) {
   return std::visit([]<class E>(const E&) { return RateIndependent<E>; }, element);
@@ -230,21 +219,23 @@ class TableRun {
 }  // namespace
 
 void validate(const DfOptions& options) {
-  if (options.harmonics < 1 || options.harmonics > 1000) refuse("harmonics", options.harmonics, "must lie in 1..1000");
-  if (options.threads < 0 || options.threads > 1024) refuse("threads", options.threads, "must lie in 0..1024");
+  if (options.harmonics < 1 || options.harmonics > 1000)
+    refuse("describing function", "harmonics", options.harmonics, "must lie in 1..1000");
+  if (options.threads < 0 || options.threads > 1024)
+    refuse("describing function", "threads", options.threads, "must lie in 0..1024");
   if (!is_available(options.isa))
     throw std::invalid_argument("describing function: instruction set " + std::string(to_string(options.isa)) +
                                 " is not available here");
   if (!(options.accuracy >= 1e-13 && options.accuracy <= 0.1))
-    refuse("accuracy", options.accuracy, "must lie in 1e-13..0.1");
+    refuse("describing function", "accuracy", options.accuracy, "must lie in 1e-13..0.1");
 }
 
 void validate(const DfPoint& point) {
   if (!(point.amplitude > 0.0) || !std::isfinite(point.amplitude))
-    refuse("amplitude", point.amplitude, "must be positive and finite");
+    refuse("describing function", "amplitude", point.amplitude, "must be positive and finite");
   if (!(point.frequency > 0.0) || !std::isfinite(point.frequency))
-    refuse("frequency", point.frequency, "must be positive and finite");
-  if (!std::isfinite(point.bias)) refuse("bias", point.bias, "must be finite");
+    refuse("describing function", "frequency", point.frequency, "must be positive and finite");
+  if (!std::isfinite(point.bias)) refuse("describing function", "bias", point.bias, "must be finite");
 }
 
 DescribingFunction describing_function(const Element<double>& element, const DfPoint& point, const DfOptions& options) {

@@ -11,7 +11,7 @@ namespace limcycle {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Meshes from coarse to fine.
 constexpr std::array<HalfPeriodSettings, 6> meshes{{{4, 1.0, 0.6, 0.1, 8e-5, 1.2e-4, 3e-5},

@@ -14,7 +14,7 @@ namespace limcycle {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double farthest = 32.0;  ///< tau: a phase of 2.5e-14
 
 double at(const double* row, int i) { return row[i]; }

@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/frequency/balance_newton.hpp"
 #include "limcycle/analysis/frequency/balance_start.hpp"
+#include "limcycle/analysis/frequency/refuse.hpp"
 
 namespace limcycle {
 
@@ -16,34 +17,29 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::VectorXcd;
 
-[[noreturn]] void refuse(const char* what, double value, const char* rule) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "harmonic balance: " << what << " = " << value << " " << rule;
-  throw std::invalid_argument(text.str());
-}
-
 void validate(const Loop& loop, const HarmonicGuess& guess, const HarmonicBalanceOptions& options) {
   const auto elements = std::ssize(loop.elements);
-  if (elements == 0) refuse("number of elements", 0.0, "must be at least 1");
+  if (elements == 0) refuse("harmonic balance", "number of elements", 0.0, "must be at least 1");
   if (options.max_harmonics < 1 || options.max_harmonics > 400)
-    refuse("max_harmonics", options.max_harmonics, "must lie in 1..400");
+    refuse("harmonic balance", "max_harmonics", options.max_harmonics, "must lie in 1..400");
   if (!(options.accuracy >= 1e-12 && options.accuracy <= 1e-3))
-    refuse("accuracy", options.accuracy, "must lie in 1e-12..1e-3");
-  if (!(options.tail > 0.0)) refuse("tail", options.tail, "must be positive");
+    refuse("harmonic balance", "accuracy", options.accuracy, "must lie in 1e-12..1e-3");
+  if (!(options.tail > 0.0)) refuse("harmonic balance", "tail", options.tail, "must be positive");
   if (options.max_evaluations < 1)
-    refuse("max_evaluations", static_cast<double>(options.max_evaluations), "must be at least 1");
-  if (options.max_iterations < 1) refuse("max_iterations", options.max_iterations, "must be at least 1");
+    refuse("harmonic balance", "max_evaluations", static_cast<double>(options.max_evaluations), "must be at least 1");
+  if (options.max_iterations < 1)
+    refuse("harmonic balance", "max_iterations", options.max_iterations, "must be at least 1");
   if (!(guess.frequency > 0.0) || !std::isfinite(guess.frequency))
-    refuse("frequency of the guess", guess.frequency, "must be positive and finite");
+    refuse("harmonic balance", "frequency of the guess", guess.frequency, "must be positive and finite");
   const auto given = guess.inputs.empty() ? guess.first.size() : std::ssize(guess.inputs);
   if (given != elements)
-    refuse("number of inputs of the guess", static_cast<double>(given), "must be that of elements");
+    refuse("harmonic balance", "number of inputs of the guess", static_cast<double>(given), "must be that of elements");
   if (guess.mean.size() != 0 && guess.mean.size() != elements)
-    refuse("number of means of the guess", static_cast<double>(guess.mean.size()), "must be that of elements");
+    refuse("harmonic balance", "number of means of the guess", static_cast<double>(guess.mean.size()),
+           "must be that of elements");
   for (const auto& series : guess.inputs)
     if (series.size() < 2 || series.size() != guess.inputs.front().size())
-      refuse("number of harmonics of the guess", static_cast<double>(series.size()) - 1.0,
+      refuse("harmonic balance", "number of harmonics of the guess", static_cast<double>(series.size()) - 1.0,
              "must be at least 1 and the same for all elements");
   const auto finite = [](const auto& list) {
     return std::all_of(list.begin(), list.end(), [](const auto& series) { return series.allFinite(); });
@@ -52,7 +48,7 @@ void validate(const Loop& loop, const HarmonicGuess& guess, const HarmonicBalanc
     throw std::invalid_argument("harmonic balance: the guess holds a number that is not finite");
   const Complex main = guess.inputs.empty() ? guess.first(elements - 1) : guess.inputs.back()(1);
   if (!(std::abs(main) > 0.0) || !std::isfinite(std::abs(main)))
-    refuse("first harmonic of the guess", std::abs(main), "must be positive and finite");
+    refuse("harmonic balance", "first harmonic of the guess", std::abs(main), "must be positive and finite");
   if (!options.half_wave_symmetric) return;
   for (const auto& element : loop.elements)
     if (!std::visit([](const auto& e) { return e.odd(); }, element))

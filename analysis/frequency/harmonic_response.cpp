@@ -2,25 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/frequency/quadrature_route.hpp"
+#include "limcycle/analysis/frequency/refuse.hpp"
 #include "limcycle/analysis/frequency/response_derivative.hpp"
 
 namespace limcycle {
 
-namespace {
-
-[[noreturn]] void refuse(const char* what, double value, const char* rule) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "harmonic response: " << what << " = " << value << " " << rule;
-  throw std::invalid_argument(text.str());
-}
-
-}  // namespace
+namespace {}  // namespace
 
 static_assert(ElementHarmonics::finest + 1 == static_cast<int>(quadrature_meshes.size()));
 
@@ -92,9 +83,10 @@ HarmonicResponse ElementHarmonics::with_derivative(const PrescribedHarmonics& mo
 
 HarmonicResponse harmonic_response(const Element<double>& element, const Eigen::VectorXcd& input, double frequency,
                                    const HarmonicResponseOptions& options) {
-  if (options.harmonics < 1 || options.harmonics > 1000) refuse("harmonics", options.harmonics, "must lie in 1..1000");
+  if (options.harmonics < 1 || options.harmonics > 1000)
+    refuse("harmonic response", "harmonics", options.harmonics, "must lie in 1..1000");
   if (!(options.accuracy >= 1e-13 && options.accuracy <= 0.1))
-    refuse("accuracy", options.accuracy, "must lie in 1e-13..0.1");
+    refuse("harmonic response", "accuracy", options.accuracy, "must lie in 1e-13..0.1");
   const PrescribedHarmonics motion(input, frequency, options.mean_rate, options.half_wave);
   ElementHarmonics harmonics(element);
   HarmonicResponse best;

@@ -13,20 +13,20 @@ namespace limcycle {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr double roundings = 1e-13;
+using std::numbers::pi;
+constexpr double march_roundings = 1e-13;
 
 /// From coarse to fine. `least` is what their agreement by chance could hide.
 struct Mesh {
   MarchMesh march;
   double least = 0.0;
 };
-constexpr std::array<Mesh, 6> meshes{{{{5, 1.3, 0.6, 0.04, 5e-3, 1e-6, 5e-3}, 2e-3},
-                                      {{5, 0.72, 0.42, 0.01, 2e-4, 1e-8, 3e-4}, 1e-5},
-                                      {{5, 0.52, 0.33, 0.004, 4e-5, 1e-9, 1e-4}, 2.5e-7},
-                                      {{8, 0.7, 0.3, 5e-4, 5e-6, 1e-11, 1e-5}, 4e-9},
-                                      {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-12, 1e-6}, 1.5e-10},
-                                      {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-12, 1e-7}, 5e-12}}};
+constexpr std::array<Mesh, 6> march_meshes{{{{5, 1.3, 0.6, 0.04, 5e-3, 1e-6, 5e-3}, 2e-3},
+                                            {{5, 0.72, 0.42, 0.01, 2e-4, 1e-8, 3e-4}, 1e-5},
+                                            {{5, 0.52, 0.33, 0.004, 4e-5, 1e-9, 1e-4}, 2.5e-7},
+                                            {{8, 0.7, 0.3, 5e-4, 5e-6, 1e-11, 1e-5}, 4e-9},
+                                            {{8, 0.45, 0.2, 5e-5, 1e-6, 1e-12, 1e-6}, 1.5e-10},
+                                            {{8, 0.25, 0.1, 5e-6, 1e-7, 1e-12, 1e-7}, 5e-12}}};
 
 MarchCollocation collocation_of(int stages) {
   MarchCollocation c{};
@@ -58,12 +58,12 @@ const MarchCollocation& collocation(int stages) {
   return stages == 5 ? five : eight;
 }
 
-const MarchKernels& kernels_of(Isa isa) {
+const MarchKernels& march_kernels_of(Isa isa) {
   return isa == Isa::avx512 ? avx512_march_kernels : isa == Isa::avx2 ? avx2_march_kernels : scalar_march_kernels;
 }
 
 /// |z| of numbers that are far from the ends of the range.
-double size(std::complex<double> z) { return std::sqrt(std::norm(z)); }
+double modulus(std::complex<double> z) { return std::sqrt(std::norm(z)); }
 
 /// What is known of one state at one point.
 struct Marching {
@@ -105,7 +105,7 @@ class MarchedHalfPeriod::Batch {
 
   /// Periodic states, roughly; takes those out of `wanted` that are not the only one of their point.
   void guess(std::vector<std::size_t>& wanted) {
-    Mesh rough = limcycle::meshes.front();
+    Mesh rough = march_meshes.front();
     rough.least = 5e-3;
     guessing_ = true;
     if (law_.states.front().law != MarchLaw::slider) {
@@ -212,7 +212,7 @@ class MarchedHalfPeriod::Batch {
     task.level_slope = at + 3 * n;
     task.sums = at + 4 * n;
     task.panels = panel_counts_.data();
-    kernels_of(isa_).of[static_cast<int>(state.law)][mesh_->stages](state.numbers, task);
+    march_kernels_of(isa_).of[static_cast<int>(state.law)][mesh_->stages](state.numbers, task);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < n; ++i)
       if (!settle(state, task, i)) pending_[kept++] = pending_[i];
@@ -311,11 +311,11 @@ void MarchedHalfPeriod::march(std::span<const DfPoint> points, std::vector<std::
   std::vector<bool> have(points.size(), false);
   std::vector<int> failures(points.size(), 0);
   std::size_t first = 1;
-  while (first + 2 < limcycle::meshes.size() && limcycle::meshes[first + 1].least > 0.3 * options_.accuracy) ++first;
+  while (first + 2 < march_meshes.size() && march_meshes[first + 1].least > 0.3 * options_.accuracy) ++first;
   // Newton sets out from what a coarse mesh says.
   batch.guess(wanted);
-  for (std::size_t k = first; k < limcycle::meshes.size() && !wanted.empty(); ++k) {
-    const Mesh& mesh = limcycle::meshes[k];
+  for (std::size_t k = first; k < march_meshes.size() && !wanted.empty(); ++k) {
+    const Mesh& mesh = march_meshes[k];
     batch.run(mesh, wanted);
     std::erase_if(wanted, [&](std::size_t i) {
       if (batch.failed(i)) {
@@ -326,8 +326,8 @@ void MarchedHalfPeriod::march(std::span<const DfPoint> points, std::vector<std::
       if (have[i] && !batch.doubtful(i)) {
         const double A = points[i].amplitude;
         // The third harmonic is heard, too: two meshes may agree on one number by chance.
-        const double apart = size(now.gain - coarser[i].first) + size(batch.output(i, 1) - coarser[i].third) / A;
-        now.error = law_.trust * apart / size(now.gain) + mesh.least + law_.least + roundings;
+        const double apart = modulus(now.gain - coarser[i].first) + modulus(batch.output(i, 1) - coarser[i].third) / A;
+        now.error = law_.trust * apart / modulus(now.gain) + mesh.least + law_.least + march_roundings;
         if (now.error <= options_.accuracy && batch.complete()) {
           now.method = "kernel";
           results[i] = std::move(now);
@@ -341,11 +341,11 @@ void MarchedHalfPeriod::march(std::span<const DfPoint> points, std::vector<std::
   }
 }
 
-std::size_t MarchedHalfPeriod::meshes() { return limcycle::meshes.size(); }
+std::size_t MarchedHalfPeriod::meshes() { return march_meshes.size(); }
 
 std::optional<std::complex<double>> MarchedHalfPeriod::on_mesh(const DfPoint& point, std::size_t mesh) const {
   Batch batch(*this, {&point, 1});
-  batch.run(limcycle::meshes.at(mesh), {0});
+  batch.run(march_meshes.at(mesh), {0});
   if (batch.failed(0)) return std::nullopt;
   return collect(batch, 0, point).gain;
 }

@@ -4,22 +4,16 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
+
+#include "limcycle/analysis/frequency/refuse.hpp"
 
 namespace limcycle {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using Complex = std::complex<double>;
-
-[[noreturn]] void refuse(const char* what, double value, const char* rule) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "motion of several harmonics: " << what << " = " << value << " " << rule;
-  throw std::invalid_argument(text.str());
-}
 
 }  // namespace
 
@@ -33,11 +27,12 @@ double series_value(const Eigen::VectorXcd& coefficients, double phase) {
 PrescribedHarmonics::PrescribedHarmonics(const Eigen::VectorXcd& input, double frequency, double mean_rate,
                                          bool half_wave)
     : frequency_(frequency), drift_(half_wave ? 0.0 : mean_rate), half_wave_(half_wave), stride_(half_wave ? 2 : 1) {
-  if (!(frequency > 0.0) || !std::isfinite(frequency)) refuse("frequency", frequency, "must be positive and finite");
-  if (!std::isfinite(mean_rate)) refuse("mean rate", mean_rate, "must be finite");
+  if (!(frequency > 0.0) || !std::isfinite(frequency))
+    refuse("motion of several harmonics", "frequency", frequency, "must be positive and finite");
+  if (!std::isfinite(mean_rate)) refuse("motion of several harmonics", "mean rate", mean_rate, "must be finite");
   for (Eigen::Index n = 0; n < input.size(); ++n)
     if (!std::isfinite(input(n).real()) || !std::isfinite(input(n).imag()))
-      refuse("order of a coefficient that is not finite", static_cast<double>(n), "");
+      refuse("motion of several harmonics", "order of a coefficient that is not finite", static_cast<double>(n), "");
   if (!half_wave && input.size() > 0) mean_ = input(0).imag();
   double size = 0.0;
   for (Eigen::Index n = first_; n < input.size(); n += stride_) {
@@ -47,7 +42,7 @@ PrescribedHarmonics::PrescribedHarmonics(const Eigen::VectorXcd& input, double f
     size = std::max(size, std::abs(input(n)));
     bend_ += frequency * order * order * order * std::abs(input(n));
   }
-  if (size == 0.0) refuse("largest harmonic of the input", size, "must be positive");
+  if (size == 0.0) refuse("motion of several harmonics", "largest harmonic of the input", size, "must be positive");
   place_anchors();
 }
 

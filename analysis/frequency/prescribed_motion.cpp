@@ -8,7 +8,7 @@ namespace limcycle {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Ends of panels on [0, length], graded towards 0 with the first at `cap`.
 std::vector<double> graded_ends(double length, double cap, double growth, double widest) {

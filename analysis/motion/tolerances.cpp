@@ -13,10 +13,6 @@ namespace {
 
 using Eigen::Index;
 
-Scales scales_of(const Element<double>& element) {
-  return std::visit([](const auto& e) { return e.scales(); }, element);
-}
-
 }  // namespace
 
 std::vector<double> pole_moduli(const Loop& loop) {

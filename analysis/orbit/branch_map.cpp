@@ -13,7 +13,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr long steps_a_map = 200000;
 constexpr std::size_t loops_kept = 6;  // a corrector step and its differences use three
 
 std::size_t states_of(const Loop& loop) {

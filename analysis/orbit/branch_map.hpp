@@ -28,6 +28,9 @@ class ParameterScale {
   bool logarithmic_;
 };
 
+/// More steps than a map of any cycle takes.
+inline constexpr long steps_a_map = 200000;
+
 /// What a branch of cycles is solved from: R(u, s) = P(u; s) - u = 0, with P the (half) return map of the loop at s in
 /// coordinates u on a section that stays the same along a stretch of the branch. Costs one map each, dR/ds two.
 /// What a map needs to know of a loop is kept for the last few values of s.

@@ -17,10 +17,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double loosest = 3e-6;  ///< of the second integration, for derivatives and errors
-constexpr double tightest = 3e-13;
+constexpr double loosest_derivatives = 3e-6;  ///< of the second integration, for derivatives and errors
+constexpr double tightest_point = 3e-13;
 constexpr double near_switch = 2e-3;  ///< share of the period in which the section should not meet a switch
-constexpr long steps_a_map = 200000;
 
 /// [DP - I, dR/ds; normal].
 MatrixXd bordered(const BranchJacobian& jacobian, const VectorXd& normal) {
@@ -63,7 +62,7 @@ bool nearly_neutral(const BranchSpot& spot) {
 
 }  // namespace
 
-double BranchSolver::loose_rtol() const { return loose_tolerance(map_.rtol(), loosest); }
+double BranchSolver::loose_rtol() const { return loose_tolerance(map_.rtol(), loosest_derivatives); }
 
 /// A step in s that moves the image by about 1e-4 of the orbit, more with a loose integration: small against the
 /// distance to where the branch ends, large against the noise of the integration.
@@ -85,8 +84,8 @@ std::optional<BranchSpot> BranchSolver::solve(const VectorXd& w, const VectorXd&
   BranchJacobian jacobian = near;
   while (true) {
     if (!converge(spot, normal, jacobian) || !complete(spot, normal, jacobian, derivatives)) return std::nullopt;
-    if (spot.orbit_error <= accuracy_ || map_.rtol() <= tightest) break;
-    map_.set_rtol(std::max(tightening(accuracy_, spot.orbit_error) * map_.rtol(), tightest));
+    if (spot.orbit_error <= accuracy_ || map_.rtol() <= tightest_point) break;
+    map_.set_rtol(std::max(tightening(accuracy_, spot.orbit_error) * map_.rtol(), tightest_point));
     jacobian = spot.jacobian;
   }
   if (!fill_cycle(spot)) return std::nullopt;

@@ -10,12 +10,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd as_vector(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
+VectorXd vector_of(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
 
 }  // namespace
 
 SectionChart::SectionChart(const Section& section, const State& largest, const State& typical)
-    : scale(as_vector(largest)) {
+    : scale(vector_of(largest)) {
   for (Index i = 0; i < scale.size(); ++i)
     scale(i) = std::max({scale(i), 1e-6 * typical[static_cast<std::size_t>(i)], 1e-300});
   VectorXd normal = VectorXd::Zero(scale.size());
@@ -37,7 +37,7 @@ State SectionChart::lift(const State& origin, const VectorXd& u) const {
 }
 
 VectorXd SectionChart::coordinates(const State& x, const State& origin) const {
-  return basis.transpose() * (as_vector(x) - as_vector(origin)).cwiseQuotient(scale);
+  return basis.transpose() * (vector_of(x) - vector_of(origin)).cwiseQuotient(scale);
 }
 
 MatrixXd SectionChart::scaled(const MatrixXd& derivative) const {

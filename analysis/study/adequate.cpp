@@ -21,9 +21,9 @@ Loop loop_of(const LoopParts& parts, const Element<double>& law) {
   return loop.delay == 0.0 ? loop : in_time_domain(loop, 6).loop;
 }
 
-class Study {
+class LadderClimb {
  public:
-  Study(const LoopParts& parts, const AdequateOptions& options) : parts_(parts), options_(options) {
+  LadderClimb(const LoopParts& parts, const AdequateOptions& options) : parts_(parts), options_(options) {
     report_.tolerance = options.tolerance;
     report_.laws = law_ladder(*parts.friction);
     choose_variations();
@@ -224,7 +224,7 @@ AdequateReport adequate(const LoopParts& parts, const AdequateOptions& options) 
   if (!parts.friction)
     throw std::invalid_argument(
         "this loop has no [loop.friction]: `adequate` asks which friction law is enough, so there is nothing to ask");
-  return Study(parts, options).run();
+  return LadderClimb(parts, options).run();
 }
 
 }  // namespace limcycle

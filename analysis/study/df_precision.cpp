@@ -12,14 +12,6 @@ namespace {
 
 constexpr double tightest = 1e-13;
 
-bool is_friction(const Element<double>& element) {
-  return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
-}
-
-Scales scales_of(const Element<double>& element) {
-  return std::visit([](const auto& e) { return e.scales(); }, element);
-}
-
 /// The element by the FFT of that many samples, without an error estimate.
 DescribingFunction by_fft(const Element<double>& element, const DfPoint& point, int samples) {
   const ErasedElement<double> erased(element);
@@ -35,9 +27,9 @@ double difference(const DescribingFunction& one, const DescribingFunction& refer
   return size == 0.0 ? std::abs(one.gain) : std::abs(one.gain - reference.gain) / size;
 }
 
-class Study {
+class PrecisionOfDf {
  public:
-  Study(const Element<double>& element, const std::vector<DfPoint>& points, const DfPrecisionOptions& options)
+  PrecisionOfDf(const Element<double>& element, const std::vector<DfPoint>& points, const DfPrecisionOptions& options)
       : element_(element), options_(options) {
     for (const DfPoint& point : points) add_reference(point);
   }
@@ -170,7 +162,7 @@ std::vector<DfPoint> representative_points(const std::vector<double>& amplitudes
 
 DfPrecision df_precision(const Element<double>& element, const std::vector<DfPoint>& points,
                          const DfPrecisionOptions& options) {
-  return Study(element, points, options).run();
+  return PrecisionOfDf(element, points, options).run();
 }
 
 }  // namespace limcycle

@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "limcycle/analysis/study/loop_balance.hpp"
+#include "limcycle/analysis/study/method_names.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 
 namespace limcycle {
 
 /// What the plain describing function says of a loop, before anything is simulated.
 struct DfPredictions {
-  static constexpr std::string_view method = "describing-function";
+  static constexpr std::string_view method = df_name;
   std::vector<Prediction> predictions;  ///< with what their assumptions are worth
   std::vector<std::string> notes;       ///< where roots may be missing
   std::optional<Absence> absence;       ///< where nothing is predicted

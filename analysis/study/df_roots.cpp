@@ -9,9 +9,9 @@
 namespace limcycle {
 namespace {
 
-class Search {
+class RootStudy {
  public:
-  Search(const Loop& loop, const LoopBalance& balance, const SearchBox& box, const std::function<bool()>& stop)
+  RootStudy(const Loop& loop, const LoopBalance& balance, const SearchBox& box, const std::function<bool()>& stop)
       : loop_(loop), balance_(balance), box_(box), stop_(stop) {}
 
   DfRoots run() {
@@ -101,7 +101,7 @@ class Search {
 
 DfRoots find_df_roots(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
                       const std::function<bool()>& stop) {
-  return Search(loop, balance, box, stop).run();
+  return RootStudy(loop, balance, box, stop).run();
 }
 
 }  // namespace limcycle

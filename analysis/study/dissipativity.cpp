@@ -9,14 +9,6 @@
 namespace limcycle {
 namespace {
 
-bool is_friction(const Element<double>& element) {
-  return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
-}
-
-std::string_view kind_of(const Element<double>& element) {
-  return std::visit([]<class E>(const E&) { return E::kind; }, element);
-}
-
 std::optional<double> number_of(const Element<double>& element, std::string_view key) {
   return std::visit(
       [key]<class E>(const E& e) -> std::optional<double> {

@@ -22,9 +22,9 @@ TimeDomainLoop treat_in_time(const Loop& loop, std::vector<std::string>& notes) 
   return treated;
 }
 
-class Study {
+class PrecisionStudy {
  public:
-  Study(const PrecisionOptions& options) : options_(options) {}
+  PrecisionStudy(const PrecisionOptions& options) : options_(options) {}
 
   void ask_cycle(const LoopParts& parts) {
     const Loop loop = build_loop(parts);
@@ -134,7 +134,7 @@ void conclude(WorkChart& chart) {
 
 PrecisionReport precision(const LoopParts* parts, const Element<double>* element, const std::vector<DfPoint>& points,
                           const PrecisionOptions& options) {
-  Study study(options);
+  PrecisionStudy study(options);
   if (parts != nullptr) study.ask_cycle(*parts);
   if (element != nullptr && !study.stopped()) study.ask_describing_function(*element, points);
   if (parts != nullptr && options.stiffness && !study.stopped()) study.ask_stiffness(*parts);

@@ -13,6 +13,7 @@
 #include "limcycle/analysis/study/composite_balance.hpp"
 #include "limcycle/analysis/study/cycle_hunt.hpp"
 #include "limcycle/analysis/study/df_predictions.hpp"
+#include "limcycle/analysis/study/method_names.hpp"
 #include "limcycle/analysis/study/orbit_guess.hpp"
 #include "limcycle/analysis/study/output_per_input.hpp"
 #include "limcycle/analysis/study/verdicts.hpp"
@@ -20,9 +21,6 @@
 
 namespace limcycle {
 namespace {
-
-constexpr std::string_view df_name = DfPredictions::method, composite_name = "composite-describing-function",
-                           balance_name = "harmonic-balance";
 
 /// The loop as the time domain can treat it, and a note of what was done to a delay: the Pade approximation is right to
 /// 1e-9 up to the seventh harmonic of the fastest prediction.
@@ -46,9 +44,9 @@ TimeDomainLoop treat_in_time(const Loop& loop, const PredictReport& report, std:
 }
 
 /// The work of one prediction, step by step, so that what is finished stays when the user interrupts.
-class Study {
+class PredictionStudy {
  public:
-  Study(const Loop& loop, const PredictOptions& options)
+  PredictionStudy(const Loop& loop, const PredictOptions& options)
       : loop_(loop), options_(options), box_(options.search.value_or(default_search_box(loop))) {
     report_.search = box_;
   }
@@ -326,6 +324,6 @@ class Study {
 
 }  // namespace
 
-PredictReport predict(const Loop& loop, const PredictOptions& options) { return Study(loop, options).run(); }
+PredictReport predict(const Loop& loop, const PredictOptions& options) { return PredictionStudy(loop, options).run(); }
 
 }  // namespace limcycle

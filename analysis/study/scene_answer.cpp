@@ -1,4 +1,5 @@
 #include "limcycle/analysis/study/scene_answer.hpp"
+#include "limcycle/analysis/study/method_names.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +10,13 @@
 #include "limcycle/analysis/orbit/turning_points.hpp"
 #include "limcycle/analysis/study/composite_balance.hpp"
 #include "limcycle/analysis/study/df_roots.hpp"
+#include "limcycle/analysis/study/method_names.hpp"
 #include "limcycle/analysis/study/output_per_input.hpp"
 #include "limcycle/analysis/study/work_point.hpp"
 #include "limcycle/models/delay.hpp"
 
 namespace limcycle {
 namespace {
-
-constexpr std::string_view df_name = "describing-function", composite_name = "composite-describing-function",
-                           balance_name = "harmonic-balance", simulation_name = "simulation",
-                           shooting_name = "shooting";
 
 /// What methods say that do not tell rest from steady sliding.
 constexpr std::string_view no_cycle = "no cycle";
@@ -119,9 +117,9 @@ SceneAnswer ask_balance(const Loop& loop, const PredictOptions& options) {
 }
 
 /// One plain simulation, watched until its swings repeat.
-class Watch {
+class SimulationWatch {
  public:
-  Watch(const Loop& loop, const PredictOptions& options) : loop_(loop), options_(options) {
+  SimulationWatch(const Loop& loop, const PredictOptions& options) : loop_(loop), options_(options) {
     const auto moduli = pole_moduli(loop);
     horizon_ = 200.0 / (moduli.empty() ? 1.0 : moduli.front());
     longest_ = 25.0 * horizon_;
@@ -239,7 +237,7 @@ SceneAnswer ask_shooting(const Loop& loop, const PredictOptions& options) {
 }
 
 SceneAnswer ask(const std::string& method, const Loop& loop, const PredictOptions& options) {
-  if (method == simulation_name) return Watch(loop, options)();
+  if (method == simulation_name) return SimulationWatch(loop, options)();
   if (method == shooting_name) return ask_shooting(loop, options);
   if (method == balance_name) return ask_balance(loop, options);
   std::string why;

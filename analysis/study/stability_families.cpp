@@ -44,7 +44,7 @@ Law bristles(const Given& levels, double stiffness, double damping) {
 }
 
 /// Four sliders of equal level, the stiffest four times as stiff as the softest.
-Gms<double> sliders(const Given& levels, double stiffness, double damping) {
+Gms<double> four_sliders(const Given& levels, double stiffness, double damping) {
   auto law = with_levels<Gms<double>>(levels);
   law.alpha = {0.25, 0.25, 0.25, 0.25};
   for (const double share : {0.1, 0.2, 0.3, 0.4}) {
@@ -107,7 +107,7 @@ std::vector<AtlasLoop> law_families(const LoopParts& parts) {
     auto law = bristles<ElastoPlastic<double>>(levels, s, damping(s));
     add("elasto-plastic", s, law);
   }
-  for (const double s : atlas_stiffnesses()) add("gms", s, sliders(levels, s, damping(s)));
+  for (const double s : atlas_stiffnesses()) add("gms", s, four_sliders(levels, s, damping(s)));
   for (const double s : atlas_stiffnesses()) add("non-drift", s, branches(levels, s, damping(s)));
   for (const double s : atlas_stiffnesses()) add("dahl", s, dahl(levels, s));
   return loops;

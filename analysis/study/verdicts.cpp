@@ -12,7 +12,9 @@ constexpr double agreement = 0.05;      ///< relative difference up to which a p
 constexpr double amplitude_reach = 10;  ///< a prediction farther off than this is not about that cycle
 constexpr double frequency_reach = 3;
 
-std::string percent(double ratio) { return (ratio < 1.0 ? "" : "+") + short_number(100.0 * (ratio - 1.0), 3) + " %"; }
+std::string percent_off(double ratio) {
+  return (ratio < 1.0 ? "" : "+") + short_number(100.0 * (ratio - 1.0), 3) + " %";
+}
 
 }  // namespace
 
@@ -50,7 +52,7 @@ void compare(Prediction& prediction, const std::vector<Cycle>& cycles, std::size
   const bool close = std::abs(amplitude - 1.0) <= agreement && std::abs(frequency - 1.0) <= agreement;
   prediction.verdict = close ? Verdict::confirmed : Verdict::biased;
   prediction.why =
-      "first harmonic " + percent(amplitude) + ", frequency " + percent(frequency) + " against the true cycle";
+      "first harmonic " + percent_off(amplitude) + ", frequency " + percent_off(frequency) + " against the true cycle";
   if (prediction.stable && cycles[cycle].stable && *prediction.stable != *cycles[cycle].stable) {
     prediction.verdict = Verdict::biased;
     prediction.why += "; its stability is wrong";
