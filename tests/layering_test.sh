@@ -68,6 +68,8 @@ wrong reports/a.cpp '#include "limcycle/cases/load.hpp"' "$arrow"
 wrong reports/a.cpp '#include "limcycle/cli/options.hpp"' "$arrow"
 wrong reports/a.cpp '#include <CLI/CLI.hpp>' 'not a library of reports'
 wrong reports/a.hpp '#include <nlohmann/json_fwd.hpp>' 'third-party header'
+wrong reports/a.hpp '#include "limcycle/reports/json_values.hpp"' 'third-party types'
+wrong cli/a.cpp '#include "limcycle/reports/json_values.hpp"' 'third-party types'
 wrong reports/a.cpp '#include "build_info.hpp"' 'spell it from the root'
 wrong cli/a.cpp '#include "limcycle/tests/reference.hpp"' "$arrow"
 wrong cli/a.cpp '#include "limcycle/bench/peer.hpp"' "$arrow"

@@ -44,7 +44,7 @@ TEST_CASE("predict: the answer stands first, in words") {
 }
 
 TEST_CASE("predict: predictions with their verdicts and deviations") {
-  const Answer words = answer(sample::relay(), {"", ""});
+  const CycleAnswer words = answer(sample::relay(), {"", ""});
   CHECK(words.what_happens ==
         "This loop oscillates: it settles into a limit cycle of period 6.283 s and amplitude 0.6583.");
   REQUIRE(words.worth.size() == 1);
