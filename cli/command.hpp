@@ -62,6 +62,7 @@ void add_dissipativity(CLI::App& program, Action& action);
 void add_df(CLI::App& program, Action& action);
 void add_experiment(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
+void add_map(CLI::App& program, Action& action);
 void add_margin(CLI::App& program, Action& action);
 void add_precision(CLI::App& program, Action& action);
 void add_predict(CLI::App& program, Action& action);

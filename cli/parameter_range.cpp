@@ -1,5 +1,6 @@
 #include "limcycle/cli/parameter_range.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -15,18 +16,20 @@ bool read(std::string_view text, double& value) {
   return result.ec == std::errc() && result.ptr == end && std::isfinite(value);
 }
 
+InputError refused(const std::string& flag, const std::string& text, const std::string& rule) {
+  return InputError({.file = {},
+                     .line = 0,
+                     .override = {},
+                     .key = flag + " " + (text.empty() ? "''" : text),
+                     .value = {},
+                     .rule = rule,
+                     .suggestion = {}});
+}
+
 }  // namespace
 
 ParameterRange parameter_range(const std::string& flag, const std::string& text) {
-  const auto refuse = [&](const std::string& rule) {
-    return InputError({.file = {},
-                       .line = 0,
-                       .override = {},
-                       .key = flag + " " + (text.empty() ? "''" : text),
-                       .value = {},
-                       .rule = rule,
-                       .suggestion = {}});
-  };
+  const auto refuse = [&](const std::string& rule) { return refused(flag, text, rule); };
   const auto equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
   if (equals == std::string::npos || colon == std::string::npos || equals == 0)
     throw refuse("must be PATH=FROM:TO, such as loop.controller.kd=1:50");
@@ -37,6 +40,22 @@ ParameterRange parameter_range(const std::string& flag, const std::string& text)
     throw refuse("FROM and TO must be finite numbers");
   if (range.from == range.to) throw refuse("FROM and TO must differ");
   return range;
+}
+
+MapAxis map_axis(const std::string& flag, const std::string& text) {
+  const auto refuse = [&](const std::string& rule) { return refused(flag, text, rule); };
+  std::string rest = text;
+  const bool logarithmic = rest.ends_with(":log");
+  if (logarithmic) rest.resize(rest.size() - 4);
+  const auto last = rest.rfind(':');
+  double points = 0.0;
+  if (std::ranges::count(rest, ':') != 2 || !read(std::string_view(rest).substr(last + 1), points))
+    throw refuse("must be PATH=FROM:TO:N or PATH=FROM:TO:N:log, such as loop.controller.kd=1:50:60");
+  if (points != std::floor(points) || points < 2.0 || points > 10000.0)
+    throw refuse("N must be a whole number, 2..10000");
+  const ParameterRange range = parameter_range(flag, rest.substr(0, last));
+  if (logarithmic && !(range.from * range.to > 0.0)) throw refuse("a logarithmic side needs ends of one sign, not 0");
+  return {range.path, range.from, range.to, static_cast<int>(points), logarithmic};
 }
 
 }  // namespace limcycle

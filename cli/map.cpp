@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "limcycle/analysis/study/hunting_map.hpp"
+#include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/parameter_range.hpp"
+#include "limcycle/cli/sweep.hpp"
+#include "limcycle/cli/units_of.hpp"
+#include "limcycle/models/assemble.hpp"
+#include "limcycle/reports/map.hpp"
+#include "limcycle/reports/number.hpp"
+
+namespace limcycle {
+namespace {
+
+struct MapFlags : SweepFlags {
+  std::string x, y;                  ///< --x, --y PATH=FROM:TO:N[:log]
+  std::vector<std::string> methods;  ///< --methods
+  int starts = 0;                    ///< --starts; 0: as the case says
+  std::string html, picture;         ///< --html, --svg
+};
+
+/// The describing function alone unless more is asked for: with mass and friction as one element a point takes ten
+/// times as long.
+Methods chosen_methods(const std::vector<std::string>& names) {
+  const auto known = names_of({true, true, true});
+  Methods chosen{names.empty(), false, false};
+  bool* const switches[] = {&chosen.describing_function, &chosen.composite, &chosen.harmonic_balance};
+  for (const auto& name : names) {
+    const auto found = std::ranges::find(known, name);
+    if (found == known.end())
+      throw InputError({.file = {},
+                        .line = 0,
+                        .override = {},
+                        .key = "--methods",
+                        .value = name,
+                        .rule = "unknown method",
+                        .suggestion = suggest(name, known)});
+    *switches[found - known.begin()] = true;
+  }
+  return chosen;
+}
+
+std::string side_text(const MapAxis& axis) {
+  return fmt::format("{}={}:{}:{}{}", axis.path, shortest(axis.from), shortest(axis.to), axis.points,
+                     axis.logarithmic ? ":log" : "");
+}
+
+/// Flags that make the map again.
+std::string flags_text(const HuntingMap& map, const MapFlags& flags) {
+  std::string text = "--x " + side_text(map.x) + " --y " + side_text(map.y);
+  if (!flags.methods.empty()) text += " --methods " + fmt::format("{}", fmt::join(map.methods, ","));
+  if (flags.starts > 0) text += fmt::format(" --starts {}", flags.starts);
+  return text;
+}
+
+std::optional<Loop> loop_at(const Case& from, const HuntingMap& map, std::size_t k) {
+  const std::pair<std::string, double> values[] = {{map.x.path, map.x_of(k)}, {map.y.path, map.y_of(k)}};
+  const auto parts = parts_with(from, values);
+  if (!parts) return std::nullopt;
+  try {
+    return build_loop(*parts);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+PredictOptions point_options(const Case& from, const MapFlags& flags, const Methods& methods) {
+  PredictOptions options = from.predict;
+  options.methods = methods;
+  options.accuracy = std::max(from.predict.accuracy, 1e-6);  // far below the 5 % that count
+  if (flags.starts > 0) options.starts = flags.starts;
+  options.stop = interrupted;
+  return options;
+}
+
+SweptRows sweep_map(const Case& from, HuntingMap& map, const MapFlags& flags, const Methods& methods) {
+  const PredictOptions options = point_options(from, flags, methods);
+  const auto columns = map_columns(map.methods);
+  SweepTask task{map.size(), columns.size(), 1, {}};
+  task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) -> std::size_t {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      MapPoint point;
+      if (const auto loop = loop_at(from, map, points[i]))
+        point = map_point(*loop, options);
+      else
+        point.methods.resize(map.methods.size());
+      if (interrupted()) return i;
+      std::ranges::copy(to_row(point), rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
+    }
+    return points.size();
+  };
+  const std::string design =
+      fmt::format("map {}; {}; starts {}", flags_text(map, flags), fmt::join(map.methods, ", "), options.starts);
+  return run_stored(task, columns, design, flags, from);
+}
+
+int run(MapFlags flags) {
+  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  const Case from = load_case(flags);
+  const Units units = units_of(need_loop(from));
+  MapReport report;
+  report.map.x = map_axis("--x", flags.x);
+  report.map.y = map_axis("--y", flags.y);
+  report.x_unit = number_at(from, "--x", report.map.x.path).unit;
+  report.y_unit = number_at(from, "--y", report.map.y.path).unit;
+  if (report.map.x.path == report.map.y.path) throw std::invalid_argument("--x and --y name the same parameter");
+  const Methods methods = chosen_methods(flags.methods);
+  report.map.methods = names_of(methods);
+  Output output(flags);
+  output.check_file("--html", flags.html);
+  output.check_file("--svg", flags.picture);
+
+  const SweptRows swept = sweep_map(from, report.map, flags, methods);
+  const std::size_t columns = swept.rows.size() / report.map.size();
+  report.map.points.resize(report.map.size());
+  for (std::size_t k = 0; k < report.map.size(); ++k)
+    if (swept.known[k])
+      report.map.points[k] =
+          point_of_row(std::span(swept.rows).subspan(k * columns, columns), report.map.methods.size());
+
+  const auto made = provenance(flags, &from);
+  std::string text = map_text(from.title, report);
+  if (!flags.html.empty()) {
+    output.file(flags.html, map_page(report, made, from.text, units, flags_text(report.map, flags)));
+    text += "\nreport: " + flags.html + "\n";
+  }
+  if (!flags.picture.empty()) output.file(flags.picture, map_picture(report, units));
+  output.text(text);
+  if (output.wants_json()) output.json(map_json(made, report));
+  if (output.wants_csv()) output.csv(map_csv(report));
+  output.finish();
+  if (swept.status == Status::interrupted) tell_how_to_resume(flags);
+  return report.map.known() == 0 ? exit_no_answer : exit_done;
+}
+
+}  // namespace
+
+void add_map(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<MapFlags>();
+  CLI::App* command =
+      add_command(program, action, "map", "What happens over two parameters, and where each method is wrong", true,
+                  flags, [flags] { return run(*flags); });
+  for (const auto& [name, into] : {std::pair("--x", &flags->x), std::pair("--y", &flags->y)})
+    command->add_option(name, *into, "A parameter and its values, such as loop.controller.kd=1:50:60:log")
+        ->type_name("PATH=FROM:TO:N[:log]")
+        ->required();
+  command->add_option("--methods", flags->methods, "Methods to judge (default: describing-function)")
+      ->type_name("NAME,...")
+      ->delimiter(',');
+  command->add_option("--starts", flags->starts, "Simulations from different initial states at each point")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100));
+  add_sweep_flags(*command, *flags);
+  command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
+      ->type_name("FILE");
+  command->add_option("--svg", flags->picture, "Write the picture to FILE (so does -o FILE.svg)")->type_name("FILE");
+}
+
+}  // namespace limcycle

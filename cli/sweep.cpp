@@ -1,0 +1,98 @@
+#include "limcycle/cli/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+#include <limits>
+#include <optional>
+
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/progress.hpp"
+
+namespace limcycle {
+namespace {
+
+SweepIdentity identity_of(const SweepTask& task, const std::vector<std::string>& columns, const std::string& design,
+                          const SweepFlags& flags, const Case& from, const std::string& command) {
+  const Provenance made = provenance(flags, &from);
+  SweepIdentity identity;
+  identity.command = command;
+  identity.title = from.title;
+  identity.case_file = from.file;
+  identity.case_sha256 = from.sha256;
+  identity.overrides = from.overrides;
+  identity.design = design;
+  identity.seed = flags.seed;
+  identity.columns = columns;
+  identity.points = task.points;
+  identity.version = made.version;
+  identity.commit = made.commit;
+  identity.isa = made.isa;
+  return identity;
+}
+
+}  // namespace
+
+void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
+  flags.threads = 0;  // results do not depend on it
+  command.add_option("--store", flags.store, "Keep every point in this file as soon as it is computed")
+      ->type_name("FILE");
+  command.add_flag("--resume", flags.resume, "Go on with that file: only what is missing is computed")
+      ->needs("--store");
+}
+
+SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& columns, const std::string& design,
+                     const SweepFlags& flags, const Case& from) {
+  SweptRows swept;
+  swept.known.assign(task.points, false);
+  swept.rows.assign(task.points * task.columns, std::numeric_limits<double>::quiet_NaN());
+  std::optional<SweepStore> store;
+  if (!flags.store.empty()) {
+    const std::string command = design.substr(0, design.find(' '));
+    store.emplace(flags.store, identity_of(task, columns, design, flags, from, command), flags.resume);
+    StoredSweep before = store->read_all();
+    swept.known = std::move(before.known);
+    swept.rows = std::move(before.rows);
+  }
+  const auto known_before = swept.known;
+  const auto sink = [&](std::span<const std::size_t> points, std::span<const double> rows) {
+    if (store) store->write(points, rows);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      std::ranges::copy(rows.subspan(i * task.columns, task.columns),
+                        swept.rows.begin() + static_cast<std::ptrdiff_t>(points[i] * task.columns));
+      swept.known[points[i]] = true;
+    }
+  };
+  catch_interrupts();
+  {
+    Progress bar(flags.quiet);
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    std::optional<std::size_t> first;
+    SweepOptions options;
+    options.threads = flags.threads;
+    options.stop = interrupted;
+    options.progress = [&](std::size_t done, std::size_t total) {
+      if (!first) first = done;
+      const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+      const double rate = seconds > 0.0 ? static_cast<double>(done - *first) / seconds : 0.0;
+      bar.show(total > *first ? static_cast<double>(done - *first) / static_cast<double>(total - *first) : 1.0,
+               fmt::format("{} of {} points, {:.0f} a second", done, total, rate));
+    };
+    swept.status = run_sweep(task, known_before, sink, options);
+  }
+  if (store) store->flush();
+  return swept;
+}
+
+void tell_how_to_resume(const SweepFlags& flags) {
+  if (flags.quiet) return;
+  std::cerr << (flags.store.empty()
+                    ? "limcycle: interrupted; what was computed until then is written (--store FILE would keep it)\n"
+                    : "limcycle: interrupted; what was computed is in " + flags.store +
+                          ": the same command with --resume goes on\n");
+}
+
+}  // namespace limcycle

@@ -1,0 +1,34 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/study/sweep.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/reports/store.hpp"
+
+namespace limcycle {
+
+/// What every command that computes many points understands beside the common flags.
+struct SweepFlags : CommonFlags {
+  std::string store;    ///< --store
+  bool resume = false;  ///< --resume
+};
+
+void add_sweep_flags(CLI::App& command, SweepFlags& flags);
+
+/// Rows of all points: NaN where not known.
+struct SweptRows {
+  std::vector<bool> known;
+  std::vector<double> rows;
+  Status status = Status::converged;  ///< or interrupted
+};
+
+/// Runs a sweep with a progress bar that tells the rate, into the store if --store names one, and catches Ctrl-C.
+/// `design`: what makes its points and rows what they are, but for case, seed and program. Throws StoreError.
+SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& columns, const std::string& design,
+                     const SweepFlags& flags, const Case& from);
+
+/// Says on stderr how to go on after an interruption.
+void tell_how_to_resume(const SweepFlags& flags);
+
+}  // namespace limcycle
