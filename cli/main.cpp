@@ -13,8 +13,8 @@ namespace limcycle {
 namespace {
 
 constexpr void (*commands[])(CLI::App&, Action&) = {
-    add_predict,       add_df,     add_simulate,   add_continue, add_margin, add_map, add_precision, add_adequate,
-    add_dissipativity, add_claims, add_experiment, add_check,    add_laws};
+    add_predict,   add_df,       add_simulate,      add_continue, add_margin,     add_map,   add_sensitivity,
+    add_precision, add_adequate, add_dissipativity, add_claims,   add_experiment, add_check, add_laws};
 
 InputError usage(const std::string& rule, const std::string& suggestion = {}) {
   return InputError(

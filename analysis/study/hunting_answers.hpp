@@ -1,0 +1,43 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "limcycle/analysis/lanes/isa.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// What one loop of many does. NaN: no answer.
+struct HuntingAnswer {
+  static constexpr std::size_t numbers = 3;
+  static constexpr std::string_view names[numbers] = {"hunts", "amplitude", "period"};
+
+  double hunts;      ///< 1: some start ends in a cycle; 0: every start ends without one
+  double amplitude;  ///< of the cycle that swings most
+  double period;     ///< of the same, s
+};
+
+struct HuntingQuestion {
+  std::vector<double> displacements;  ///< of y, one start each
+  double amplitude_floor = 1e-9, amplitude_ceiling = 1e6;
+  double accuracy = 1e-4;  ///< relative, of amplitude and period
+  double rtol = 1e-8;      ///< of the simulations
+  Isa isa = best_isa();
+  std::function<bool()> stop;
+};
+
+/// The question that fits a loop: two starts of predict(), displaced by the largest amplitude of interest and by a
+/// hundredth of it.
+HuntingQuestion hunting_question(const Loop& loop);
+
+/// Simulates every loop from every start, side by side where there are lanes for it (see run_ensemble), without solving
+/// for its cycle: a hundred times cheaper than predict(), and accurate enough for statistics. Empty loops (values that
+/// are no valid case) and those that could not be decided have no answer; a loop of which one start ends without a
+/// cycle and another is undecided has none either. The answer to one does not depend on the others. Returns fewer
+/// answers than loops only if it was stopped.
+std::vector<HuntingAnswer> hunting_answers(std::span<const std::optional<Loop>> loops, const HuntingQuestion& question);
+
+}  // namespace limcycle

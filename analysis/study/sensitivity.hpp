@@ -1,0 +1,86 @@
+#pragma once
+#include <complex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/study/global/morris.hpp"
+#include "limcycle/analysis/study/global/share_of.hpp"
+#include "limcycle/analysis/study/global/sobol.hpp"
+#include "limcycle/analysis/study/hunting_answers.hpp"
+#include "limcycle/analysis/study/hunting_map.hpp"
+#include "limcycle/analysis/study/parameter_spread.hpp"
+
+namespace limcycle {
+
+/// How a cycle moves with one number of the case: derivatives, and elasticities, which are per cent of the quantity a
+/// per cent of the number.
+struct LocalSensitivity {
+  std::string path, unit;
+  double value = 0.0;
+  double amplitude = 0.0, period = 0.0;           ///< derivatives; NaN if unknown
+  std::vector<std::complex<double>> multipliers;  ///< derivatives, in the order of the cycle's
+  double error = 0.0;  ///< estimated, of the derivatives relative to themselves; NaN if unknown
+  std::string why;     ///< why they are unknown; else empty
+};
+
+/// What happens with one number changed and all others as they are.
+struct ParameterChange {
+  std::string path, unit;
+  double factor = 1.0, value = 0.0;
+  MapPoint found;
+};
+
+/// What global indices say of one output.
+struct OutputSensitivity {
+  std::string output;  ///< "hunts", "amplitude", "period"
+  double share_without_answer = 0.0;
+  MorrisResult morris;
+  SobolIndices sobol;
+  std::vector<SobolIndices> convergence;
+};
+
+/// The rows of a global study: first those of Morris, then those of Sobol. Row k is one point of the spread.
+class GlobalPlan {
+ public:
+  GlobalPlan(const ParameterSpread& spread, std::size_t trajectories, std::size_t samples, bool second_order);
+
+  std::size_t size() const { return morris_.rows() + sobol_.rows(); }
+  /// Values of the parameters, in the order of the spread. Throws std::out_of_range.
+  std::vector<double> values(std::size_t row) const;
+
+  const ParameterSpread& spread() const { return spread_; }
+  const MorrisDesign& morris() const { return morris_; }
+  const SobolDesign& sobol() const { return sobol_; }
+
+ private:
+  ParameterSpread spread_;
+  MorrisDesign morris_;
+  SobolDesign sobol_;
+};
+
+struct GlobalSensitivity {
+  std::vector<OutputSensitivity> outputs;     ///< in the order of HuntingAnswer::names
+  Probability hunting;                     ///< that the loop hunts, from Sobol's points A and B
+  std::optional<std::size_t> matters_most;    ///< parameter with the largest total index for "hunts"
+};
+
+/// Indices from the answers to all rows of a plan, empty where not computed. `noise`: relative error of amplitudes and
+/// periods.
+GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std::optional<HuntingAnswer>> answers,
+                                     double noise);
+
+/// Everything that `sensitivity` tells.
+struct SensitivityReport {
+  std::optional<Cycle> cycle;  ///< the stable one that swings most, which the derivatives are of
+  std::vector<LocalSensitivity> local;
+  std::vector<ParameterChange> one_at_a_time;
+  ParameterSpread spread;
+  bool spread_is_default = false;
+  std::optional<GlobalSensitivity> global;
+  std::vector<std::vector<double>> sample;  ///< values and answers of the fair sample, for pictures
+  std::vector<std::string> notes;
+};
+
+}  // namespace limcycle

@@ -1,0 +1,257 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "limcycle/analysis/study/local_sensitivity.hpp"
+#include "limcycle/analysis/study/sensitivity.hpp"
+#include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/sweep.hpp"
+#include "limcycle/cli/units_of.hpp"
+#include "limcycle/models/assemble.hpp"
+#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/sensitivity.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr double default_share = 0.2;  // of each number, where the case does not say how they spread
+constexpr std::size_t loops_a_block = 256;
+
+struct SensitivityFlags : SweepFlags {
+  int samples = 0;       ///< --samples; 0: as the case says
+  int trajectories = 0;  ///< --trajectories; 0: a tenth of the samples, 10 to 100
+  bool second_order = false;
+  std::vector<double> factors{0.5, 2.0};  ///< --factors
+  bool local_only = false;                ///< --local
+  std::string html;                       ///< --html
+};
+
+std::optional<Loop> loop_of(const Case& from, std::span<const std::pair<std::string, double>> values) {
+  const auto parts = parts_with(from, values);
+  if (!parts) return std::nullopt;
+  try {
+    return build_loop(*parts);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+/// The numbers that a user would vary: written or with a default, finite.
+std::vector<CaseNumber> own_numbers(const Case& from) {
+  std::vector<CaseNumber> numbers = numbers_of(from);
+  std::erase_if(numbers, [](const CaseNumber& number) { return !std::isfinite(number.value) || number.follows; });
+  return numbers;
+}
+
+ParameterSpread default_spread(const Case& from) {
+  ParameterSpread spread;
+  for (const auto& number : own_numbers(from)) {
+    if (number.value == 0.0) continue;
+    SpreadParameter one;
+    one.path = number.path;
+    one.value = one.mean = number.value;
+    one.low = number.value - default_share * std::abs(number.value);
+    one.high = number.value + default_share * std::abs(number.value);
+    spread.parameters.push_back(std::move(one));
+  }
+  return spread;
+}
+
+/// The stable cycle that swings most, solved for tightly.
+std::optional<Cycle> main_cycle(const Loop& loop, const Case& from, std::vector<std::string>& notes) {
+  PredictOptions options = from.predict;
+  options.methods = {false, false, false};
+  options.nyquist = false;
+  options.accuracy = std::min(from.predict.accuracy, 1e-9);
+  options.stop = interrupted;
+  std::optional<Cycle> best;
+  for (const Cycle& cycle : predict(loop, options).cycles)
+    if (cycle.stable == true && (!best || cycle.amplitude > best->amplitude)) best = cycle;
+  if (best && loop.delay > 0.0)
+    notes.emplace_back("the delay: derivatives of a cycle are not computed for loops with one");
+  return best;
+}
+
+void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& flags, SensitivityReport& report) {
+  if (report.cycle && loop.delay == 0.0) {
+    std::vector<LoopNumber> numbers;
+    for (const auto& number : own_numbers(from))
+      numbers.push_back({number.path, number.unit, number.value,
+                         [&from, path = number.path](double value) { return loop_with(from, path, value); }});
+    report.local = local_sensitivities(loop, *report.cycle, numbers, interrupted);
+  }
+  PredictOptions options = from.predict;
+  options.methods = {false, false, false};
+  options.accuracy = std::max(from.predict.accuracy, 1e-6);
+  options.stop = interrupted;
+  std::vector<double> factors = flags.factors;
+  if (std::ranges::find(factors, 1.0) == factors.end()) factors.push_back(1.0);
+  std::ranges::sort(factors);
+  for (const auto& number : own_numbers(from)) {
+    if (number.value == 0.0) continue;  // times anything, it stays
+    for (const double factor : factors) {
+      if (interrupted()) return;
+      ParameterChange change{number.path, number.unit, factor, factor * number.value, {}};
+      change.found.amplitude = change.found.period = std::numeric_limits<double>::quiet_NaN();
+      if (const auto changed = loop_with(from, number.path, change.value)) change.found = map_point(*changed, options);
+      report.one_at_a_time.push_back(std::move(change));
+    }
+  }
+}
+
+std::string design_text(const GlobalPlan& plan, const HuntingQuestion& question) {
+  std::string text = fmt::format("sensitivity {} trajectories, {} samples{}", plan.morris().trajectories(),
+                                 plan.sobol().samples(), plan.sobol().second_order() ? ", second order" : "");
+  for (const auto& one : plan.spread().parameters)
+    text += fmt::format("; {} {} {} {} {} {}", one.path, to_string(one.distribution), one.low, one.high, one.mean,
+                        one.deviation);
+  text += fmt::format("; starts {}; accuracy {}; rtol {}; seed {}", fmt::join(question.displacements, " "),
+                      question.accuracy, question.rtol, plan.spread().seed);
+  return text;
+}
+
+/// The loops of a plan, each asked from the same starts.
+SweptRows sweep_plan(const Case& from, const Loop& loop, const GlobalPlan& plan, const SensitivityFlags& flags) {
+  HuntingQuestion question = hunting_question(loop);
+  question.isa = instruction_set(flags);
+  question.stop = interrupted;
+  const std::vector<std::string> columns(std::begin(HuntingAnswer::names), std::end(HuntingAnswer::names));
+  SweepTask task{plan.size(), columns.size(), loops_a_block, {}};
+  task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) {
+    std::vector<std::optional<Loop>> loops;
+    std::vector<std::pair<std::string, double>> values;
+    for (const auto& one : plan.spread().parameters) values.emplace_back(one.path, 0.0);
+    for (const std::size_t point : points) {
+      const auto at = plan.values(point);
+      for (std::size_t i = 0; i < at.size(); ++i) values[i].second = at[i];
+      loops.push_back(loop_of(from, values));
+    }
+    const auto answers = hunting_answers(loops, question);
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      const double numbers[] = {answers[i].hunts, answers[i].amplitude, answers[i].period};
+      std::ranges::copy(numbers, rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
+    }
+    return answers.size();
+  };
+  return run_stored(task, columns, design_text(plan, question), flags, from);
+}
+
+/// Values and answers of Sobol's points A and B.
+std::vector<std::vector<double>> fair_sample(const GlobalPlan& plan,
+                                             const std::vector<std::optional<HuntingAnswer>>& answers) {
+  std::vector<std::vector<double>> sample;
+  for (std::size_t k = 0; k < plan.sobol().samples(); ++k)
+    for (const std::size_t row : {plan.sobol().row_a(k), plan.sobol().row_b(k)}) {
+      const auto& answer = answers[plan.morris().rows() + row];
+      if (!answer) continue;
+      sample.push_back(plan.values(plan.morris().rows() + row));
+      sample.back().insert(sample.back().end(), {answer->hunts, answer->amplitude, answer->period});
+    }
+  return sample;
+}
+
+Status look_everywhere(const Case& from, const Loop& loop, const SensitivityFlags& flags, SensitivityReport& report) {
+  const int samples = flags.samples > 0 ? flags.samples : report.spread.samples;
+  const int trajectories = flags.trajectories > 0 ? flags.trajectories : std::clamp(samples / 10, 10, 100);
+  const GlobalPlan plan(report.spread, static_cast<std::size_t>(trajectories), static_cast<std::size_t>(samples),
+                        flags.second_order);
+  const SweptRows swept = sweep_plan(from, loop, plan, flags);
+  std::vector<std::optional<HuntingAnswer>> answers(plan.size());
+  for (std::size_t k = 0; k < plan.size(); ++k)
+    if (swept.known[k]) answers[k] = {swept.rows[3 * k], swept.rows[3 * k + 1], swept.rows[3 * k + 2]};
+  if (std::ranges::none_of(swept.known, [](bool known) { return known; })) return swept.status;
+  report.global = global_sensitivity(plan, answers, hunting_question(loop).accuracy);
+  report.sample = fair_sample(plan, answers);
+  return swept.status;
+}
+
+std::string flags_text(const SensitivityFlags& flags) {
+  std::string text;
+  if (flags.samples > 0) text += fmt::format(" --samples {}", flags.samples);
+  if (flags.trajectories > 0) text += fmt::format(" --trajectories {}", flags.trajectories);
+  if (flags.second_order) text += " --second-order";
+  if (flags.local_only) text += " --local";
+  if (flags.factors != std::vector{0.5, 2.0}) text += fmt::format(" --factors {}", fmt::join(flags.factors, ","));
+  if (flags.seed != 0) text += fmt::format(" --seed {}", flags.seed);
+  return text.empty() ? text : text.substr(1);
+}
+
+SensitivityReport study(const Case& from, const Loop& loop, const SensitivityFlags& flags, Status& status) {
+  SensitivityReport report;
+  report.spread_is_default = !from.sensitivity;
+  report.spread = from.sensitivity ? *from.sensitivity : default_spread(from);
+  if (flags.seed != 0) report.spread.seed = flags.seed;
+  catch_interrupts();
+  {
+    Progress progress(flags.quiet);
+    progress.show(0.0, "the cycle and its neighbourhood");
+    report.cycle = main_cycle(loop, from, report.notes);
+    look_nearby(from, loop, flags, report);
+  }
+  status = interrupted() ? Status::interrupted : Status::converged;
+  if (flags.local_only || interrupted()) return report;
+  if (report.spread_is_default)
+    report.notes.emplace_back(
+        "the case has no [sensitivity] section: each of its numbers is spread evenly over 20 % to both sides");
+  if (!report.spread.parameters.empty()) status = look_everywhere(from, loop, flags, report);
+  return report;
+}
+
+int run(SensitivityFlags flags) {
+  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  for (const double factor : flags.factors)
+    if (!std::isfinite(factor) || factor == 0.0) throw std::invalid_argument("--factors must be finite and not 0");
+  const Case from = load_case(flags);
+  const Units units = units_of(need_loop(from));
+  const Loop loop = build_loop(need_loop(from));
+  Output output(flags);
+  output.check_file("--html", flags.html);
+  Status status = Status::converged;
+  const SensitivityReport report = study(from, loop, flags, status);
+  auto made = provenance(flags, &from);
+  made.isa = to_string(instruction_set(flags));
+  std::string text = sensitivity_text(from.title, report, units);
+  if (!flags.html.empty()) {
+    output.file(flags.html, sensitivity_page(report, made, from.text, units, flags_text(flags)));
+    text += "\nreport: " + flags.html + "\n";
+  }
+  output.text(text);
+  if (output.wants_json()) output.json(sensitivity_json(made, report));
+  if (output.wants_csv()) output.csv(sensitivity_csv(report));
+  output.finish();
+  if (status == Status::interrupted) tell_how_to_resume(flags);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_sensitivity(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<SensitivityFlags>();
+  CLI::App* command = add_command(program, action, "sensitivity",
+                                  "How the cycle moves with every number, and whether the loop hunts over a spread",
+                                  true, flags, [flags] { return run(*flags); });
+  command->add_option("--samples", flags->samples, "Base samples of the Sobol study (default: of the case, or 1024)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1 << 24));
+  command->add_option("--trajectories", flags->trajectories, "Trajectories of the Morris study")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1 << 20));
+  command->add_flag("--second-order", flags->second_order, "Indices of pairs too: twice as many loops");
+  command->add_option("--factors", flags->factors, "Factors on each number, one at a time")
+      ->type_name("X,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_flag("--local", flags->local_only, "Derivatives and one at a time only");
+  add_sweep_flags(*command, *flags);
+  command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
+      ->type_name("FILE");
+}
+
+}  // namespace limcycle

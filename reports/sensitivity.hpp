@@ -1,0 +1,38 @@
+#pragma once
+#include <string>
+
+#include "limcycle/analysis/study/sensitivity.hpp"
+#include "limcycle/reports/provenance.hpp"
+#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/units.hpp"
+
+namespace limcycle {
+
+/// What moves the cycle most, how likely hunting is over the spread, and what decides it.
+std::string sensitivity_answer(const SensitivityReport& report);
+
+/// For a terminal: the answer and the tables below.
+std::string sensitivity_text(const std::string& title, const SensitivityReport& report, const Units& units);
+
+/// JSON document of `sensitivity`.
+std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report);
+
+/// One row a number, told apart by the first column `kind`: local, one-at-a-time, morris, sobol, interaction.
+std::string sensitivity_csv(const SensitivityReport& report);
+
+std::string sensitivity_page(const SensitivityReport& report, const Provenance& provenance,
+                             const std::string& case_text, const Units& units, const std::string& flags);
+
+Table derivative_table(const SensitivityReport& report, const Units& units);
+Table change_table(const SensitivityReport& report, const Units& units);
+Table morris_table(const SensitivityReport& report, const OutputSensitivity& output);
+Table sobol_table(const SensitivityReport& report, const OutputSensitivity& output);
+
+/// Elasticities of amplitude and period, the largest on top.
+std::string tornado_picture(const SensitivityReport& report);
+/// First and total indices of an output with their intervals, and how they settled with the number of samples.
+std::string indices_picture(const SensitivityReport& report, const OutputSensitivity& output);
+/// The fair sample: amplitude, or hunting or not, over each parameter.
+std::string scatter_picture(const SensitivityReport& report);
+
+}  // namespace limcycle

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include "limcycle/reports/html_parts.hpp"
+#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/sensitivity.hpp"
+
+namespace limcycle {
+namespace {
+
+std::string figure_of(const std::string& picture, const std::string& caption) {
+  if (picture.empty()) return "";
+  return "<figure class=\"scroll\">\n" + picture + "<figcaption>" + html_escaped(caption) +
+         "</figcaption>\n</figure>\n";
+}
+
+std::string output_section(const SensitivityReport& report, const OutputSensitivity& output) {
+  std::string out = "<h2>" + html_escaped("Global: " + output.output) + "</h2>\n";
+  out += html_tag("p", fmt::format("No answer from {} of the loops.", as_percent(output.share_without_answer)));
+  out += figure_of(indices_picture(report, output),
+                   "Shares of the variance with 95 % intervals; beside them how the total indices settled.");
+  out += html_table(sobol_table(report, output), "Sobol indices of " + output.output);
+  out += html_table(morris_table(report, output), "Morris: effects on " + output.output + " of each whole range");
+  std::vector<std::string> notes = output.sobol.notes;
+  notes.insert(notes.end(), output.morris.notes.begin(), output.morris.notes.end());
+  return out + html_notes(notes);
+}
+
+}  // namespace
+
+std::string sensitivity_page(const SensitivityReport& report, const Provenance& provenance,
+                             const std::string& case_text, const Units& units, const std::string& flags) {
+  std::string body;
+  if (report.cycle && !report.local.empty()) {
+    body += "<h2>The cycle</h2>\n" +
+            figure_of(tornado_picture(report), "How much amplitude and period change for each per cent of a number.");
+    body += html_table(derivative_table(report, units), "Exact derivatives of amplitude and period");
+  }
+  if (!report.one_at_a_time.empty())
+    body +=
+        "<h2>One at a time</h2>\n" + html_table(change_table(report, units), "What happens with one number changed");
+  if (report.global) {
+    body += "<h2>The spread</h2>\n" +
+            figure_of(scatter_picture(report), "Every loop of the fair sample over each of the parameters.");
+    for (const auto& output : report.global->outputs) body += output_section(report, output);
+  }
+  body += html_notes(report.notes);
+  return html_page({.provenance = provenance,
+                    .answer = sensitivity_answer(report),
+                    .body = body,
+                    .command = "sensitivity",
+                    .flags = flags,
+                    .case_text = case_text});
+}
+
+}  // namespace limcycle

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/sensitivity.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr int index_digits = 3;
+
+std::string interval_text(const Estimate& estimate) {
+  return estimate.bounded() ? with_digits(estimate.low, index_digits) + ".." + with_digits(estimate.high, index_digits)
+                            : "?";
+}
+
+std::string estimate_text(const Estimate& estimate) {
+  return estimate.known ? with_digits(estimate.value, index_digits) : "?";
+}
+
+double per_cent_a_per_cent(const LocalSensitivity& one, double derivative, double quantity) {
+  return quantity != 0.0 ? derivative * one.value / quantity : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The number that moves the amplitude most.
+const LocalSensitivity* strongest(const SensitivityReport& report) {
+  const LocalSensitivity* best = nullptr;
+  for (const auto& one : report.local)
+    if (std::isfinite(one.amplitude) &&
+        (best == nullptr || std::abs(one.amplitude * one.value) > std::abs(best->amplitude * best->value)))
+      best = &one;
+  return best;
+}
+
+}  // namespace
+
+std::string sensitivity_answer(const SensitivityReport& report) {
+  std::string out;
+  if (const auto* best = strongest(report); best != nullptr && report.cycle)
+    out += fmt::format("The cycle's amplitude is moved most by {}: {} % for each per cent.", best->path,
+                       with_digits(per_cent_a_per_cent(*best, best->amplitude, report.cycle->amplitude), 3));
+  else if (!report.cycle)
+    out += "The loop has no stable limit cycle as it is, so there is none to differentiate.";
+  if (!report.global) return out;
+  const Probability& hunting = report.global->hunting;
+  if (hunting.among_decided.known) {
+    out += fmt::format(" Over the given spread it hunts with a probability of {} ({} to {})",
+                       as_percent(hunting.among_decided.value), as_percent(hunting.among_decided.low),
+                       as_percent(hunting.among_decided.high));
+    if (hunting.undecided > 0)
+      out += fmt::format(", {} of {} loops undecided", hunting.undecided, hunting.yes + hunting.no + hunting.undecided);
+    out += report.global->matters_most
+               ? "; what decides it most is " + report.spread.parameters[*report.global->matters_most].path + "."
+               : ".";
+  }
+  return out;
+}
+
+Table derivative_table(const SensitivityReport& report, const Units& units) {
+  Table table{{{"number", "", Align::left},
+               {"value", "its unit"},
+               {"d amplitude", units.y + " / unit"},
+               {"d period", "s / unit"},
+               {"amplitude", "% per %"},
+               {"period", "% per %"}},
+              {}};
+  if (!report.cycle) return table;
+  for (const auto& one : report.local)
+    table.rows.push_back({one.path, with_digits(one.value, 6), with_error(one.amplitude, one.error),
+                          with_error(one.period, one.error),
+                          with_digits(per_cent_a_per_cent(one, one.amplitude, report.cycle->amplitude), 4),
+                          with_digits(per_cent_a_per_cent(one, one.period, report.cycle->period), 4)});
+  return table;
+}
+
+Table change_table(const SensitivityReport& report, const Units& units) {
+  Table table{{{"number", "", Align::left},
+               {"times", ""},
+               {"value", "its unit"},
+               {"what happens", "", Align::left},
+               {"amplitude", units.y},
+               {"period", "s"}},
+              {}};
+  for (const auto& change : report.one_at_a_time)
+    table.rows.push_back({change.path, with_digits(change.factor, 3), with_digits(change.value, 6),
+                          change.found.in_words(), with_digits(change.found.amplitude, 6),
+                          with_digits(change.found.period, 6)});
+  return table;
+}
+
+Table morris_table(const SensitivityReport& report, const OutputSensitivity& output) {
+  Table table{{{"number", "", Align::left},
+               {"mu*", output.output},
+               {"95 %", ""},
+               {"mu", output.output},
+               {"sigma", output.output},
+               {"effects", ""}},
+              {}};
+  for (const std::size_t i : output.morris.by_mu_star()) {
+    const MorrisEffects& effects = output.morris.parameters[i];
+    table.rows.push_back({report.spread.parameters[i].path, estimate_text(effects.mu_star),
+                          interval_text(effects.mu_star), estimate_text(effects.mu), estimate_text(effects.sigma),
+                          std::to_string(effects.effects)});
+  }
+  return table;
+}
+
+Table sobol_table(const SensitivityReport& report, const OutputSensitivity& output) {
+  Table table{{{"number", "", Align::left},
+               {"first", "share"},
+               {"95 %", ""},
+               {"total", "share"},
+               {"95 % ", ""},
+               {"samples", ""}},
+              {}};
+  for (const std::size_t i : output.sobol.by_total()) {
+    const SobolIndex& index = output.sobol.parameters[i];
+    table.rows.push_back({report.spread.parameters[i].path, estimate_text(index.first), interval_text(index.first),
+                          estimate_text(index.total), interval_text(index.total), std::to_string(index.samples)});
+  }
+  return table;
+}
+
+std::string sensitivity_text(const std::string& title, const SensitivityReport& report, const Units& units) {
+  std::string out = title + "\n\n" + wrapped(sensitivity_answer(report)) + "\n";
+  if (report.cycle && !report.local.empty())
+    out += "\nDerivatives of the cycle (exact, at the values of the case)\n" + derivative_table(report, units).text();
+  if (!report.one_at_a_time.empty()) out += "\nOne at a time\n" + change_table(report, units).text();
+  if (report.global)
+    for (const auto& output : report.global->outputs) {
+      out += fmt::format("\nOutput \"{}\": no answer from {} of the loops\n", output.output,
+                         as_percent(output.share_without_answer));
+      out += "\nMorris: mean effect of the whole range\n" + morris_table(report, output).text();
+      out += "\nSobol indices: shares of the variance\n" + sobol_table(report, output).text();
+      std::vector<std::string> notes = output.sobol.notes;
+      notes.insert(notes.end(), output.morris.notes.begin(), output.morris.notes.end());
+      out += notes_text(notes);
+    }
+  return out + notes_text(report.notes);
+}
+
+}  // namespace limcycle
