@@ -17,7 +17,7 @@ constexpr std::size_t fewest_samples = 8;
 constexpr std::size_t most_blocks = MB;
 constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
-/// RowAnswers of the samples that are looked at, centred and scaled so that no square of them loses digits or
+/// Answers of the samples that are looked at, centred and scaled so that no square of them loses digits or
 /// overflows: neither changes an index.
 class ScaledAnswers {
  public:
