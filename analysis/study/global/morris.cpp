@@ -25,7 +25,7 @@ std::vector<std::optional<double>> moments(std::span<const double> effects, std:
   return {mu, sizes / count, count > 1.0 ? std::optional(std::sqrt(squares / (count - 1.0))) : std::nullopt};
 }
 
-Estimate times(Estimate estimate, double factor) {
+Estimate scaled_by(Estimate estimate, double factor) {
   estimate.value *= factor, estimate.low *= factor, estimate.high *= factor;
   return estimate;
 }
@@ -39,9 +39,9 @@ void describe(std::vector<double> effects, std::size_t resamples, const RandomSt
   for (double& effect : effects) effect /= size;
   const auto found = bootstrap(effects.size(), resamples, random,
                                [&](std::span<const double> weights) { return moments(effects, weights); });
-  result.mu = times(found[0], size);
-  result.mu_star = times(found[1], size);
-  result.sigma = times(found[2], size);
+  result.mu = scaled_by(found[0], size);
+  result.mu_star = scaled_by(found[1], size);
+  result.sigma = scaled_by(found[2], size);
 }
 
 /// Of the move that follows row_of(trajectory, move); nothing without an answer on either side.

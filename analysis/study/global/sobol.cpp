@@ -6,61 +6,13 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/study/global/bootstrap.hpp"
+#include "limcycle/analysis/study/global/scaled_answers.hpp"
 
 namespace limcycle {
 namespace {
 
-constexpr std::size_t fewest_samples = 8;
-#ifndef MB
-#define MB 64
-#endif
-constexpr std::size_t most_blocks = MB;
-constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
-
-/// Answers of the samples that are looked at, centred and scaled so that no square of them loses digits or
-/// overflows: neither changes an index.
-class ScaledAnswers {
- public:
-  ScaledAnswers(const SobolDesign& design, RowAnswers answers, std::size_t samples)
-      : rows_(answers.begin(), answers.begin() + static_cast<std::ptrdiff_t>(samples * design.rows_per_sample())) {
-    for (auto& y : rows_) {
-      if (y && !std::isfinite(*y)) y.reset();
-      if (!y) ++missing_;
-      if (y) size_ = std::max(size_, std::abs(*y));
-    }
-    if (size_ == 0.0) return;
-    for (auto& y : rows_)
-      if (y) *y /= size_;
-    double sum = 0.0, squares = 0.0;
-    for_base(design, samples, [&](double y) { sum += y, ++base_; });
-    mean_ = base_ > 0 ? sum / static_cast<double>(base_) : 0.0;
-    for_base(design, samples, [&](double y) { squares += (y - mean_) * (y - mean_); });
-    deviation_ = base_ > 1 ? std::sqrt(squares / static_cast<double>(base_ - 1)) : 0.0;
-    for (auto& y : rows_)
-      if (y) *y -= mean_;
-  }
-
-  const std::optional<double>& operator[](std::size_t row) const { return rows_[row]; }
-  std::size_t rows() const { return rows_.size(); }
-  std::size_t missing() const { return missing_; }
-  double size() const { return size_; }  ///< of the unit
-  double mean() const { return mean_ * size_; }
-  double deviation() const { return deviation_ * size_; }
-  /// Nothing varies here but rounding and noise.
-  bool constant(double noise) const { return deviation_ <= rounding || deviation() <= noise; }
-
- private:
-  template <class F>
-  void for_base(const SobolDesign& design, std::size_t samples, F&& f) const {
-    for (std::size_t k = 0; k < samples; ++k)
-      for (const auto row : {design.row_a(k), design.row_b(k)})
-        if (rows_[row]) f(*rows_[row]);
-  }
-
-  std::vector<std::optional<double>> rows_;
-  std::size_t missing_ = 0, base_ = 0;
-  double size_ = 0.0, mean_ = 0.0, deviation_ = 0.0;
-};
+constexpr std::size_t fewest_samples = 8;  ///< that have an interval
+constexpr std::size_t most_blocks = 64;
 
 /// Sums over the base samples of a block.
 struct BlockSums {
@@ -112,7 +64,7 @@ class SobolSums {
  public:
   SobolSums(const SobolDesign& design, const ScaledAnswers& answers, std::size_t samples, double noise)
       : design_(design), y_(answers), samples_(samples), blocks_(std::min(samples, most_blocks)) {
-    least_ = std::max(rounding, noise / y_.size());
+    least_ = y_.least(noise);
     for (std::size_t i = 0; i < design.parameters(); ++i) parameters_.push_back(of_parameter(i));
     if (!design.second_order()) return;
     for (std::size_t i = 0; i < design.parameters(); ++i)
@@ -256,7 +208,10 @@ SobolIndices sobol_indices(const SobolDesign& design, RowAnswers answers, const 
     result.notes.emplace_back("the answers do not vary: there is no variance to share out");
   else
     estimate(SobolSums(design, scaled, samples, options.noise), options, result);
-  if (scaled.missing() > 0 && scaled.missing() < scaled.rows()) result.notes.emplace_back("NOTE");
+  if (scaled.missing() > 0 && scaled.missing() < scaled.rows())
+    result.notes.push_back(std::to_string(scaled.missing()) + " of " + std::to_string(scaled.rows()) +
+                           " rows have no answer: the indices are those within the part of the space that answers; "
+                           "parameters are not independent there, and indices need not add up");
   return result;
 }
 
