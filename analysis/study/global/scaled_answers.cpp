@@ -1,0 +1,36 @@
+#include "limcycle/analysis/study/global/scaled_answers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limcycle {
+
+ScaledAnswers::ScaledAnswers(const SobolDesign& design, RowAnswers answers, std::size_t samples) {
+  const auto taken = answers.first(samples * design.rows_per_sample());
+  rows_.assign(taken.begin(), taken.end());
+  for (auto& y : rows_) {
+    if (y && !std::isfinite(*y)) y.reset();
+    if (!y) ++missing_;
+    if (y) size_ = std::max(size_, std::abs(*y));
+  }
+  if (size_ == 0.0) return;  // all that answered are 0 already
+  std::vector<double> base;
+  for (std::size_t k = 0; k < samples; ++k)
+    for (const auto row : {design.row_a(k), design.row_b(k)})
+      if (rows_[row]) base.push_back(*rows_[row] / size_);
+  const double count = static_cast<double>(base.size());
+  for (const double y : base) mean_ += y / count;
+  double squares = 0.0;
+  for (const double y : base) squares += (y - mean_) * (y - mean_);
+  if (base.size() > 1) deviation_ = std::sqrt(squares / (count - 1.0));
+  for (auto& y : rows_)
+    if (y) *y = *y / size_ - mean_;
+}
+
+double ScaledAnswers::least(double noise) const {
+  constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();  // the largest answer is 1
+  return size_ > 0.0 ? std::max(rounding, noise / size_) : rounding;
+}
+
+}  // namespace limcycle

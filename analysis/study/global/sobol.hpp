@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/study/global/estimate.hpp"
+#include "limcycle/analysis/study/global/sobol_design.hpp"
+
+namespace limcycle {
+
+/// What one parameter does to an output.
+struct SobolIndex {
+  Estimate first;           ///< share of the output's variance that it makes alone: Var(E[y | x_i]) / Var(y)
+  Estimate total;           ///< alone and together with others: 1 - Var(E[y | all others]) / Var(y)
+  std::size_t samples = 0;  ///< base samples in which all rows that are needed answered
+};
+
+/// What two parameters do together, beyond what each does alone: Var(E[y | x_i, x_j]) / Var(y) - S_i - S_j.
+struct SobolInteraction {
+  std::size_t one = 0, other = 0;  ///< numbers of the parameters, one < other
+  Estimate share;
+  std::size_t samples = 0;  ///< base samples in which all rows that are needed answered
+};
+
+struct SobolIndices {
+  std::size_t samples = 0;                        ///< base samples that were looked at
+  std::size_t rows = 0, rows_without_answer = 0;  ///< of these samples
+  double mean = 0.0, deviation = 0.0;             ///< of the answers in rows A and B; 0 without any
+  std::vector<SobolIndex> parameters;             ///< in the order of the design
+  std::vector<SobolInteraction> interactions;     ///< with second order only: (0,1), (0,2), ..., (1,2), ...
+  std::vector<std::string> notes;                 ///< what a reader must know of them
+
+  double share_without_answer() const;
+  /// Numbers of the parameters, largest total index first; those with an unknown one come last.
+  std::vector<std::size_t> by_total() const;
+};
+
+struct SobolOptions {
+  std::size_t samples = 0;       ///< take only the first so many base samples of the design; 0: all
+  std::size_t resamples = 1000;  ///< of the bootstrap; below 100: no intervals
+  std::uint64_t seed = 0;        ///< of the bootstrap
+  double noise = 0.0;            ///< standard deviation that answers may have for no reason (their error)
+};
+
+/// Indices from the answers in the rows of a design. DOC
+SobolIndices sobol_indices(const SobolDesign& design, RowAnswers answers, const SobolOptions& options = {});
+
+/// The indices of the first eighth, quarter and half of the samples and of all of them (those that hold at least 8):
+/// has an index settled? The samples of each are among those of the next one.
+std::vector<SobolIndices> sobol_convergence(const SobolDesign& design, RowAnswers answers,
+                                            const SobolOptions& options = {});
+
+}  // namespace limcycle
