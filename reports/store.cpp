@@ -35,12 +35,12 @@ void remove_store(const std::string& path) {
   for (const char* end : {"", "-wal", "-shm", "-journal"}) std::filesystem::remove(path + end, ignored);
 }
 
-const SweepIdentity& checked(const SweepIdentity& identity) {
+const SweepIdentity& checked_identity(const SweepIdentity& identity) {
   if (identity.columns.empty()) throw std::invalid_argument("store: a row has at least one number");
   return identity;
 }
 
-const StoreOptions& checked(const StoreOptions& options) {
+const StoreOptions& checked_options(const StoreOptions& options) {
   if (!(options.interval >= 0.0 && options.interval <= 3600.0))
     throw std::invalid_argument("store: the interval must lie in 0..3600 s");
   if (options.waiting == 0) throw std::invalid_argument("store: at least one row has to wait");
@@ -57,7 +57,7 @@ struct WaitingRows {
 
 struct SweepStore::Impl {
   Impl(const std::string& named, const SweepIdentity& wanted, bool resume, const StoreOptions& wished)
-      : path(true_path(named)), identity(checked(wanted)), options(checked(wished)), lock(path) {
+      : path(true_path(named)), identity(checked_identity(wanted)), options(checked_options(wished)), lock(path) {
     if (holds_bytes(path) && !resume)
       throw refused_store(path + " exists already: go on with it by --resume, or name another file");
     std::error_code ignored;
@@ -91,7 +91,7 @@ struct SweepStore::Impl {
   }
 
   void go_on() {
-    if (const auto differs = difference(read_identity(*database, path), identity); !differs.empty())
+    if (const auto differs = identity_difference(read_identity(*database, path), identity); !differs.empty())
       throw refused_store(fmt::format("{} holds another sweep: {}. Repeat what it was begun with, or name another file",
                                       path, differs));
     if (const auto found = database->text("PRAGMA quick_check(1)"); found != "ok")

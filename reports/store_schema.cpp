@@ -11,8 +11,8 @@
 namespace limcycle {
 namespace {
 
-constexpr std::int64_t schema = 1;
-constexpr std::int64_t application = 0x4C435357;  // "LCSW"
+constexpr std::int64_t store_schema = 1;
+constexpr std::int64_t store_application = 0x4C435357;  // "LCSW"
 static_assert(std::numeric_limits<double>::is_iec559, "rows are stored as IEEE doubles");
 
 /// A list as one text, of which a reader of the database can make something.
@@ -20,13 +20,13 @@ std::string list_text(const std::vector<std::string>& list) {
   return Json(list).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-struct Field {
+struct IdentityField {
   const char* key;
   const char* name;  ///< in messages; null: not compared
   std::string value;
 };
 
-std::vector<Field> fields(const SweepIdentity& identity) {
+std::vector<IdentityField> identity_fields(const SweepIdentity& identity) {
   return {{"command", "the command", identity.command},
           {"title", nullptr, identity.title},
           {"case_file", nullptr, identity.case_file},
@@ -89,9 +89,9 @@ StoreContent content_of(Database& database) {
   try {
     const bool empty = database.number("SELECT count(*) FROM sqlite_master") == 0;
     const std::int64_t owner = database.number("PRAGMA application_id");
-    if (empty && (owner == 0 || owner == application)) return StoreContent::nothing;
-    if (owner != application) return StoreContent::other;
-    return database.number("PRAGMA user_version") > schema ? StoreContent::newer : StoreContent::sweep;
+    if (empty && (owner == 0 || owner == store_application)) return StoreContent::nothing;
+    if (owner != store_application) return StoreContent::other;
+    return database.number("PRAGMA user_version") > store_schema ? StoreContent::newer : StoreContent::sweep;
   } catch (const DatabaseError& error) {
     if (error.not_a_database()) return StoreContent::no_database;
     throw;
@@ -99,14 +99,14 @@ StoreContent content_of(Database& database) {
 }
 
 void make_tables(Database& database, const SweepIdentity& identity) {
-  database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", application, schema));
+  database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};", store_application, store_schema));
   database.run(
       "CREATE TABLE identity(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
       "CREATE TABLE sessions(id INTEGER PRIMARY KEY, began REAL NOT NULL, written REAL NOT NULL, rows INTEGER NOT "
       "NULL);"
       "CREATE TABLE rows(point INTEGER PRIMARY KEY, numbers BLOB NOT NULL, checksum INTEGER NOT NULL);");
   Statement insert(database, "INSERT INTO identity VALUES(?, ?)");
-  for (const auto& field : fields(identity)) {
+  for (const auto& field : identity_fields(identity)) {
     insert.bind(1, std::string_view(field.key));
     insert.bind(2, std::string_view(field.value));
     insert.run();
@@ -137,9 +137,9 @@ SweepIdentity read_identity(Database& database, const std::string& path) {
   return identity;
 }
 
-std::string difference(const SweepIdentity& stored, const SweepIdentity& wanted) {
+std::string identity_difference(const SweepIdentity& stored, const SweepIdentity& wanted) {
   std::string text;
-  const auto there = fields(stored), now = fields(wanted);
+  const auto there = identity_fields(stored), now = identity_fields(wanted);
   for (std::size_t i = 0; i < there.size(); ++i)
     if (there[i].name != nullptr && there[i].value != now[i].value)
       text += fmt::format("{}{} is {} there and {} now", text.empty() ? "" : ", ", there[i].name,

@@ -30,7 +30,7 @@ void make_tables(Database& database, const SweepIdentity& identity);
 SweepIdentity read_identity(Database& database, const std::string& path);
 
 /// What differs between two identities, in words for a message; empty if they are the same.
-std::string difference(const SweepIdentity& stored, const SweepIdentity& wanted);
+std::string identity_difference(const SweepIdentity& stored, const SweepIdentity& wanted);
 
 /// The points that are stored, in `known`, and their rows, in `rows`. Throws StoreError (failed) for a row that is not
 /// what was written.
