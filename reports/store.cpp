@@ -74,6 +74,14 @@ struct SweepStore::Impl {
     writer = std::jthread([this](const std::stop_token& stop) { write_out(stop); });
   }
 
+  ~Impl() {
+    writer.request_stop();
+    if (writer.joinable()) writer.join();
+    rest();
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
   void open() {
     database.emplace(path, Database::Access::write);
     const StoreContent content = content_of(*database);
@@ -111,6 +119,16 @@ struct SweepStore::Impl {
     insert.bind(1, seconds_since_1970());
     insert.run();
     session = database->number("SELECT max(id) FROM sessions");
+  }
+
+  /// Without its log the store is one file, which can be read where nothing can be written. A reader or a full disk may
+  /// be in the way: the store is as good with its log.
+  void rest() {
+    try {
+      database->run("PRAGMA busy_timeout = 100; PRAGMA journal_mode = DELETE");
+    } catch (const DatabaseError&) {
+      return;
+    }
   }
 
   /// What could not be begun leaves nothing behind.
