@@ -1,0 +1,293 @@
+#include "limcycle/reports/store.hpp"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <filesystem>
+#include <numeric>
+#include <thread>
+
+#include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/reports/store_samples.hpp"
+
+using namespace limcycle;
+using namespace limcycle::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// What opening that store is refused with; empty if it is not.
+std::string store_refusal(const std::string& path, const SweepIdentity& identity, bool resume,
+                          StoreError::Kind kind = StoreError::Kind::refused) {
+  try {
+    const SweepStore store(path, identity, resume);
+  } catch (const StoreError& error) {
+    CHECK(error.kind() == kind);
+    return error.what();
+  }
+  return {};
+}
+
+std::string reading_refusal(const std::string& path) {
+  try {
+    read_store(path);
+  } catch (const StoreError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::vector<std::size_t> points_from(std::size_t first, std::size_t end) {
+  std::vector<std::size_t> points(end - first);
+  std::iota(points.begin(), points.end(), first);
+  return points;
+}
+
+void fill(SweepStore& store, std::size_t first, std::size_t end) {
+  const auto points = points_from(first, end);
+  store.write(points, store_rows(points));
+}
+
+void sql(const std::string& path, const char* statement) {
+  sqlite3* database = nullptr;
+  REQUIRE(sqlite3_open(path.c_str(), &database) == SQLITE_OK);
+  REQUIRE(sqlite3_exec(database, statement, nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(database);
+}
+
+std::size_t files_beside(const std::string& path) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  return static_cast<std::size_t>(
+      std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("a store gives back every bit and its identity, and is one file when it is closed") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  const auto all = points_from(0, 100);
+  {
+    SweepStore store(path, sweep_identity(), false);
+    CHECK(std::ranges::count(store.known(), true) == 0);
+    for (const std::size_t first : {60U, 0U, 20U, 80U, 40U}) fill(store, first, first + 20);
+    CHECK(bits_of(store.read_all().rows) == bits_of(store_rows(all)));
+  }
+  CHECK(files_beside(path) == 1);
+  const StoredSweep stored = read_store(path);
+  CHECK(bits_of(stored.rows) == bits_of(store_rows(all)));
+  CHECK(stored.known == std::vector<bool>(100, true));
+  const auto wanted = sweep_identity();
+  CHECK(stored.identity.title == wanted.title);
+  CHECK(stored.identity.overrides == wanted.overrides);
+  CHECK(stored.identity.design == wanted.design);
+  CHECK(stored.identity.seed == wanted.seed);
+  CHECK(stored.identity.columns == wanted.columns);
+  CHECK(stored.identity.points == 100);
+  CHECK(stored.identity.isa == wanted.isa);
+  CHECK(files_beside(path) == 1);  // reading leaves nothing behind
+}
+
+TEST_CASE("a store goes on where it ended, and counts its sessions") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  { SweepStore(path, sweep_identity(), true).flush(); }  // --resume without a store begins one
+  {
+    SweepStore store(path, sweep_identity(), true);
+    fill(store, 10, 25);
+  }  // closing stores what waits
+  SweepStore store(path, sweep_identity(), true);
+  std::vector<bool> expected(100);
+  std::fill(expected.begin() + 10, expected.begin() + 25, true);
+  CHECK(store.known() == expected);
+  fill(store, 0, 5);
+  const StoredSweep stored = store.read_all();
+  CHECK(stored.activity.known == 20);
+  CHECK(stored.activity.sessions == 3);
+  CHECK(stored.activity.session_rows == 5);
+  CHECK(stored.activity.running);
+  CHECK(stored.activity.pid == getpid());
+  CHECK(stored.activity.written >= stored.activity.began);
+  CHECK(std::ranges::all_of(std::span(stored.rows).subspan(15, 15), [](double value) { return std::isnan(value); }));
+}
+
+TEST_CASE("a store refuses another sweep and says what differs") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  {
+    SweepStore store(path, sweep_identity(), false);
+    fill(store, 0, 10);
+  }
+  const std::string before = scratch.get("a.store");
+  CHECK_THAT(store_refusal(path, sweep_identity(), false),
+             Contains(path) && Contains("exists already") && Contains("--resume"));
+  const auto changed = [&](auto change) {
+    SweepIdentity other = sweep_identity();
+    change(other);
+    return store_refusal(path, other, true);
+  };
+  CHECK_THAT(changed([](auto& other) { other.case_sha256 = std::string(64, 'b'); }),
+             Contains("holds another sweep") && Contains("the case file") && Contains("aaa") && Contains("bbb"));
+  CHECK_THAT(changed([](auto& other) { other.command = "sensitivity"; }),
+             Contains("the command is 'map' there and 'sensitivity' now"));
+  CHECK_THAT(changed([](auto& other) { other.overrides.pop_back(); }), Contains("--set is"));
+  CHECK_THAT(changed([](auto& other) { other.overrides = {"loop.controller.kd=6.5,title=\"two\nlines\""}; }),
+             Contains("--set is"));
+  CHECK_THAT(changed([](auto& other) { other.design.back() = 'G'; }),
+             Contains("the design is '...") && Contains("10, loG' now"));
+  CHECK_THAT(changed([](auto& other) { other.seed = 7; }), Contains("the seed is '18446744073709551615' there"));
+  CHECK_THAT(changed([](auto& other) { other.columns[1] = "offset"; }), Contains("the columns"));
+  CHECK_THAT(changed([](auto& other) { other.points = 101; }), Contains("points is '100' there and '101' now"));
+  CHECK_THAT(changed([](auto& other) { other.version = "0.2.0"; }), Contains("the program's version"));
+  CHECK_THAT(changed([](auto& other) { other.commit = "0123456789ac"; }), Contains("the program's commit"));
+  CHECK_THAT(changed([](auto& other) { other.isa = "avx512"; }), Contains("the instruction set"));
+  CHECK_THAT(changed([](auto& other) { other.seed = 7, other.isa = "scalar"; }),
+             Contains("the seed") && Contains("the instruction set"));
+  CHECK(scratch.get("a.store") == before);
+  CHECK(changed([](auto& other) { other.title = other.case_file = "moved"; }).empty());
+}
+
+TEST_CASE("what is not a store is refused and left alone") {
+  const Scratch scratch;
+  const std::string text = scratch.put("notes.txt", std::string(5000, 'n'));
+  CHECK_THAT(store_refusal(text, sweep_identity(), true), Contains(text) && Contains("is not a store"));
+  CHECK_THAT(reading_refusal(text), Contains("is not a store"));
+  CHECK(scratch.get("notes.txt") == std::string(5000, 'n'));
+  const std::string other = scratch.file("other.db");
+  sql(other, "CREATE TABLE rows(point INTEGER PRIMARY KEY)");
+  const std::string before = scratch.get("other.db");
+  CHECK_THAT(store_refusal(other, sweep_identity(), true), Contains("is not a store"));
+  CHECK_THAT(reading_refusal(other), Contains("is not a store"));
+  CHECK(scratch.get("other.db") == before);
+  CHECK(files_beside(text) == 2);
+  CHECK_THAT(store_refusal(scratch.file("no/folder.store"), sweep_identity(), false),
+             Contains("cannot be written: No such file or directory"));
+  CHECK_THAT(store_refusal(std::filesystem::path(text).parent_path(), sweep_identity(), true),
+             Contains("is not a file"));
+  CHECK_THAT(reading_refusal(scratch.file("none.store")), Contains("does not exist"));
+  CHECK(files_beside(text) == 2);
+  // An empty file holds nothing that could be lost.
+  CHECK(store_refusal(scratch.put("empty", ""), sweep_identity(), false).empty());
+}
+
+TEST_CASE("a store of a newer program is refused") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  { SweepStore(path, sweep_identity(), false).flush(); }
+  sql(path, "PRAGMA user_version = 2");
+  CHECK_THAT(store_refusal(path, sweep_identity(), true), Contains("newer limcycle"));
+  CHECK_THAT(reading_refusal(path), Contains("newer limcycle"));
+}
+
+TEST_CASE("a damaged store is refused, and nothing of it is taken for a result") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  {
+    SweepStore store(path, sweep_identity(3000), false);
+    fill(store, 0, 3000);
+  }
+  const std::string whole = scratch.get("a.store");
+  const auto refused = [&](const std::string& bytes) {
+    scratch.put("a.store", bytes);
+    CHECK_THAT(reading_refusal(path), Contains("is damaged"));
+    CHECK_THAT(store_refusal(path, sweep_identity(3000), true, StoreError::Kind::failed), Contains("is damaged"));
+  };
+  refused(whole.substr(0, whole.size() / 2));
+  refused(whole.substr(0, whole.size() - 4096));
+  // One bit of a number is nothing that the database notices.
+  const std::string third("\x55\x55\x55\x55\x55\x55\xd5\x3f", 8);
+  const auto at = whole.find(third);
+  REQUIRE(at != std::string::npos);
+  std::string one_bit = whole;
+  one_bit[at] ^= 1;
+  refused(one_bit);
+  scratch.put("a.store", whole);
+  CHECK(reading_refusal(path).empty());
+}
+
+TEST_CASE("one writer at a time: in this process, in another one, under another name") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  {
+    SweepStore store(path, sweep_identity(), false);
+    CHECK_THAT(store_refusal(path, sweep_identity(), true),
+               Contains("is being written by process " + std::to_string(getpid())));
+    std::filesystem::create_symlink(path, scratch.file("link.store"));
+    CHECK_THAT(store_refusal(scratch.file("link.store"), sweep_identity(), true), Contains("is being written"));
+    fill(store, 0, 50);
+    store.flush();  // the refusals have cost it nothing
+    const pid_t other = in_child([&] {
+      try {
+        const SweepStore second(path, sweep_identity(), true);
+      } catch (const StoreError& error) {
+        return error.kind() == StoreError::Kind::refused ? 7 : 8;
+      }
+      return 0;
+    });
+    CHECK(end_of(other) == 7);
+    fill(store, 50, 60);
+  }
+  CHECK(store_refusal(path, sweep_identity(), true).empty());
+  CHECK(read_store(path).activity.known == 60);
+  CHECK_FALSE(read_store(path).activity.running);
+}
+
+TEST_CASE("a store is read while it is written, always a whole moment of it") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  constexpr std::size_t points = 20000, block = 10;
+  SweepStore store(path, sweep_identity(points), false, {.interval = 0.001, .waiting = 1000});
+  std::jthread writer([&] {
+    for (std::size_t first = 0; first < points; first += block) fill(store, first, first + block);
+    store.flush();
+  });
+  std::size_t last = 0, between = 0;
+  while (last < points) {
+    const StoredSweep now = read_store(path);
+    REQUIRE(now.activity.known >= last);
+    REQUIRE(std::ranges::count(now.known, true) == static_cast<long>(now.activity.known));
+    REQUIRE(now.activity.known == now.activity.session_rows);
+    REQUIRE(now.activity.known % block == 0);
+    // They are written in order: what is there is the beginning.
+    const auto some = points_from(0, now.activity.known);
+    REQUIRE(bits_of(std::span(now.rows).first(3 * some.size())) == bits_of(store_rows(some)));
+    between += now.activity.known > 0 && now.activity.known < points ? 1U : 0U;
+    last = now.activity.known;
+  }
+  CHECK(between > 0);
+}
+
+TEST_CASE("a store takes no point twice, none that does not exist, and no half row") {
+  const Scratch scratch;
+  SweepStore store(scratch.file("a.store"), sweep_identity(), false);
+  fill(store, 0, 10);
+  const auto before = store.known();
+  for (const auto& points : {std::vector<std::size_t>{20, 5}, {30, 100}, {40, 40}}) {
+    CHECK_THROWS_AS(store.write(points, store_rows(points)), std::invalid_argument);
+    CHECK(store.known() == before);
+  }
+  const std::vector<std::size_t> points{50, 51};
+  CHECK_THROWS_AS(store.write(points, std::vector<double>(5)), std::invalid_argument);
+  CHECK(store.read_all().activity.known == 10);
+  SweepIdentity empty = sweep_identity();
+  empty.columns.clear();
+  CHECK_THROWS_AS(SweepStore(scratch.file("b.store"), empty, false), std::invalid_argument);
+  CHECK_THROWS_AS(SweepStore(scratch.file("b.store"), sweep_identity(), false, {.interval = NAN, .waiting = 1}),
+                  std::invalid_argument);
+  CHECK_FALSE(std::filesystem::exists(scratch.file("b.store")));
+}
+
+TEST_CASE("rows reach the disk one interval after they were handed over, without another call") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  SweepStore store(path, sweep_identity(), false, {.interval = 0.05, .waiting = 1000});
+  for (const std::size_t first : {0U, 10U}) {
+    fill(store, first, first + 10);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (read_store(path).activity.known < first + 10 && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    CHECK(read_store(path).activity.known == first + 10);
+  }
+}
