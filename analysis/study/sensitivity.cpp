@@ -43,16 +43,15 @@ GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std
   for (std::size_t output = 0; output < HuntingAnswer::numbers; ++output) {
     std::vector<std::optional<double>> numbers;
     for (const auto& answer : answers) numbers.push_back(number_of_answer(answer, output));
-    const auto for_morris = Answers(numbers).first(plan.morris().rows());
-    const auto for_sobol = Answers(numbers).subspan(plan.morris().rows());
+    const auto for_morris = std::span<const std::optional<double>>(numbers).first(plan.morris().rows());
+    const auto for_sobol = std::span<const std::optional<double>>(numbers).subspan(plan.morris().rows());
     SobolOptions options;
     options.seed = plan.spread().seed;
     options.noise = noise_of(output, numbers, noise);
     OutputSensitivity one;
     one.output = HuntingAnswer::names[output];
     const Probability fair = probability(plan.sobol(), for_sobol);
-    one.share_without_answer =
-        static_cast<double>(fair.undecided) / static_cast<double>(2 * plan.sobol().samples());
+    one.share_without_answer = static_cast<double>(fair.undecided) / static_cast<double>(2 * plan.sobol().samples());
     one.morris = morris_effects(plan.morris(), for_morris, options.resamples, options.seed);
     one.sobol = sobol_indices(plan.sobol(), for_sobol, options);
     one.convergence = sobol_convergence(plan.sobol(), for_sobol, options);
