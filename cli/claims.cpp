@@ -18,11 +18,6 @@ struct ClaimsFlags : CommonFlags {
   bool list = false, verbose = false;
 };
 
-InputError refusal(const std::string& key, const std::string& rule, const std::string& suggestion = {}) {
-  return InputError(
-      {.file = {}, .line = 0, .override = {}, .key = key, .value = {}, .rule = rule, .suggestion = suggestion});
-}
-
 bool is_case(const std::string& word) {
   std::error_code ignored;
   return word.ends_with(".toml") || std::filesystem::is_regular_file(word, ignored);

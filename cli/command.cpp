@@ -69,4 +69,9 @@ Provenance provenance(const CommonFlags& flags, const Case* from) {
   return made;
 }
 
+InputError refusal(const std::string& key, const std::string& rule, const std::string& suggestion) {
+  return InputError(
+      {.file = {}, .line = 0, .override = {}, .key = key, .value = {}, .rule = rule, .suggestion = suggestion});
+}
+
 }  // namespace limcycle

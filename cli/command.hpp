@@ -53,6 +53,9 @@ Isa instruction_set(const CommonFlags& flags);
 /// settings, from what. `from`: the case, or null if the command has none.
 Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 
+/// What is wrong with the command line: `key` is the flag or word, with its value. Message: "KEY: RULE; SUGGESTION".
+InputError refusal(const std::string& key, const std::string& rule, const std::string& suggestion = {});
+
 // Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.
 void add_adequate(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);

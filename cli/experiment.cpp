@@ -18,11 +18,6 @@ struct ExperimentFlags : CommonFlags {
   std::string pictures;           ///< --svg
 };
 
-InputError refusal(const std::string& key, const std::string& rule, const std::string& suggestion) {
-  return InputError(
-      {.file = {}, .line = 0, .override = {}, .key = key, .value = {}, .rule = rule, .suggestion = suggestion});
-}
-
 /// The experiments of that name: one, or all.
 std::vector<ExperimentEntry> chosen(const std::string& name) {
   if (name == "all") return experiments();
@@ -80,7 +75,7 @@ std::vector<Experiment> run_all(const std::vector<ExperimentEntry>& entries, con
 }
 
 int run(ExperimentFlags flags) {
-  if (!flags.set.empty()) throw refusal("--set", "experiments have no case; --law chooses laws", "");
+  if (!flags.set.empty()) throw refusal("--set", "experiments have no case; --law chooses laws");
   if (flags.name.empty()) return list(flags);
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   if (flags.pictures.empty() && flags.output.ends_with(".svg")) flags.pictures = std::exchange(flags.output, {});

@@ -16,11 +16,6 @@ constexpr void (*commands[])(CLI::App&, Action&) = {
     add_predict,   add_df,       add_simulate,      add_continue, add_margin,     add_map,   add_sensitivity,
     add_precision, add_adequate, add_dissipativity, add_claims,   add_experiment, add_check, add_laws};
 
-InputError usage(const std::string& rule, const std::string& suggestion = {}) {
-  return InputError(
-      {.file = {}, .line = 0, .override = {}, .key = {}, .value = {}, .rule = rule, .suggestion = suggestion});
-}
-
 std::string version_text() {
   return std::string("limcycle ") + build_info::version + " (" + build_info::commit + ", " + build_info::compiler +
          ", " + build_info::build_type + ")";
@@ -28,13 +23,13 @@ std::string version_text() {
 
 /// A word where a command should stand, before the parser makes something else of it.
 void check_command(const CLI::App& program, int argc, char** argv) {
-  if (argc < 2) throw usage("a command is needed", "'limcycle --help' lists them");
+  if (argc < 2) throw refusal({}, "a command is needed", "'limcycle --help' lists them");
   const std::string word = argv[1];
   if (word.starts_with('-')) return;
   std::vector<std::string> names;
   for (const auto* command : program.get_subcommands({})) names.push_back(command->get_name());
   if (std::ranges::find(names, word) == names.end())
-    throw usage("unknown command '" + word + "'", suggest(word, names));
+    throw refusal({}, "unknown command '" + word + "'", suggest(word, names));
 }
 
 /// What the parser could not place: a misspelt option or a second case.
@@ -43,11 +38,11 @@ InputError unexpected(const CLI::App& program) {
   const std::string command = chosen.empty() ? "" : chosen.front()->get_name() + ": ";
   const auto left = program.remaining(true);
   const std::string word = left.empty() ? std::string() : left.front();
-  if (!word.starts_with('-') || chosen.empty()) return usage(command + "unexpected argument '" + word + "'");
+  if (!word.starts_with('-') || chosen.empty()) return refusal({}, command + "unexpected argument '" + word + "'");
   std::vector<std::string> names;
   for (const auto* option : chosen.front()->get_options())
     for (const auto& name : option->get_lnames()) names.push_back("--" + name);
-  return usage(command + "unknown option '" + word + "'", suggest(word.substr(0, word.find('=')), names));
+  return refusal({}, command + "unknown option '" + word + "'", suggest(word.substr(0, word.find('=')), names));
 }
 
 int run(int argc, char** argv) {
@@ -72,7 +67,7 @@ int run(int argc, char** argv) {
     throw unexpected(program);
   } catch (const CLI::ParseError& error) {
     const auto chosen = program.get_subcommands();
-    throw usage((chosen.empty() ? "" : chosen.front()->get_name() + ": ") + error.what());
+    throw refusal({}, (chosen.empty() ? "" : chosen.front()->get_name() + ": ") + error.what());
   }
   return action();
 }

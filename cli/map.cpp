@@ -34,14 +34,7 @@ Methods chosen_methods(const std::vector<std::string>& names) {
   bool* const switches[] = {&chosen.describing_function, &chosen.composite, &chosen.harmonic_balance};
   for (const auto& name : names) {
     const auto found = std::ranges::find(known, name);
-    if (found == known.end())
-      throw InputError({.file = {},
-                        .line = 0,
-                        .override = {},
-                        .key = "--methods",
-                        .value = name,
-                        .rule = "unknown method",
-                        .suggestion = suggest(name, known)});
+    if (found == known.end()) throw refusal("--methods " + name, "unknown method", suggest(name, known));
     *switches[found - known.begin()] = true;
   }
   return chosen;

@@ -12,11 +12,6 @@
 namespace limcycle {
 namespace {
 
-InputError refusal(const std::string& flag, const std::string& path, const std::string& rule) {
-  return InputError(
-      {.file = {}, .line = 0, .override = {}, .key = flag + " " + path, .value = {}, .rule = rule, .suggestion = {}});
-}
-
 bool written_to(std::ostream& out, std::string_view document) {
   return static_cast<bool>(out.write(document.data(), static_cast<std::streamsize>(document.size())).flush());
 }
@@ -59,7 +54,7 @@ Output::Output(const CommonFlags& flags) : json_(flags.json), csv_(flags.csv) {
   for (std::size_t i = 0; i < named.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
       if (!named[i].second.empty() && named[i].second == named[k].second)
-        throw refusal(named[i].first, named[i].second, "is where " + named[k].first + " goes already");
+        throw refusal(named[i].first + " " + named[i].second, "is where " + named[k].first + " goes already");
   text_ = !flags.output.empty() ? flags.output : json_ == "-" || csv_ == "-" ? "" : "-";
   for (const auto& [flag, path] : named) check_file(flag, path);
 }
@@ -79,7 +74,7 @@ void Output::check_file(const std::string& flag, const std::string& path) {
     return;
   errno = 0;
   if (!std::ofstream(path, std::ios::app))
-    throw refusal(flag, path, std::string("cannot be written: ") + std::strerror(errno));
+    throw refusal(flag + " " + path, std::string("cannot be written: ") + std::strerror(errno));
   if (!std::filesystem::exists(status)) created_.push_back(path);
 }
 

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "limcycle/cases/input_error.hpp"
+#include "limcycle/cli/command.hpp"
 
 namespace limcycle {
 namespace {
@@ -16,20 +16,10 @@ bool read(std::string_view text, double& value) {
   return result.ec == std::errc() && result.ptr == end && std::isfinite(value);
 }
 
-InputError refused(const std::string& flag, const std::string& text, const std::string& rule) {
-  return InputError({.file = {},
-                     .line = 0,
-                     .override = {},
-                     .key = flag + " " + (text.empty() ? "''" : text),
-                     .value = {},
-                     .rule = rule,
-                     .suggestion = {}});
-}
-
 }  // namespace
 
 ParameterRange parameter_range(const std::string& flag, const std::string& text) {
-  const auto refuse = [&](const std::string& rule) { return refused(flag, text, rule); };
+  const auto refuse = [&](const std::string& rule) { return refusal(flag + " " + (text.empty() ? "''" : text), rule); };
   const auto equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
   if (equals == std::string::npos || colon == std::string::npos || equals == 0)
     throw refuse("must be PATH=FROM:TO, such as loop.controller.kd=1:50");
@@ -43,7 +33,7 @@ ParameterRange parameter_range(const std::string& flag, const std::string& text)
 }
 
 MapAxis map_axis(const std::string& flag, const std::string& text) {
-  const auto refuse = [&](const std::string& rule) { return refused(flag, text, rule); };
+  const auto refuse = [&](const std::string& rule) { return refusal(flag + " " + (text.empty() ? "''" : text), rule); };
   std::string rest = text;
   const bool logarithmic = rest.ends_with(":log");
   if (logarithmic) rest.resize(rest.size() - 4);
