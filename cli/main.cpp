@@ -7,13 +7,14 @@
 #include "limcycle/cases/input_error.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/output.hpp"
+#include "limcycle/reports/store.hpp"
 
 namespace limcycle {
 namespace {
 
-constexpr void (*commands[])(CLI::App&, Action&) = {add_predict, add_df,         add_simulate, add_continue,
-                                                    add_margin,  add_precision,  add_adequate, add_dissipativity,
-                                                    add_claims,  add_experiment, add_check,    add_laws};
+constexpr void (*commands[])(CLI::App&, Action&) = {
+    add_predict,       add_df,     add_simulate,   add_continue, add_margin, add_precision, add_adequate,
+    add_dissipativity, add_claims, add_experiment, add_status,   add_check,  add_laws};
 
 InputError usage(const std::string& rule, const std::string& suggestion = {}) {
   return InputError(
@@ -96,6 +97,8 @@ int main(int argc, char** argv) {
     return complain("out of memory", exit_no_answer);
   } catch (const OutputError& error) {
     return complain(error.what(), exit_no_answer);
+  } catch (const StoreError& error) {
+    return complain(error.what(), error.kind() == StoreError::Kind::refused ? exit_bad_input : exit_no_answer);
   } catch (const std::exception& error) {
     return complain(std::string("internal error: ") + error.what(), exit_no_answer);
   }
