@@ -77,8 +77,9 @@ std::string status_text(const std::string& file, const StoredSweep& sweep, doubl
   const std::size_t points = sweep.identity.points, known = sweep.activity.known;
   std::string text = sweep.identity.title.empty() ? "" : wrapped(sweep.identity.title) + "\n";
   const double share = points > 0 ? static_cast<double>(known) / static_cast<double>(points) : 1.0;
-  text += wrapped(fmt::format("{}, {}: {} of {} known ({}). {}", file, sweep.identity.command, known,
-                              count_of(points, "point"), as_percent(share), who_writes(sweep)));
+  text += wrapped(fmt::format("{}, {}: {} of {} known ({}).", file, sweep.identity.command, known,
+                              count_of(points, "point"), as_percent(share)));
+  text += who_writes(sweep) + "\n";
   text += pace(sweep, now);
   if (known == 0) return text;
   return text + "\n" + (known < points ? "Provisional results\n" : "Results\n") + summary_table(sweep).text();

@@ -20,7 +20,7 @@ TEST_CASE("status: a store while it is written and afterwards") {
     const auto ran = run({"status", path});
     CHECK(ran.code == 0);
     CHECK(ran.err.empty());
-    CHECK_THAT(ran.out, Contains("map: 3 of 100") && Contains("(3.00 %)") && Contains("Provisional results") &&
+    CHECK_THAT(ran.out, Contains("map: 3 of 100") && Contains("(3 %)") && Contains("Provisional results") &&
                             Contains("Process " + std::to_string(getpid()) + " is"));
   }
   CHECK_THAT(run({"status", path}).out, Contains("Nobody is computing"));
