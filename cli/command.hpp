@@ -71,5 +71,6 @@ void add_precision(CLI::App& program, Action& action);
 void add_predict(CLI::App& program, Action& action);
 void add_sensitivity(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);
+void add_status(CLI::App& program, Action& action);
 
 }  // namespace limcycle

@@ -7,19 +7,13 @@
 #include <cmath>
 #include <iostream>
 
+#include "limcycle/reports/number.hpp"
+
 namespace limcycle {
 namespace {
 
 constexpr int bar_width = 30;
 constexpr std::size_t line_width = 78;
-
-std::string duration(double seconds) {
-  if (!(seconds < 360000.0)) return "?";
-  const int s = static_cast<int>(std::ceil(seconds));
-  if (s < 60) return fmt::format("{} s", s);
-  return s < 3600 ? fmt::format("{} min {:02} s", s / 60, s % 60)
-                  : fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
-}
 
 }  // namespace
 
@@ -32,17 +26,36 @@ Progress::~Progress() {
 void Progress::show(double fraction, std::string_view what) {
   if (!wanted_) return;
   const std::lock_guard lock(mutex_);
+  const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
+  std::string more;
+  if (done > 0.0) more = ", " + as_waiting_time(passed() * (1.0 - done) / done) + " left";
+  if (!what.empty()) more += fmt::format("  {}", what);
+  draw(done, more);
+}
+
+void Progress::count(std::size_t done, std::size_t total) {
+  if (!wanted_) return;
+  const std::lock_guard lock(mutex_);
+  if (!first_) first_ = done;
+  std::string more = fmt::format(", {} of {}", done, total);
+  const double rate = static_cast<double>(done - std::min(*first_, done)) / passed();
+  if (rate > 0.0)
+    more += fmt::format(", {}/s, {} left", with_digits(rate, 3),
+                        as_waiting_time(static_cast<double>(total - std::min(done, total)) / rate));
+  draw(total > 0 ? static_cast<double>(std::min(done, total)) / static_cast<double>(total) : 1.0, more);
+}
+
+double Progress::passed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+void Progress::draw(double done, const std::string& more) {
   const auto now = Clock::now();
   if (now < next_) return;
   next_ = now + std::chrono::milliseconds(100);
   drawn_ = true;
-  const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
-  const double passed = std::chrono::duration<double>(now - begin_).count();
   const int full = static_cast<int>(done * bar_width);
   std::string line = fmt::format("[{}{}] {:3.0f} %", std::string(static_cast<std::size_t>(full), '#'),
-                                 std::string(static_cast<std::size_t>(bar_width - full), '.'), 100.0 * done);
-  if (done > 0.0) line += ", " + duration(passed * (1.0 - done) / done) + " left";
-  if (!what.empty()) line += fmt::format("  {}", what);
+                                 std::string(static_cast<std::size_t>(bar_width - full), '.'), 100.0 * done) +
+                     more;
   line.resize(line_width, ' ');
   std::cerr << '\r' << line << std::flush;
 }

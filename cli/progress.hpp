@@ -1,6 +1,9 @@
 #pragma once
 #include <chrono>
+#include <cstddef>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace limcycle {
@@ -17,11 +20,19 @@ class Progress {
   /// `fraction` done in 0..1; `what` is being done. Draws at most ten times a second.
   void show(double fraction, std::string_view what = {});
 
+  /// So many points of a sweep are known. What was known at the first call (from a store) counts neither for the rate
+  /// nor for the time left.
+  void count(std::size_t done, std::size_t total);
+
  private:
   using Clock = std::chrono::steady_clock;
+  double passed() const;                            // s
+  void draw(double done, const std::string& more);  // with the mutex held
+
   std::mutex mutex_;
   const bool wanted_;
   bool drawn_ = false;
+  std::optional<std::size_t> first_;
   const Clock::time_point begin_ = Clock::now();
   Clock::time_point next_ = begin_ + std::chrono::seconds(1);
 };

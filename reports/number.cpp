@@ -79,4 +79,13 @@ std::string as_percent(double share) {
   return fmt::format("{:.{}f} %", percent, percent == std::round(percent) ? 0 : 1);
 }
 
+std::string as_waiting_time(double seconds) {
+  if (!(seconds >= 0.0 && seconds < 3.15e9)) return "?";  // a century
+  const auto s = static_cast<long>(std::ceil(seconds));
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  if (s < 86400) return fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
+  return fmt::format("{} d {:02} h", s / 86400, s / 3600 % 24);
+}
+
 }  // namespace limcycle

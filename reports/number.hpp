@@ -28,4 +28,7 @@ std::string as_error(double value);
 /// A share as per cent, three digits ("62.1 %"); a share that is not 0 or 1 is never printed as 0 % or 100 %.
 std::string as_percent(double share);
 
+/// A time to wait for, rounded up: "12 s", "3 min 05 s", "2 h 04 min", "3 d 01 h"; "?" if it is not known.
+std::string as_waiting_time(double seconds);
+
 }  // namespace limcycle

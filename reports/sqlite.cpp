@@ -18,11 +18,13 @@ DatabaseError database_error(sqlite3* handle, int code) {
 bool DatabaseError::not_a_database() const { return (code_ & 0xff) == SQLITE_NOTADB; }
 bool DatabaseError::damaged() const { return (code_ & 0xff) == SQLITE_CORRUPT; }
 bool DatabaseError::cannot_open() const { return (code_ & 0xff) == SQLITE_CANTOPEN; }
+bool DatabaseError::may_not_write() const { return (code_ & 0xff) == SQLITE_READONLY; }
 
 void Database::Close::operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
 
 Database::Database(const std::string& path, Access access) {
-  const int how = access == Access::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  int how = access == Access::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
+  if (access == Access::write) how |= SQLITE_OPEN_CREATE;
   sqlite3* handle = nullptr;
   const int code = sqlite3_open_v2(path.c_str(), &handle, how | SQLITE_OPEN_NOMUTEX, nullptr);
   handle_.reset(handle);  // even a failed one has to be closed

@@ -23,6 +23,7 @@ class DatabaseError : public std::runtime_error {
   bool not_a_database() const;  ///< the file is something else
   bool damaged() const;         ///< the file contradicts itself
   bool cannot_open() const;     ///< no such file, no permission
+  bool may_not_write() const;   ///< of a reader: a crash left work that must be undone first
 
  private:
   int code_;
@@ -31,10 +32,10 @@ class DatabaseError : public std::runtime_error {
 /// One connection, for one thread at a time.
 class Database {
  public:
-  enum class Access { read, write };
+  enum class Access { read, recover, write };
 
-  /// `write` makes the file where there is none. Throws DatabaseError; a file that is no database is noticed by the
-  /// first statement only.
+  /// `recover` may write, `write` makes the file where there is none. Throws DatabaseError; a file that is no database
+  /// is noticed by the first statement only.
   Database(const std::string& path, Access access);
 
   /// Runs statements without parameters and results.

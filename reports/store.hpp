@@ -5,8 +5,9 @@
 /// system, before the next one begins, so that what was once stored survives kill -9 and a loss of power; SQLite's
 /// NORMAL would save one fsync a transaction and could lose the last ones. Rows are gathered for a moment first
 /// (StoreOptions), which is what may have to be computed again. While a sweep runs there are STORE-wal, STORE-shm
-/// (SQLite's) and STORE-lock beside the file; they go when it ends. Not for a network file system shared by several
-/// machines: SQLite's WAL needs one kernel.
+/// (SQLite's) and STORE-lock beside the file; they go when it ends. After a kill they stay, and STORE-wal then belongs
+/// to the store: it holds what was stored last, until the next session takes it up. Not for a network file system
+/// shared by several machines: SQLite's WAL needs one kernel.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -47,22 +47,36 @@ void require_sweep(const std::string& path, StoreContent content) {
   }
 }
 
+namespace {
+
+StoredSweep read_store(const std::string& path, Database::Access access) {
+  StoredSweep stored;
+  Database database(path, access);
+  // One moment of it, however much is written meanwhile.
+  Transaction transaction(database, Transaction::Kind::read);
+  require_sweep(path, content_of(database));
+  stored.identity = read_identity(database, path);
+  read_rows(database, path, stored);
+  stored.activity = read_activity(database, path);
+  const long pid = StoreLock::holder(path);
+  stored.activity.running = pid != 0;
+  stored.activity.pid = std::max(pid, 0L);
+  return stored;
+}
+
+}  // namespace
+
 StoredSweep read_store(const std::string& named) {
   const std::string path = true_path(named);
   if (!holds_bytes(path)) throw refused_store(path + " does not exist or is empty");
   try {
-    StoredSweep stored;
-    Database database(path, Database::Access::read);
-    // One moment of it, however much is written meanwhile.
-    Transaction transaction(database, Transaction::Kind::read);
-    require_sweep(path, content_of(database));
-    stored.identity = read_identity(database, path);
-    read_rows(database, path, stored);
-    stored.activity = read_activity(database, path);
-    const long pid = StoreLock::holder(path);
-    stored.activity.running = pid != 0;
-    stored.activity.pid = std::max(pid, 0L);
-    return stored;
+    try {
+      return read_store(path, Database::Access::read);
+    } catch (const DatabaseError& error) {
+      // A process was killed while it opened or closed the store: what it had begun is undone by whoever comes next.
+      if (!error.may_not_write()) throw;
+      return read_store(path, Database::Access::recover);
+    }
   } catch (const DatabaseError& error) {
     throw from_database(path, error);
   }

@@ -207,6 +207,29 @@ TEST_CASE("a damaged store is refused, and nothing of it is taken for a result")
   CHECK(reading_refusal(path).empty());
 }
 
+TEST_CASE("what a process had begun to change in a store at rest when it was killed is undone by the next reader") {
+  const Scratch scratch;
+  const std::string path = scratch.file("a.store");
+  constexpr std::size_t points = 3000;
+  {
+    SweepStore store(path, sweep_identity(points), false);
+    fill(store, 0, points);
+  }
+  const std::string whole = scratch.get("a.store");
+  const pid_t other = in_child([&] {
+    sqlite3* database = nullptr;
+    return sqlite3_open(path.c_str(), &database) == SQLITE_OK &&
+                   sqlite3_exec(database, "PRAGMA cache_size = 5; BEGIN; UPDATE rows SET checksum = 0", nullptr,
+                                nullptr, nullptr) == SQLITE_OK
+               ? 5
+               : 6;
+  });
+  REQUIRE(end_of(other) == 5);
+  REQUIRE(std::filesystem::exists(path + "-journal"));
+  REQUIRE(scratch.get("a.store") != whole);
+  CHECK(bits_of(read_store(path).rows) == bits_of(store_rows(points_from(0, points))));
+}
+
 TEST_CASE("one writer at a time: in this process, in another one, under another name") {
   const Scratch scratch;
   const std::string path = scratch.file("a.store");
