@@ -31,7 +31,8 @@ struct Equilibria {
   explicit Equilibria(const Loop& loop) {
     const Index n = loop.states();
     const State typical = typical_sizes(loop);
-    scale = Eigen::Map<const VectorXd>(typical.data(), n + 1);
+    scale.resize(n + 1);
+    scale.head(n) = Eigen::Map<const VectorXd>(typical.data(), n);
     scale(n) = scales_of(loop.elements.back()).output;
     const Port& port = loop.ports.back();
     MatrixXd M(n + 1, n + 1);
