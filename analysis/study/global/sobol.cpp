@@ -39,9 +39,8 @@ void fill(const SobolEstimator& estimator, std::size_t blocks, const SobolOption
 
 std::string without_answer(const ScaledAnswers& answers) {
   return std::to_string(answers.missing()) + " of " + std::to_string(answers.rows()) +
-         " rows have no answer: the indices are of the parameters' distribution where there is one. If the parameters "
-         "decide whether there is, they are not independent there: first indices and interactions need not add up, and "
-         "total indices are approximate";
+         " rows have no answer: the indices are of the parameters' distribution among answers. Where the parameters "
+         "decide whether there is one, they are not independent there, and indices need not add up";
 }
 
 SobolIndices nothing_known(const SobolDesign& design, std::size_t samples) {

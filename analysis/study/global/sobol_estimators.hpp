@@ -46,14 +46,19 @@ inline std::optional<double> interaction(std::optional<double> together, std::op
 SobolEstimator by_exchange(const SobolSample& sample);
 
 /// For samples some of whose rows have no answer: correlations of answers at two points that share the coordinates in u
-/// (B and AB_i, A and BA_i: first; AB_i and BA_j: both) or all others (A and AB_i, B and BA_i: total), of all pairs of
-/// which both answered. Both points of a pair answer more often where much of the space that they share answers; pairs
-/// that share one or two parameters therefore count with 1 / P(answer | x_u), measured in cells of x_u, which makes
-/// first indices and interactions those of the parameters' distribution among answers: Var(E[y | x_u, answer]) / Var(y
-/// | answer). (The exchange would give others, as its four points must all answer: for y = x + 2 z on x + z < 1.2 first
-/// indices 0.20 and 0.80 instead of 0.01 and 0.75.) For total indices P is a function of all parameters but one and is
-/// not known: there lines along x_i count with the square of their part that answers, not with that part. In that
-/// example they become 0.33 and 0.99 instead of 0.25 and 0.99, where answers are missing at random they stay.
+/// (B and AB_i, A and BA_i: first; AB_i and BA_j, AB_j and BA_i: both together) or all others (A and AB_i, B and BA_i:
+/// total), of all pairs of which both answered. Such pairs are not distributed like answers: what they share lies too
+/// often where it answers often. They are therefore weighted until what they share is distributed as in the rows A and
+/// B that answered, in cells of x_u, or for total indices of each of the other parameters (by iterative proportional
+/// fitting). Thus the indices become those of the parameters' distribution among answers: Var(E[y | x_u, answer]) /
+/// Var(y | answer) and E[Var(y | all but x_i, answer)] / Var(y | answer).
+///
+/// (by_exchange() would give others, as all four points must answer: for y = x + 2 z where x + z < 1.2 first indices
+/// 0.20 and 0.80 instead of 0.01 and 0.75.) Measured with 16384 samples against brute force, a third to two thirds
+/// without an answer: two parameters, three oblique parts of the square: first and total indices to 0.008 (without
+/// weights totals are 0.08 off); totals of three parameters, of which all decide whether there is an answer: to 0.012.
+/// With 1024 samples of Ishigami's function and a fifth of the answers missing at random, errors are 0.01 to 0.04 and
+/// no index is biased.
 SobolEstimator by_pairs(const SobolSample& sample);
 
 }  // namespace limcycle
