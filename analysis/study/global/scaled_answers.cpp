@@ -20,7 +20,7 @@ ScaledAnswers::ScaledAnswers(const SobolDesign& design, RowAnswers answers, std:
       if (rows_[row]) base.push_back(*rows_[row]);
   base_ = base.size();
   if (size_ == 0.0) return;  // all that answered are 0 already
-  const double count = static_cast<double>(base.size());
+  const auto count = static_cast<double>(base.size());
   for (double& y : base) mean_ += (y /= size_) / count;
   double squares = 0.0;
   for (const double y : base) squares += (y - mean_) * (y - mean_);

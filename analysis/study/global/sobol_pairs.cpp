@@ -44,7 +44,7 @@ class Margin {
       : i_(i), j_(j), along_(static_cast<std::size_t>(std::max(1.0, i == j ? cells : std::sqrt(cells)))) {}
   std::size_t size() const { return i_ == j_ ? along_ : along_ * along_; }
   std::size_t cell(const std::vector<double>& point) const {
-    const double n = static_cast<double>(along_);
+    const auto n = static_cast<double>(along_);
     const auto first = static_cast<std::size_t>(point[i_] * n);
     return i_ == j_ ? first : first * along_ + static_cast<std::size_t>(point[j_] * n);
   }
@@ -69,6 +69,7 @@ class Pairs {
   /// proportional fitting).
   void rake(const std::vector<Margin>& margins) {
     std::vector<std::vector<double>> wanted;
+    wanted.reserve(margins.size());
     for (const Margin& margin : margins) wanted.emplace_back(margin.size());
     for (std::size_t k = 0; k < sample_.samples; ++k)
       for (const auto row : {sample_.design.row_a(k), sample_.design.row_b(k)}) {

@@ -6,9 +6,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "known_functions.hpp"
 #include "limcycle/analysis/study/global/random_stream.hpp"
 #include "limcycle/analysis/study/parameter_spread.hpp"
+#include "limcycle/tests/analysis/study/global/known_functions.hpp"
 
 using namespace limcycle;
 using namespace limcycle::test;

@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "known_functions.hpp"
 #include "limcycle/analysis/study/global/sobol.hpp"
+#include "limcycle/tests/analysis/study/global/known_functions.hpp"
 
 using namespace limcycle;
 using namespace limcycle::test;

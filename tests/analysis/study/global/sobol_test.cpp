@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "known_functions.hpp"
+#include "limcycle/tests/analysis/study/global/known_functions.hpp"
 
 using namespace limcycle;
 using namespace limcycle::test;
