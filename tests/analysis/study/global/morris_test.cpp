@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -159,6 +160,17 @@ TEST_CASE("Morris: missing answers cost their effects and nothing else") {
   answers[design.row_of(0, 0)] = 1.0, answers[design.row_of(0, 1)] = 4.0;
   const auto one = morris_effects(design, answers).parameters[design.moved(0, 0)];
   CHECK((one.mu_star.known && one.mu_star.value == 6.0 && !one.mu_star.bounded() && !one.sigma.known));
+  // Two of them, 1 and 4: deviation 3 / sqrt(2).
+  std::fill(answers.begin(), answers.end(), std::nullopt);
+  const std::size_t i = design.moved(0, 0);
+  for (std::size_t t = 0, taken = 0; taken < 2; ++t)
+    if (design.moved(t, 0) == i) {
+      answers[design.row_of(t, 0)] = 0.0;
+      answers[design.row_of(t, 1)] = (design.upwards(t, i) ? 0.5 : -0.5) * (taken == 0 ? 1.0 : 4.0);
+      ++taken;
+    }
+  const auto two = morris_effects(design, answers).parameters[i];
+  CHECK((two.effects == 2 && two.mu.value == Approx(2.5) && two.sigma.value == Approx(3.0 / std::sqrt(2.0))));
   CHECK_THROWS_AS(morris_effects(design, std::vector<Answer>(3)), std::invalid_argument);
 }
 
