@@ -25,7 +25,7 @@ double percentile(const std::vector<double>& sorted, double share) {
 
 /// Share of the resamples that is cut off at either end.
 double tail(std::size_t units) {
-  const double u = static_cast<double>(units);
+  const auto u = static_cast<double>(units);
   return gsl_cdf_ugaussian_Q(std::sqrt(u / (u - 1.0)) * gsl_cdf_tdist_Qinv(0.025, u - 1.0));
 }
 

@@ -53,7 +53,7 @@ std::optional<double> effect(const MorrisDesign& design, RowAnswers answers, std
   return design.upwards(trajectory, design.moved(trajectory, move)) ? change : -change;
 }
 
-double share(std::size_t part, std::size_t all) {
+double part_of(std::size_t part, std::size_t all) {
   return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : 0.0;
 }
 
@@ -98,8 +98,8 @@ std::vector<double> MorrisDesign::row(std::size_t k) const {
   return point;
 }
 
-double MorrisEffects::share_without_answer() const { return share(without_answer, effects + without_answer); }
-double MorrisResult::share_without_answer() const { return share(rows_without_answer, rows); }
+double MorrisEffects::share_without_answer() const { return part_of(without_answer, effects + without_answer); }
+double MorrisResult::share_without_answer() const { return part_of(rows_without_answer, rows); }
 
 std::vector<std::size_t> MorrisResult::by_mu_star() const {
   std::vector<std::size_t> order(parameters.size());

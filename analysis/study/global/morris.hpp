@@ -65,8 +65,9 @@ struct MorrisResult {
 
 /// Effects from the answers in the rows of a design, with 95 % intervals by bootstrap over the trajectories
 /// (`resamples` of them, from `seed`). An effect of which either end has no answer is left out and counted. One effect
-/// has no sigma; none leaves everything unknown. Where answers are missing in a part of the space, effects are those
-/// within the rest of it. Throws std::invalid_argument if answers and rows differ in number.
+/// has no sigma, fewer than 8 have no intervals; none leaves everything unknown. Where answers are missing in a part of
+/// the space, effects are those within the rest of it. Throws std::invalid_argument if answers and rows differ in
+/// number.
 MorrisResult morris_effects(const MorrisDesign& design, RowAnswers answers, std::size_t resamples = 1000,
                             std::uint64_t seed = 0);
 

@@ -14,13 +14,14 @@ ScaledAnswers::ScaledAnswers(const SobolDesign& design, RowAnswers answers, std:
     if (!y) ++missing_;
     if (y) size_ = std::max(size_, std::abs(*y));
   }
-  if (size_ == 0.0) return;  // all that answered are 0 already
   std::vector<double> base;
   for (std::size_t k = 0; k < samples; ++k)
     for (const auto row : {design.row_a(k), design.row_b(k)})
-      if (rows_[row]) base.push_back(*rows_[row] / size_);
-  const double count = static_cast<double>(base.size());
-  for (const double y : base) mean_ += y / count;
+      if (rows_[row]) base.push_back(*rows_[row]);
+  base_ = base.size();
+  if (size_ == 0.0) return;  // all that answered are 0 already
+  const auto count = static_cast<double>(base.size());
+  for (double& y : base) mean_ += (y /= size_) / count;
   double squares = 0.0;
   for (const double y : base) squares += (y - mean_) * (y - mean_);
   if (base.size() > 1) deviation_ = std::sqrt(squares / (count - 1.0));

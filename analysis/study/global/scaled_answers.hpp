@@ -18,6 +18,7 @@ class ScaledAnswers {
   std::size_t rows() const { return rows_.size(); }
   std::size_t missing() const { return missing_; }
 
+  std::size_t base() const { return base_; }               ///< how many rows A and B answered
   double mean() const { return mean_ * size_; }            ///< in rows A and B, as it was
   double deviation() const { return deviation_ * size_; }  ///< standard deviation there, as it was
 
@@ -27,7 +28,7 @@ class ScaledAnswers {
 
  private:
   std::vector<std::optional<double>> rows_;
-  std::size_t missing_ = 0;
+  std::size_t missing_ = 0, base_ = 0;
   double size_ = 0.0, mean_ = 0.0, deviation_ = 0.0;
 };
 

@@ -8,7 +8,7 @@ namespace limcycle {
 
 /// Probability of what happened in `yes` of `samples` independent samples: their share, with the 95 % score interval of
 /// E. B. Wilson (J. Amer. Statist. Assoc. 22, 1927), which stays within 0..1 and has a width also for 0 or all of them.
-/// Its true coverage, by summing the binomial distribution: with 20 samples 92 to 98 % for probabilities from 0.1 to
+/// Its true coverage, by summing the binomial distribution: with 20 samples 92 to 98.5 % for probabilities from 0.1 to
 /// 0.9, with 200 samples 93 to 97 %; for probabilities of about 0.2 / samples it falls to 83 %. No samples: not known,
 /// 0..1. Throws std::invalid_argument for more than there are samples.
 Estimate share_of(std::size_t yes, std::size_t samples);

@@ -10,16 +10,16 @@ namespace limcycle {
 
 /// What one parameter does to an output.
 struct SobolIndex {
-  Estimate first;           ///< share of the output's variance that it makes alone: Var(E[y | x_i]) / Var(y)
-  Estimate total;           ///< alone and together with others: 1 - Var(E[y | all others]) / Var(y)
-  std::size_t samples = 0;  ///< base samples in which all rows that are needed answered
+  Estimate first;  ///< share of the output's variance that it makes alone: Var(E[y | x_i]) / Var(y)
+  Estimate total;  ///< alone and together with others: 1 - Var(E[y | all others]) / Var(y)
+  std::size_t first_pairs = 0, total_pairs = 0;  ///< of answers that they are made of
 };
 
 /// What two parameters do together, beyond what each does alone: Var(E[y | x_i, x_j]) / Var(y) - S_i - S_j.
 struct SobolInteraction {
   std::size_t one = 0, other = 0;  ///< numbers of the parameters, one < other
   Estimate share;
-  std::size_t samples = 0;  ///< base samples in which all rows that are needed answered
+  std::size_t pairs = 0;  ///< of answers that it is made of
 };
 
 struct SobolIndices {
@@ -42,11 +42,24 @@ struct SobolOptions {
   double noise = 0.0;            ///< standard deviation that answers may have for no reason (their error)
 };
 
-/// Indices from the answers in the rows of a design. DOC
+/// Indices from the answers in the rows of a design, with 95 % intervals by bootstrap over 64 blocks of neighbouring
+/// base samples. They are not rounded to 0..1: what is below 0 is 0 within its error. Estimators: sobol_estimators.hpp.
+/// Where all rows answered, errors fall as samples^-0.75 to ^-1.5 (random points: ^-0.5); for Ishigami's function they
+/// are 0.025 with 256 samples and 0.001 with 4096, without second order 0.03 and 0.002 (root mean square).
+///
+/// The intervals are those that independent points would need; with 256 of those they hold the truth in 89 to 96 of 100
+/// cases. The points of the design are more even, and the intervals too wide: for Ishigami's function by a factor
+/// of 1.1 to 3 with 256 samples, 1.5 to 10 with 1024; the steps of sobol_convergence() tell more there. With 64 samples
+/// they can be too short (78 of 100 at worst).
+///
+/// Where some rows have no answer, indices are those of the distribution of the parameters among answers, and a note
+/// says so; answers missing at random bias none. Nothing is known of an output that does not vary by more than rounding
+/// and `noise`. Throws std::invalid_argument if answers and rows differ in number, or for options out of range.
+/// Cost with 20 parameters, 4096 samples and second order: 0.02 s, 0.2 s where answers are missing.
 SobolIndices sobol_indices(const SobolDesign& design, RowAnswers answers, const SobolOptions& options = {});
 
-/// The indices of the first eighth, quarter and half of the samples and of all of them (those that hold at least 8):
-/// has an index settled? The samples of each are among those of the next one.
+/// The indices of the first eighth, quarter and half of the samples and of all of them (parts of less than 8 samples
+/// are left out): has an index settled? The samples of each are among those of the next one.
 std::vector<SobolIndices> sobol_convergence(const SobolDesign& design, RowAnswers answers,
                                             const SobolOptions& options = {});
 

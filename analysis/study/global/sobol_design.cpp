@@ -2,7 +2,7 @@
 
 #include <gsl/gsl_qrng.h>
 
-#include <cmath>
+#include <algorithm>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -12,58 +12,47 @@
 namespace limcycle {
 namespace {
 
-constexpr std::size_t sobol_dimensions = 40;  ///< of GSL's sequence; its numbers are multiples of 2^-30
+constexpr std::size_t sobol_parameters = 20;  ///< GSL's sequence has 40 dimensions; its numbers are multiples of 2^-30
 constexpr std::size_t most_samples = std::size_t{1} << 30U;
 
-using Sequence = std::unique_ptr<gsl_qrng, decltype(&gsl_qrng_free)>;
+/// Points of a Sobol sequence, all moved by the same random binary digits.
+class ShiftedSobol {
+ public:
+  ShiftedSobol(std::size_t dimensions, RandomStream random)
+      : sequence_(gsl_qrng_alloc(gsl_qrng_sobol, static_cast<unsigned>(dimensions)), &gsl_qrng_free),
+        point_(dimensions, 0.0) {  // the sequence's point 0, which GSL leaves out
+    if (!sequence_) throw std::bad_alloc();
+    for (std::size_t i = 0; i < dimensions; ++i) shift_.push_back(random.bits() >> 12U);
+  }
 
-Sequence sequence(const gsl_qrng_type* type, std::size_t dimensions) {
-  Sequence made(gsl_qrng_alloc(type, static_cast<unsigned>(dimensions)), &gsl_qrng_free);
-  if (!made) throw std::bad_alloc();
-  return made;
-}
+  /// In (0, 1): the middle of a cell of 2^-52.
+  double coordinate(std::size_t i) const {
+    const auto digits = static_cast<std::uint64_t>(point_[i] * 0x1p52);  // whole: the last 22 are 0
+    return (static_cast<double>(digits ^ shift_[i]) + 0.5) * 0x1p-52;
+  }
+  void move_on() { gsl_qrng_get(sequence_.get(), point_.data()); }
+
+ private:
+  std::unique_ptr<gsl_qrng, decltype(&gsl_qrng_free)> sequence_;
+  std::vector<double> point_;
+  std::vector<std::uint64_t> shift_;
+};
 
 }  // namespace
 
 SobolDesign::SobolDesign(std::size_t parameters, std::size_t samples, bool second_order, std::uint64_t seed)
     : parameters_(parameters), samples_(samples), second_order_(second_order) {
-  if (parameters == 0 || parameters > most_parameters)
-    throw std::invalid_argument("a Sobol design needs 1 to " + std::to_string(most_parameters) + " parameters, got " +
-                                std::to_string(parameters));
+  if (parameters == 0) throw std::invalid_argument("a Sobol design needs a parameter at least");
   if (samples == 0 || samples > most_samples)
     throw std::invalid_argument("a Sobol design needs 1 to 2^30 samples, got " + std::to_string(samples));
   base_.reserve(2 * parameters * samples);
-  const RandomStream random(seed, "Sobol design");
-  if (2 * parameters <= sobol_dimensions)
-    take_sobol(random);
-  else
-    take_halton(random);
-}
-
-void SobolDesign::take_sobol(RandomStream random) {
-  const auto points = sequence(gsl_qrng_sobol, 2 * parameters_);
-  std::vector<double> point(2 * parameters_, 0.0);  // the sequence's point 0, which GSL leaves out
-  std::vector<std::uint64_t> shift;
-  for (std::size_t i = 0; i < point.size(); ++i) shift.push_back(random.bits() >> 12U);
-  for (std::size_t k = 0; k < samples_; ++k) {
-    if (k > 0) gsl_qrng_get(points.get(), point.data());
-    for (std::size_t i = 0; i < point.size(); ++i) {
-      const auto digits = static_cast<std::uint64_t>(point[i] * 0x1p52);  // whole: the last 22 are 0
-      base_.push_back((static_cast<double>(digits ^ shift[i]) + 0.5) * 0x1p-52);
-    }
-  }
-}
-
-void SobolDesign::take_halton(RandomStream random) {
-  const auto points = sequence(gsl_qrng_reversehalton, 2 * parameters_);
-  std::vector<double> point(2 * parameters_), shift;
-  for (std::size_t i = 0; i < point.size(); ++i) shift.push_back(random.uniform());
-  for (std::size_t k = 0; k < samples_; ++k) {
-    gsl_qrng_get(points.get(), point.data());
-    for (std::size_t i = 0; i < point.size(); ++i) {
-      const double moved = point[i] + shift[i], within = moved - std::floor(moved);
-      base_.push_back(within > 0.0 ? within : 0x1p-53);  // the sum of two doubles may be whole
-    }
+  const std::size_t in_sequence = std::min(parameters, sobol_parameters);
+  ShiftedSobol sobol(2 * in_sequence, RandomStream(seed, "Sobol design"));
+  for (std::size_t k = 0; k < samples; ++k, sobol.move_on()) {
+    RandomStream random(seed, "Sobol design, parameters beyond", k);
+    for (const std::size_t half : {std::size_t{0}, in_sequence})
+      for (std::size_t i = 0; i < parameters; ++i)
+        base_.push_back(i < in_sequence ? sobol.coordinate(half + i) : random.uniform());
   }
 }
 

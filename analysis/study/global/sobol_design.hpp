@@ -14,17 +14,16 @@ namespace limcycle {
 /// A and B are the halves of the points of a 2 d-dimensional Sobol sequence (GSL's, beginning with its point 0, so that
 /// any 2^k first samples are a net; a power of two is the best number of samples), moved by a random digital shift: the
 /// same random bits are added modulo 2 to every point, which keeps it a net and no coordinate 0 or 1. GSL's sequence
-/// has at most 40 dimensions. Beyond 20 parameters GSL's reverse Halton sequence (B. Vandewoestyne, R. Cools, 2006)
-/// stands in, moved by a random shift modulo 1; it needs more samples (several times its largest prime, 173 for 20
-/// parameters and 541 for 50) before it is better than random points.
+/// has at most 40 dimensions: coordinates of parameters beyond the 20th are random numbers, so the parameters that are
+/// thought to matter should come first. (Measured on Sobol's g with 25 and 60 parameters and 256 to 4096 samples: with
+/// the four that matter first, errors are 0.1 to 0.9 of those of random points, with them last they are the same. GSL's
+/// reverse Halton sequence, which has dimensions enough, makes them up to 20 times as large there.)
 ///
 /// Rows are numbered sample by sample, and a row does not depend on the number of samples: a study can be made longer
 /// without loss.
 class SobolDesign {
  public:
-  static constexpr std::size_t most_parameters = 614;
-
-  /// Throws std::invalid_argument for no parameters or more than 614, and for no samples or more than 2^30.
+  /// Throws std::invalid_argument for no parameters, and for no samples or more than 2^30.
   SobolDesign(std::size_t parameters, std::size_t samples, bool second_order, std::uint64_t seed);
 
   std::size_t parameters() const { return parameters_; }
@@ -48,9 +47,6 @@ class SobolDesign {
   }
 
  private:
-  void take_sobol(RandomStream random);
-  void take_halton(RandomStream random);
-
   std::size_t parameters_, samples_;
   bool second_order_;
   std::vector<double> base_;  ///< 2 d numbers a sample: A, then B
