@@ -33,7 +33,7 @@ Database::Database(const std::string& path, Access access) {
   sqlite3_busy_timeout(handle, patience_ms);
 }
 
-void Database::run(const std::string& sql) {
+void Database::run(const std::string& sql) const {
   const int code = sqlite3_exec(handle(), sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) throw database_error(handle(), code);
 }

@@ -39,7 +39,7 @@ class Database {
   Database(const std::string& path, Access access);
 
   /// Runs statements without parameters and results.
-  void run(const std::string& sql);
+  void run(const std::string& sql) const;
   /// The first number or text of the only row of `sql`; 0 or empty without a row.
   std::int64_t number(const std::string& sql);
   std::string text(const std::string& sql);

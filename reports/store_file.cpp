@@ -66,19 +66,19 @@ StoredSweep read_store(const std::string& path, Database::Access access) {
 
 }  // namespace
 
-StoredSweep read_store(const std::string& named) {
-  const std::string path = true_path(named);
-  if (!holds_bytes(path)) throw refused_store(path + " does not exist or is empty");
+StoredSweep read_store(const std::string& path) {
+  const std::string file = true_path(path);
+  if (!holds_bytes(file)) throw refused_store(file + " does not exist or is empty");
   try {
     try {
-      return read_store(path, Database::Access::read);
+      return read_store(file, Database::Access::read);
     } catch (const DatabaseError& error) {
       // A process was killed while it opened or closed the store: what it had begun is undone by whoever comes next.
       if (!error.may_not_write()) throw;
-      return read_store(path, Database::Access::recover);
+      return read_store(file, Database::Access::recover);
     }
   } catch (const DatabaseError& error) {
-    throw from_database(path, error);
+    throw from_database(file, error);
   }
 }
 

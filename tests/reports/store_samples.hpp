@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include <bit>
+#include <catch2/catch.hpp>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,10 +51,34 @@ inline std::vector<double> store_rows(std::span<const std::size_t> points) {
   return rows;
 }
 
+inline std::vector<std::size_t> points_from(std::size_t first, std::size_t end) {
+  std::vector<std::size_t> points(end - first);
+  std::iota(points.begin(), points.end(), first);
+  return points;
+}
+
+/// Those points, handed over.
+inline void fill(SweepStore& store, std::size_t first, std::size_t end) {
+  const auto points = points_from(first, end);
+  store.write(points, store_rows(points));
+}
+
 inline std::vector<std::uint64_t> bits_of(std::span<const double> numbers) {
   std::vector<std::uint64_t> bits;
   for (const double value : numbers) bits.push_back(std::bit_cast<std::uint64_t>(value));
   return bits;
+}
+
+/// What opening that store is refused with; empty if it is not.
+inline std::string store_refusal(const std::string& path, const SweepIdentity& identity, bool resume,
+                                 StoreError::Kind kind = StoreError::Kind::refused) {
+  try {
+    const SweepStore store(path, identity, resume);
+  } catch (const StoreError& error) {
+    CHECK(error.kind() == kind);
+    return error.what();
+  }
+  return {};
 }
 
 /// Runs `work` in a process of its own, which ends with what it returns, and without destructors.

@@ -18,18 +18,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// What opening that store is refused with; empty if it is not.
-std::string store_refusal(const std::string& path, const SweepIdentity& identity, bool resume,
-                          StoreError::Kind kind = StoreError::Kind::refused) {
-  try {
-    const SweepStore store(path, identity, resume);
-  } catch (const StoreError& error) {
-    CHECK(error.kind() == kind);
-    return error.what();
-  }
-  return {};
-}
-
 std::string reading_refusal(const std::string& path) {
   try {
     read_store(path);
@@ -37,17 +25,6 @@ std::string reading_refusal(const std::string& path) {
     return error.what();
   }
   return {};
-}
-
-std::vector<std::size_t> points_from(std::size_t first, std::size_t end) {
-  std::vector<std::size_t> points(end - first);
-  std::iota(points.begin(), points.end(), first);
-  return points;
-}
-
-void fill(SweepStore& store, std::size_t first, std::size_t end) {
-  const auto points = points_from(first, end);
-  store.write(points, store_rows(points));
 }
 
 void sql(const std::string& path, const char* statement) {
@@ -230,58 +207,6 @@ TEST_CASE("what a process had begun to change in a store at rest when it was kil
   CHECK(bits_of(read_store(path).rows) == bits_of(store_rows(points_from(0, points))));
 }
 
-TEST_CASE("one writer at a time: in this process, in another one, under another name") {
-  const Scratch scratch;
-  const std::string path = scratch.file("a.store");
-  {
-    SweepStore store(path, sweep_identity(), false);
-    CHECK_THAT(store_refusal(path, sweep_identity(), true),
-               Contains("is being written by process " + std::to_string(getpid())));
-    std::filesystem::create_symlink(path, scratch.file("link.store"));
-    CHECK_THAT(store_refusal(scratch.file("link.store"), sweep_identity(), true), Contains("is being written"));
-    fill(store, 0, 50);
-    store.flush();  // the refusals have cost it nothing
-    const pid_t other = in_child([&] {
-      try {
-        const SweepStore second(path, sweep_identity(), true);
-      } catch (const StoreError& error) {
-        return error.kind() == StoreError::Kind::refused ? 7 : 8;
-      }
-      return 0;
-    });
-    CHECK(end_of(other) == 7);
-    fill(store, 50, 60);
-  }
-  CHECK(store_refusal(path, sweep_identity(), true).empty());
-  CHECK(read_store(path).activity.known == 60);
-  CHECK_FALSE(read_store(path).activity.running);
-}
-
-TEST_CASE("a store is read while it is written, always a whole moment of it") {
-  const Scratch scratch;
-  const std::string path = scratch.file("a.store");
-  constexpr std::size_t points = 20000, block = 10;
-  SweepStore store(path, sweep_identity(points), false, {.interval = 0.001, .waiting = 1000});
-  std::jthread writer([&] {
-    for (std::size_t first = 0; first < points; first += block) fill(store, first, first + block);
-    store.flush();
-  });
-  std::size_t last = 0, between = 0;
-  while (last < points) {
-    const StoredSweep now = read_store(path);
-    REQUIRE(now.activity.known >= last);
-    REQUIRE(std::ranges::count(now.known, true) == static_cast<long>(now.activity.known));
-    REQUIRE(now.activity.known == now.activity.session_rows);
-    REQUIRE(now.activity.known % block == 0);
-    // They are written in order: what is there is the beginning.
-    const auto some = points_from(0, now.activity.known);
-    REQUIRE(bits_of(std::span(now.rows).first(3 * some.size())) == bits_of(store_rows(some)));
-    between += now.activity.known > 0 && now.activity.known < points ? 1U : 0U;
-    last = now.activity.known;
-  }
-  CHECK(between > 0);
-}
-
 TEST_CASE("a store takes no point twice, none that does not exist, and no half row") {
   const Scratch scratch;
   SweepStore store(scratch.file("a.store"), sweep_identity(), false);
@@ -300,17 +225,4 @@ TEST_CASE("a store takes no point twice, none that does not exist, and no half r
   CHECK_THROWS_AS(SweepStore(scratch.file("b.store"), sweep_identity(), false, {.interval = NAN, .waiting = 1}),
                   std::invalid_argument);
   CHECK_FALSE(std::filesystem::exists(scratch.file("b.store")));
-}
-
-TEST_CASE("rows reach the disk one interval after they were handed over, without another call") {
-  const Scratch scratch;
-  const std::string path = scratch.file("a.store");
-  SweepStore store(path, sweep_identity(), false, {.interval = 0.05, .waiting = 1000});
-  for (const std::size_t first : {0U, 10U}) {
-    fill(store, first, first + 10);
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (read_store(path).activity.known < first + 10 && std::chrono::steady_clock::now() < deadline)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    CHECK(read_store(path).activity.known == first + 10);
-  }
 }

@@ -206,12 +206,21 @@ TEST_CASE("an exception of a computation ends the sweep after all threads, and w
 TEST_CASE("a sink that fails ends the sweep and is not called again") {
   for (const int threads : {1, 3}) {
     CAPTURE(threads);
-    int calls = 0;
-    const SweepSink sink = [&](auto, auto) {
-      if (++calls == 5) throw std::runtime_error("full");
+    // All threads have finished a block when the sink fails for the first of them.
+    std::atomic<int> begun{0}, calls{0};
+    SweepTask task = sweep_of(400, 2);
+    task.compute = [&, inner = task.compute](std::span<const std::size_t> points, std::span<double> rows) {
+      ++begun;
+      while (begun < threads) std::this_thread::yield();
+      return inner(points, rows);
     };
-    CHECK_THROWS_WITH(run_sweep(sweep_of(400, 2), {}, sink, with_threads(threads)), "full");
-    CHECK(calls == 5);
+    const SweepSink sink = [&](auto, auto) {
+      ++calls;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      throw std::runtime_error("full");
+    };
+    CHECK_THROWS_WITH(run_sweep(task, {}, sink, with_threads(threads)), "full");
+    CHECK(calls == 1);
   }
 }
 
