@@ -131,16 +131,16 @@ std::optional<ParameterRates::Rubbing> ParameterRates::rubbing(const LoopField& 
   return found;
 }
 
-MatrixXd ParameterRates::transition_beside(Index k, bool above, const std::vector<Mode>& modes, Step step,
+MatrixXd ParameterRates::transition_beside(Index k, bool above, const std::vector<Mode>& modes, Step& step,
                                            std::optional<double> velocity_there) {
   const Index n = std::ssize(step.x0);
   auto& pair = pairs_[static_cast<std::size_t>(k)];
   Side& side = above ? *pair.high : *pair.low;
   side.field.modes() = modes;
-  if (affine_) return affine_step(side.flow, step.t1 - step.t0).topLeftCorner(n, n);
-  side.field.rate(step.x0, step.dx0, step.t0);
   if (velocity_there) meet(side, *velocity_there, step.x1, step.t1);
+  side.field.rate(step.x0, step.dx0, step.t0);
   side.field.rate(step.x1, step.dx1, step.t1);
+  if (affine_) return affine_step(side.flow, step.t1 - step.t0).topLeftCorner(n, n);
   return transition(side.field, step);
 }
 

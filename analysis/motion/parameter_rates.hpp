@@ -70,10 +70,10 @@ class ParameterRates {
     auto& pair = pairs_[static_cast<std::size_t>(k)];
     return (above ? pair.high : pair.low)->field;
   }
-  /// d(state at the end of a step)/d(state at its start) in that loop in these modes, its rates at the ends being its
-  /// own; by matrix exponentials if all elements are piecewise affine. With `velocity` what rubs does so at this
-  /// velocity at the end, to the last bit: it tells the side of the kink.
-  Eigen::MatrixXd transition_beside(Eigen::Index k, bool above, const std::vector<Mode>& modes, Step step,
+  /// d(state at the end of a step)/d(state at its start) in that loop in these modes, by matrix exponentials if all
+  /// elements are piecewise affine; the rates at the ends of the step become those of that loop. With `velocity` the
+  /// end is first moved to where what rubs has this velocity, to the last bit: it tells the side of the kink.
+  Eigen::MatrixXd transition_beside(Eigen::Index k, bool above, const std::vector<Mode>& modes, Step& step,
                                     std::optional<double> velocity);
   double step(Eigen::Index k) const { return pairs_[static_cast<std::size_t>(k)].step; }
 

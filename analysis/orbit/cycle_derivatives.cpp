@@ -119,7 +119,7 @@ CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& ra
     one.amplitude = amplitude(k);
   }
   if (!options.multipliers) return result;
-  const auto moved = multiplier_derivatives(cut, carried.whole, cycle.multipliers, solution, rates);
+  const auto moved = multiplier_derivatives(cut, cycle.multipliers, solution, rates);
   for (std::size_t k = 0; k < moved.size(); ++k) result.by[k].multipliers = moved[k];
   return result;
 }

@@ -34,20 +34,50 @@ std::optional<Eigenpair> eigenpair(const MatrixXd& scaled, Complex multiplier) {
   return pair;
 }
 
-/// A deviation that is carried along the cycle with a parameter: at a fixed time, and how the time of a bound moment
-/// moves.
+/// The surface on which a piece ends, for all neighbours: that of its switch or reversal, or else the one across the
+/// flow, n x = const with n f = 1, on which deviations are projected along the flow. Between creep and slip a deviation
+/// along the flow grows and shrinks ten thousand times, and what is wanted would drown in it.
+struct Nodes {
+  std::vector<std::optional<Eigen::RowVectorXd>> across;  ///< n; none at bound ends and at the end of the period
+  std::vector<MatrixXd> factors;                          ///< of each piece, projected
+};
+
+MatrixXd projected(const MatrixXd& factor, const State& rate, const Eigen::RowVectorXd& n) {
+  const Eigen::Map<const VectorXd> f(rate.data(), n.size());
+  return factor - f * (n * factor) / (n * f).value();
+}
+
+Nodes nodes_of(const CyclePieces& cut) {
+  Nodes nodes;
+  for (const CyclePiece& piece : cut.pieces) {
+    auto& across = nodes.across.emplace_back();
+    nodes.factors.push_back(piece.factor);
+    const Eigen::Map<const VectorXd> f(piece.step.dx1.data(), cut.sizes.size());
+    const double speed = f.cwiseQuotient(cut.sizes).squaredNorm();
+    if (piece.end || &piece == &cut.pieces.back() || speed == 0.0) continue;
+    across = f.cwiseQuotient(cut.sizes.cwiseAbs2()).transpose() / speed;
+    nodes.factors.back() = projected(piece.factor, piece.step.dx1, *across);
+  }
+  return nodes;
+}
+
+/// A deviation that is carried along the cycle with a parameter: at a fixed time, and how the time moves at which the
+/// neighbour ends a piece.
 class Neighbouring {
  public:
   Neighbouring(ParameterRates& rates, Index parameter, VectorXd start)
       : rates_(rates), k_(parameter), deviation_(std::move(start)) {}
 
-  /// d(factor)/dp of a piece whose end moves with the parameter by `last` if it is the last one; carries on to its end.
-  MatrixXd along(const CyclePiece& piece, std::optional<double> last) {
-    const VectorXd start = moved(deviation_, piece.step.dx0);
+  /// d(projected factor)/dp of a piece; carries on to its end. `period`: d(period)/dp, if it is the last one.
+  MatrixXd along(const CyclePiece& piece, const std::optional<Eigen::RowVectorXd>& across,
+                 std::optional<double> period) {
+    const VectorXd start = moved(piece.step.dx0);
     const double start_moment = moment_;
     deviation_ = (piece.factor * deviation_ + piece.columns.col(k_)).eval();
-    moment_ = last ? *last : piece.end ? piece.end->by_state * deviation_ + piece.end->by_parameters(k_) : 0.0;
-    const VectorXd end = moved(deviation_, piece.step.dx1);
+    moment_ = period.value_or(0.0);
+    if (!period && piece.end) moment_ = piece.end->by_state * deviation_ + piece.end->by_parameters(k_);
+    if (across) moment_ = -*across * deviation_;
+    const VectorXd end = moved(piece.step.dx1);
     const auto side = [&](bool above) {
       const double by = (above ? 1.0 : -1.0) * rates_.step(k_);
       Step step = piece.step;
@@ -55,20 +85,20 @@ class Neighbouring {
       shift(step.x1, by * end);
       step.t0 += by * start_moment;
       step.t1 += by * moment_;
-      return rates_.transition_beside(k_, above, piece.modes, step, piece.reversal);
+      const MatrixXd factor = rates_.transition_beside(k_, above, piece.modes, step, piece.reversal);
+      return across ? projected(factor, step.dx1, *across) : factor;
     };
     return (side(true) - side(false)) / (2.0 * rates_.step(k_));
   }
 
   /// d(saltation)/dp at the switch that ends a piece; carries on to after it. Nothing where a switch beside is grazed.
   std::optional<MatrixXd> over(const CyclePiece& piece) {
-    const VectorXd at = moved(deviation_, piece.step.dx1);
+    const VectorXd at = moved(piece.step.dx1);
     MatrixXd change;
     for (const bool above : {true, false}) {
       LoopField& field = rates_.neighbour(k_, above);
-      const double by = (above ? 1.0 : -1.0) * rates_.step(k_);
       State x = piece.step.x1;
-      shift(x, by * at);
+      shift(x, (above ? 1.0 : -1.0) * rates_.step(k_) * at);
       field.modes() = piece.modes;
       MatrixXd saltation;
       if (!field.fire(x, 0.0, piece.event->guard, saltation)) return std::nullopt;
@@ -79,8 +109,9 @@ class Neighbouring {
   }
 
  private:
-  VectorXd moved(const VectorXd& deviation, const State& rate) const {
-    return deviation + moment_ * Eigen::Map<const VectorXd>(rate.data(), deviation.size());
+  /// The deviation at the moved time.
+  VectorXd moved(const State& rate) const {
+    return deviation_ + moment_ * Eigen::Map<const VectorXd>(rate.data(), deviation_.size());
   }
   static void shift(State& x, const VectorXd& by) { Eigen::Map<VectorXd>(x.data(), by.size()) += by; }
 
@@ -90,22 +121,29 @@ class Neighbouring {
   double moment_ = 0.0;
 };
 
-/// The eigenvectors carried along the cycle: v forward, w backward.
-struct CarriedPair {
-  std::vector<VectorXcd> v, w;  ///< v before each factor, w after it; a switch is a factor of its own
-};
-CarriedPair carry_pair(const CyclePieces& cut, const Eigenpair& pair) {
+/// All factors of the period in order; a switch is a factor of its own.
+std::vector<const MatrixXd*> factors_of(const CyclePieces& cut, const Nodes& nodes) {
   std::vector<const MatrixXd*> factors;
-  for (const CyclePiece& piece : cut.pieces) {
-    factors.push_back(&piece.factor);
-    if (piece.event) factors.push_back(&piece.event->saltation);
+  for (std::size_t i = 0; i < cut.pieces.size(); ++i) {
+    factors.push_back(&nodes.factors[i]);
+    if (cut.pieces[i].event) factors.push_back(&cut.pieces[i].event->saltation);
   }
+  return factors;
+}
+
+/// The eigenvectors carried along the cycle: v before each factor, w after it.
+struct CarriedPair {
+  std::vector<VectorXcd> v, w;
+};
+CarriedPair carry_pair(const std::vector<const MatrixXd*>& factors, const VectorXd& sizes, const Eigenpair& pair) {
   CarriedPair carried;
-  carried.v.push_back(cut.sizes.cwiseProduct(pair.v.real()).cast<Complex>() +
-                      Complex(0.0, 1.0) * cut.sizes.cwiseProduct(pair.v.imag()).cast<Complex>());
-  for (const MatrixXd* factor : factors) carried.v.push_back(*factor * carried.v.back());
-  carried.w.assign(factors.size(), {});
-  VectorXcd w = cut.sizes.cwiseInverse().cast<Complex>().cwiseProduct(pair.w);
+  VectorXcd v = sizes.cast<Complex>().cwiseProduct(pair.v);
+  for (const MatrixXd* factor : factors) {
+    carried.v.push_back(v);
+    v = (*factor * v).eval();
+  }
+  VectorXcd w = sizes.cwiseInverse().cast<Complex>().cwiseProduct(pair.w);
+  carried.w.resize(factors.size());
   for (std::size_t i = factors.size(); i-- > 0;) {
     carried.w[i] = w;
     w = (factors[i]->transpose() * w).eval();
@@ -113,43 +151,52 @@ CarriedPair carry_pair(const CyclePieces& cut, const Eigenpair& pair) {
   return carried;
 }
 
+using Changes = std::vector<std::optional<Complex>>;
+
+/// d(multipliers)/dp for one parameter.
+Changes changes(const CyclePieces& cut, const Nodes& nodes, const std::vector<std::optional<CarriedPair>>& pairs,
+                Neighbouring beside, double period) {
+  Changes sums(pairs.size());
+  for (std::size_t m = 0; m < pairs.size(); ++m)
+    if (pairs[m]) sums[m] = 0.0;
+  std::size_t at = 0;
+  const auto add = [&](const MatrixXd& change) {
+    for (std::size_t m = 0; m < pairs.size(); ++m)
+      if (pairs[m]) *sums[m] += pairs[m]->w[at].dot(change * pairs[m]->v[at]);
+    ++at;
+  };
+  for (std::size_t i = 0; i < cut.pieces.size(); ++i) {
+    const CyclePiece& piece = cut.pieces[i];
+    const bool last = i + 1 == cut.pieces.size();
+    add(beside.along(piece, nodes.across[i], last ? std::optional(period) : std::nullopt));
+    if (!piece.event) continue;
+    const auto change = beside.over(piece);
+    if (!change) return Changes(pairs.size());
+    add(*change);
+  }
+  return sums;
+}
+
 }  // namespace
 
-std::vector<std::vector<std::optional<Complex>>> multiplier_derivatives(const CyclePieces& cut, const MatrixXd& whole,
+std::vector<std::vector<std::optional<Complex>>> multiplier_derivatives(const CyclePieces& cut,
                                                                         const std::vector<Complex>& multipliers,
                                                                         const MatrixXd& solution,
                                                                         ParameterRates& rates) {
-  const MatrixXd scaled = cut.sizes.cwiseInverse().asDiagonal() * whole * cut.sizes.asDiagonal();
+  const Nodes nodes = nodes_of(cut);
+  const auto factors = factors_of(cut, nodes);
+  const Index n = cut.sizes.size();
+  MatrixXd whole = cut.sizes.asDiagonal();
+  for (const MatrixXd* factor : factors) whole = (*factor * whole).eval();
+  whole = (cut.sizes.cwiseInverse().asDiagonal() * whole).eval();
   std::vector<std::optional<CarriedPair>> pairs;
   for (const Complex multiplier : multipliers) {
-    const auto pair = eigenpair(scaled, multiplier);
-    pairs.push_back(pair ? std::optional(carry_pair(cut, *pair)) : std::nullopt);
+    const auto pair = eigenpair(whole, multiplier);
+    pairs.push_back(pair ? std::optional(carry_pair(factors, cut.sizes, *pair)) : std::nullopt);
   }
-  const Index n = whole.rows();
-  std::vector<std::vector<std::optional<Complex>>> result;
-  for (Index k = 0; k < rates.count(); ++k) {
-    std::vector<std::optional<Complex>> sums(pairs.size());
-    for (std::size_t m = 0; m < pairs.size(); ++m)
-      if (pairs[m]) sums[m] = 0.0;
-    Neighbouring beside(rates, k, solution.col(k).head(n));
-    std::size_t at = 0;
-    const auto add = [&](const MatrixXd& change) {
-      for (std::size_t m = 0; m < pairs.size(); ++m)
-        if (pairs[m]) *sums[m] += pairs[m]->w[at].dot(change * pairs[m]->v[at]);
-      ++at;
-    };
-    bool smooth = true;
-    for (const CyclePiece& piece : cut.pieces) {
-      const bool last = &piece == &cut.pieces.back();
-      add(beside.along(piece, last ? std::optional(solution(n, k)) : std::nullopt));
-      if (!piece.event) continue;
-      const auto change = beside.over(piece);
-      if (!(smooth = change.has_value())) break;
-      add(*change);
-    }
-    if (!smooth) std::ranges::fill(sums, std::nullopt);
-    result.push_back(std::move(sums));
-  }
+  std::vector<Changes> result;
+  for (Index k = 0; k < rates.count(); ++k)
+    result.push_back(changes(cut, nodes, pairs, Neighbouring(rates, k, solution.col(k).head(n)), solution(n, k)));
   return result;
 }
 
