@@ -1,6 +1,7 @@
 #include "limcycle/analysis/orbit/multiplier_derivatives.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "limcycle/analysis/motion/transition.hpp"
@@ -11,6 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using Complex = std::complex<double>;
@@ -34,95 +36,125 @@ std::optional<Eigenpair> eigenpair(const MatrixXd& scaled, Complex multiplier) {
   return pair;
 }
 
-/// The surface on which a piece ends, for all neighbours: that of its switch or reversal, or else the one across the
-/// flow, n x = const with n f = 1, on which deviations are projected along the flow. Between creep and slip a deviation
-/// along the flow grows and shrinks ten thousand times, and what is wanted would drown in it.
-struct Nodes {
-  std::vector<std::optional<Eigen::RowVectorXd>> across;  ///< n; none at bound ends and at the end of the period
-  std::vector<MatrixXd> factors;                          ///< of each piece, projected
-};
+Eigen::Map<const VectorXd> vector_of(const State& x) { return {x.data(), std::ssize(x)}; }
 
-MatrixXd projected(const MatrixXd& factor, const State& rate, const Eigen::RowVectorXd& n) {
-  const Eigen::Map<const VectorXd> f(rate.data(), n.size());
-  return factor - f * (n * factor) / (n * f).value();
+/// n, with n f = 1, of the surface across the flow of rate f; zero where nothing moves.
+RowVectorXd across(const State& rate, const VectorXd& sizes) {
+  const double speed = vector_of(rate).cwiseQuotient(sizes).squaredNorm();
+  if (speed == 0.0) return RowVectorXd::Zero(sizes.size());
+  return vector_of(rate).cwiseQuotient(sizes.cwiseAbs2()).transpose() / speed;
 }
 
-Nodes nodes_of(const CyclePieces& cut) {
-  Nodes nodes;
+/// Takes out of a factor what it makes along the flow at its end.
+MatrixXd projected(const MatrixXd& factor, const State& rate, const RowVectorXd& n) {
+  const double speed = n * vector_of(rate);
+  if (speed == 0.0) return factor;
+  return factor - vector_of(rate) * (n * factor) / speed;
+}
+
+/// The factors of the pieces, projected along the flow where they do not end with anything bound. That leaves all
+/// eigenvalues of the product but the trivial one as they are; without it, a deviation along the flow grows and shrinks
+/// ten thousand times between creep and slip, and what is wanted would drown in it.
+struct Projected {
+  std::vector<std::optional<RowVectorXd>> across;
+  std::vector<MatrixXd> factors;
+};
+
+Projected project(const CyclePieces& cut) {
+  Projected result;
   for (const CyclePiece& piece : cut.pieces) {
-    auto& across = nodes.across.emplace_back();
-    nodes.factors.push_back(piece.factor);
-    const Eigen::Map<const VectorXd> f(piece.step.dx1.data(), cut.sizes.size());
-    const double speed = f.cwiseQuotient(cut.sizes).squaredNorm();
-    if (piece.end || &piece == &cut.pieces.back() || speed == 0.0) continue;
-    across = f.cwiseQuotient(cut.sizes.cwiseAbs2()).transpose() / speed;
-    nodes.factors.back() = projected(piece.factor, piece.step.dx1, *across);
+    const bool bound = piece.end || &piece == &cut.pieces.back();
+    result.across.push_back(bound ? std::nullopt : std::optional(across(piece.step.dx1, cut.sizes)));
+    result.factors.push_back(bound ? piece.factor : projected(piece.factor, piece.step.dx1, *result.across.back()));
   }
-  return nodes;
+  return result;
 }
 
-/// A deviation that is carried along the cycle with a parameter: at a fixed time, and how the time moves at which the
-/// neighbour ends a piece.
-class Neighbouring {
- public:
-  Neighbouring(ParameterRates& rates, Index parameter, VectorXd start)
-      : rates_(rates), k_(parameter), deviation_(std::move(start)) {}
-
-  /// d(projected factor)/dp of a piece; carries on to its end. `period`: d(period)/dp, if it is the last one.
-  MatrixXd along(const CyclePiece& piece, const std::optional<Eigen::RowVectorXd>& across,
-                 std::optional<double> period) {
-    const VectorXd start = moved(piece.step.dx0);
-    const double start_moment = moment_;
-    deviation_ = (piece.factor * deviation_ + piece.columns.col(k_)).eval();
-    moment_ = period.value_or(0.0);
-    if (!period && piece.end) moment_ = piece.end->by_state * deviation_ + piece.end->by_parameters(k_);
-    if (across) moment_ = -*across * deviation_;
-    const VectorXd end = moved(piece.step.dx1);
-    const auto side = [&](bool above) {
-      const double by = (above ? 1.0 : -1.0) * rates_.step(k_);
-      Step step = piece.step;
-      shift(step.x0, by * start);
-      shift(step.x1, by * end);
-      step.t0 += by * start_moment;
-      step.t1 += by * moment_;
-      const MatrixXd factor = rates_.transition_beside(k_, above, piece.modes, step, piece.reversal);
-      return across ? projected(factor, step.dx1, *across) : factor;
-    };
-    return (side(true) - side(false)) / (2.0 * rates_.step(k_));
-  }
-
-  /// d(saltation)/dp at the switch that ends a piece; carries on to after it. Nothing where a switch beside is grazed.
-  std::optional<MatrixXd> over(const CyclePiece& piece) {
-    const VectorXd at = moved(piece.step.dx1);
-    MatrixXd change;
-    for (const bool above : {true, false}) {
-      LoopField& field = rates_.neighbour(k_, above);
-      State x = piece.step.x1;
-      shift(x, (above ? 1.0 : -1.0) * rates_.step(k_) * at);
-      field.modes() = piece.modes;
-      MatrixXd saltation;
-      if (!field.fire(x, 0.0, piece.event->guard, saltation)) return std::nullopt;
-      change = above ? saltation : MatrixXd(change - saltation);
-    }
-    deviation_ = (piece.event->saltation * deviation_ + piece.event->jump.col(k_)).eval();
-    return change / (2.0 * rates_.step(k_));
-  }
-
- private:
-  /// The deviation at the moved time.
-  VectorXd moved(const State& rate) const {
-    return deviation_ + moment_ * Eigen::Map<const VectorXd>(rate.data(), deviation_.size());
-  }
-  static void shift(State& x, const VectorXd& by) { Eigen::Map<VectorXd>(x.data(), by.size()) += by; }
-
-  ParameterRates& rates_;
-  Index k_;
-  VectorXd deviation_;
-  double moment_ = 0.0;
+/// A neighbour's cycle beside the pieces of this one: where and when it begins and ends each, per unit of the
+/// parameter. Bound moments are its own. Between them it is met where it crosses the surface across the flow, or nearly
+/// so: close to a bound moment the times go over into that smoothly, so that no piece gets much longer or shorter.
+struct Beside {
+  std::vector<VectorXd> start, end;              ///< at the moved times
+  std::vector<double> start_moment, end_moment;  ///< how the times move
 };
+
+/// The bound moments' share in the times between them, at a time `away` of one.
+double share_of_bound(double away, double reach) { return reach > 0.0 ? std::max(0.0, 1.0 - away / reach) : 0.0; }
+
+Beside go_beside(const CyclePieces& cut, Index k, const VectorXd& solution) {
+  const Index n = cut.sizes.size();
+  const double period = cut.pieces.back().step.t1;
+  VectorXd deviation = solution.head(n);
+  double start_moment = 0.0;
+  Beside beside;
+  std::size_t first = 0;  // of the pieces since the last bound moment
+  for (std::size_t i = 0; i < cut.pieces.size(); ++i) {
+    const CyclePiece& piece = cut.pieces[i];
+    const bool last = i + 1 == cut.pieces.size();
+    beside.start.push_back(deviation);
+    beside.start_moment.push_back(-(across(piece.step.dx0, cut.sizes) * deviation).value());
+    deviation = (piece.factor * deviation + piece.columns.col(k)).eval();
+    beside.end.push_back(deviation);
+    beside.end_moment.push_back(-(across(piece.step.dx1, cut.sizes) * deviation).value());
+    if (!last && !piece.end) continue;
+    const double end_moment =
+        last ? solution(n) : (piece.end->by_state * deviation).value() + piece.end->by_parameters(k);
+    const double from = cut.pieces[first].step.t0, to = piece.step.t1, reach = std::min(to - from, 0.02 * period);
+    const double at_start = start_moment - beside.start_moment[first], at_end = end_moment - beside.end_moment[i];
+    const auto bind = [&](double& moment, double t) {
+      moment += at_start * share_of_bound(t - from, reach) + at_end * share_of_bound(to - t, reach);
+    };
+    for (std::size_t j = first; j <= i; ++j) {
+      const Step& step = cut.pieces[j].step;
+      bind(beside.start_moment[j], step.t0);
+      bind(beside.end_moment[j], step.t1);
+      beside.start[j] += beside.start_moment[j] * vector_of(step.dx0);
+      beside.end[j] += beside.end_moment[j] * vector_of(step.dx1);
+    }
+    if (piece.event) deviation = (piece.event->saltation * deviation + piece.event->jump.col(k)).eval();
+    start_moment = end_moment;
+    first = i + 1;
+  }
+  return beside;
+}
+
+void shift(State& x, const VectorXd& by) { Eigen::Map<VectorXd>(x.data(), by.size()) += by; }
+
+/// d(projected factor)/dp of piece i; nothing if the piece is too short beside how its ends move.
+std::optional<MatrixXd> factor_change(const CyclePiece& piece, std::size_t i, const Beside& beside,
+                                      const std::optional<RowVectorXd>& n, Index k, ParameterRates& rates) {
+  const double longer = rates.step(k) * (beside.end_moment[i] - beside.start_moment[i]);
+  if (!(std::abs(longer) <= 0.2 * (piece.step.t1 - piece.step.t0))) return std::nullopt;
+  const auto side = [&](bool above) {
+    const double by = (above ? 1.0 : -1.0) * rates.step(k);
+    Step step = piece.step;
+    shift(step.x0, by * beside.start[i]);
+    shift(step.x1, by * beside.end[i]);
+    step.t0 += by * beside.start_moment[i];
+    step.t1 += by * beside.end_moment[i];
+    const MatrixXd factor = rates.transition_beside(k, above, piece.modes, step, piece.reversal);
+    return n ? projected(factor, step.dx1, *n) : factor;
+  };
+  return (side(true) - side(false)) / (2.0 * rates.step(k));
+}
+
+/// d(saltation)/dp at the switch that ends a piece; nothing where a neighbour grazes it.
+std::optional<MatrixXd> saltation_change(const CyclePiece& piece, const VectorXd& at, Index k, ParameterRates& rates) {
+  MatrixXd change;
+  for (const bool above : {true, false}) {
+    LoopField& field = rates.neighbour(k, above);
+    State x = piece.step.x1;
+    shift(x, (above ? 1.0 : -1.0) * rates.step(k) * at);
+    field.modes() = piece.modes;
+    MatrixXd saltation;
+    if (!field.fire(x, 0.0, piece.event->guard, saltation)) return std::nullopt;
+    change = above ? saltation : MatrixXd(change - saltation);
+  }
+  return MatrixXd(change / (2.0 * rates.step(k)));
+}
 
 /// All factors of the period in order; a switch is a factor of its own.
-std::vector<const MatrixXd*> factors_of(const CyclePieces& cut, const Nodes& nodes) {
+std::vector<const MatrixXd*> factors_of(const CyclePieces& cut, const Projected& nodes) {
   std::vector<const MatrixXd*> factors;
   for (std::size_t i = 0; i < cut.pieces.size(); ++i) {
     factors.push_back(&nodes.factors[i]);
@@ -154,25 +186,25 @@ CarriedPair carry_pair(const std::vector<const MatrixXd*>& factors, const Vector
 using Changes = std::vector<std::optional<Complex>>;
 
 /// d(multipliers)/dp for one parameter.
-Changes changes(const CyclePieces& cut, const Nodes& nodes, const std::vector<std::optional<CarriedPair>>& pairs,
-                Neighbouring beside, double period) {
+Changes changes(const CyclePieces& cut, const Projected& nodes, const std::vector<std::optional<CarriedPair>>& pairs,
+                Index k, const VectorXd& solution, ParameterRates& rates) {
+  const Beside beside = go_beside(cut, k, solution);
   Changes sums(pairs.size());
   for (std::size_t m = 0; m < pairs.size(); ++m)
     if (pairs[m]) sums[m] = 0.0;
   std::size_t at = 0;
-  const auto add = [&](const MatrixXd& change) {
+  const auto add = [&](const std::optional<MatrixXd>& change) {
+    if (!change) return false;
     for (std::size_t m = 0; m < pairs.size(); ++m)
-      if (pairs[m]) *sums[m] += pairs[m]->w[at].dot(change * pairs[m]->v[at]);
+      if (pairs[m]) *sums[m] += pairs[m]->w[at].dot(*change * pairs[m]->v[at]);
     ++at;
+    return true;
   };
   for (std::size_t i = 0; i < cut.pieces.size(); ++i) {
     const CyclePiece& piece = cut.pieces[i];
-    const bool last = i + 1 == cut.pieces.size();
-    add(beside.along(piece, nodes.across[i], last ? std::optional(period) : std::nullopt));
-    if (!piece.event) continue;
-    const auto change = beside.over(piece);
-    if (!change) return Changes(pairs.size());
-    add(*change);
+    const bool smooth = add(factor_change(piece, i, beside, nodes.across[i], k, rates)) &&
+                        (!piece.event || add(saltation_change(piece, beside.end[i], k, rates)));
+    if (!smooth) return Changes(pairs.size());
   }
   return sums;
 }
@@ -183,9 +215,8 @@ std::vector<std::vector<std::optional<Complex>>> multiplier_derivatives(const Cy
                                                                         const std::vector<Complex>& multipliers,
                                                                         const MatrixXd& solution,
                                                                         ParameterRates& rates) {
-  const Nodes nodes = nodes_of(cut);
+  const Projected nodes = project(cut);
   const auto factors = factors_of(cut, nodes);
-  const Index n = cut.sizes.size();
   MatrixXd whole = cut.sizes.asDiagonal();
   for (const MatrixXd* factor : factors) whole = (*factor * whole).eval();
   whole = (cut.sizes.cwiseInverse().asDiagonal() * whole).eval();
@@ -195,8 +226,7 @@ std::vector<std::vector<std::optional<Complex>>> multiplier_derivatives(const Cy
     pairs.push_back(pair ? std::optional(carry_pair(factors, cut.sizes, *pair)) : std::nullopt);
   }
   std::vector<Changes> result;
-  for (Index k = 0; k < rates.count(); ++k)
-    result.push_back(changes(cut, nodes, pairs, Neighbouring(rates, k, solution.col(k).head(n)), solution(n, k)));
+  for (Index k = 0; k < rates.count(); ++k) result.push_back(changes(cut, nodes, pairs, k, solution.col(k), rates));
   return result;
 }
 
