@@ -144,6 +144,20 @@ MatrixXd ParameterRates::transition_beside(Index k, bool above, const std::vecto
   return transition(side.field, step);
 }
 
+double ParameterRates::bend(Index k) const {
+  const auto& pair = pairs_[static_cast<std::size_t>(k)];
+  const Loop &low = *pair.low->loop, &high = *pair.high->loop;
+  double bent = 0.0, differs = 0.0;
+  const auto compare = [&](const auto& below, const auto& here, const auto& above) {
+    bent += (above - 2.0 * here + below).squaredNorm();
+    differs += (above - below).squaredNorm();
+  };
+  compare(low.A, loop_->A, high.A);
+  compare(low.B, loop_->B, high.B);
+  compare(low.C_y, loop_->C_y, high.C_y);
+  return differs > 0.0 ? std::sqrt(bent / differs) : 0.0;
+}
+
 Eigen::RowVectorXd ParameterRates::output(const State& x) const {
   Eigen::RowVectorXd change(count());
   const auto X = as_vector(x).head(loop_->states());

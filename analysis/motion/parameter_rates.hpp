@@ -75,6 +75,10 @@ class ParameterRates {
   /// end is first moved to where what rubs has this velocity, to the last bit: it tells the side of the kink.
   Eigen::MatrixXd transition_beside(Eigen::Index k, bool above, const std::vector<Mode>& modes, Step& step,
                                     std::optional<double> velocity);
+  /// By how much the linear part is bent between the neighbours of parameter k, as a share of how much it differs:
+  /// about 1e-5 where it is smooth, up to 1 where its coordinates have a corner just here (the time scale in which a
+  /// transfer function is realised is the largest of several). The differences are then of the first order.
+  double bend(Eigen::Index k) const;
   double step(Eigen::Index k) const { return pairs_[static_cast<std::size_t>(k)].step; }
 
   /// d(C_y)/dp x, the part of dy/dp that comes of how y is read.

@@ -17,8 +17,11 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double looser = 30.0;         ///< the second integration
-constexpr double rounding_left = 1e-9;  ///< of the differences of equations, relative
+constexpr double looser = 30.0;  ///< the second integration
+/// What differences of equations leave: of the derivative itself, and of its size over the step.
+constexpr double truncated = 1e-9, rounded = 3e-14;
+/// The same where the linear part is bent in the parameter, per share of bend: a step being 1e-5 of the parameter.
+constexpr double bent = 1e-10;
 
 VectorXd vector_of(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
 
@@ -125,19 +128,26 @@ CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& ra
 }
 
 /// Errors by comparison with a looser integration.
-void compare(const CycleDerivatives& rough, double share, CycleDerivatives& result) {
+void compare(const CycleDerivatives& rough, double share, const Cycle& cycle, const ParameterRates& rates,
+             CycleDerivatives& result) {
   for (std::size_t k = 0; k < result.by.size(); ++k) {
     CycleDerivative& one = result.by[k];
     const CycleDerivative& other = rough.by[k];
-    const auto error = [&](double a, double b) { return share * std::abs(a - b) + rounding_left * std::abs(a); };
-    one.period_error = error(one.period, other.period);
-    one.amplitude_error = error(one.amplitude, other.amplitude);
+    const auto parameter = static_cast<Index>(k);
+    const double grain =
+        (rounded + bent * std::max(0.0, rates.bend(parameter) - 1e-3)) / std::abs(rates.step(parameter));
+    const auto error = [&](auto a, auto b, double size) {
+      return share * std::abs(a - b) + truncated * std::abs(a) + grain * size;
+    };
+    one.period_error = error(one.period, other.period, cycle.period);
+    one.amplitude_error = error(one.amplitude, other.amplitude, cycle.amplitude);
     for (std::size_t m = 0; m < one.multipliers.size(); ++m) {
-      if (!one.multipliers[m]) continue;
-      const auto there = m < other.multipliers.size() ? other.multipliers[m] : std::nullopt;
-      const double size = std::abs(*one.multipliers[m]);
-      const double difference = there ? share * std::abs(*one.multipliers[m] - *there) : size;
-      one.multiplier_error = std::max(one.multiplier_error, difference + rounding_left * size);
+      auto& value = one.multipliers[m];
+      const auto& rough_value = other.multipliers[m];
+      if (!rough_value) value.reset();  // an error that is not known
+      if (!value) continue;
+      const double size = std::max(1e-3, std::abs(cycle.multipliers[m]));  // of what has been added up to it
+      one.multiplier_error = std::max(one.multiplier_error, error(*value, *rough_value, size));
     }
   }
 }
@@ -153,7 +163,7 @@ CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
   const double loose = looser * options.rtol;
   const CycleDerivatives rough = derive(loop, cycle, rates, loose, options);
   if (rough.status != Status::converged) return rough;
-  compare(rough, stated_share(options.rtol, loose), result);
+  compare(rough, stated_share(options.rtol, loose), cycle, rates, result);
   return result;
 }
 
