@@ -36,9 +36,10 @@ ParameterRates::ParameterRates(const Loop& loop, std::span<const ParameterNeighb
     return made;
   };
   for (const auto& pair : neighbours) {
-    if (!std::isfinite(pair.step) || pair.step == 0.0)
+    if (!std::isfinite(pair.step) || pair.step == 0.0 || !std::isfinite(pair.value))
       throw std::invalid_argument("the step of a parameter must be finite and not 0");
-    pairs_.push_back({side(pair.low), side(pair.high), pair.step});
+    const double share = pair.value != 0.0 ? std::abs(pair.step / pair.value) : 1e-6;
+    pairs_.push_back({side(pair.low), side(pair.high), pair.step, share});
   }
 }
 
@@ -66,7 +67,7 @@ VectorXd ParameterRates::move(Side& side, const LoopField& field, const State& x
 void ParameterRates::rates(const LoopField& field, const State& x, const MatrixXd& J, double t, MatrixXd& columns) {
   columns.resize(std::ssize(x), count());
   for (Index k = 0; k < count(); ++k) {
-    auto& [low, high, step] = pairs_[static_cast<std::size_t>(k)];
+    auto& [low, high, step, share] = pairs_[static_cast<std::size_t>(k)];
     VectorXd by = move(*high, field, x, t);
     columns.col(k) = as_vector(rate_);
     by -= move(*low, field, x, t);
@@ -85,7 +86,7 @@ MatrixXd ParameterRates::over(const LoopField& field, const State& x, double h) 
     return VectorXd(as_vector(end));
   };
   for (Index k = 0; k < count(); ++k) {
-    auto& [low, high, step] = pairs_[static_cast<std::size_t>(k)];
+    auto& [low, high, step, share] = pairs_[static_cast<std::size_t>(k)];
     columns.col(k) = (arrive(*high) - arrive(*low)) / (2.0 * step);
   }
   return columns;
@@ -97,18 +98,18 @@ std::optional<ParameterRates::AtSwitch> ParameterRates::at_switch(const LoopFiel
   const Index n = std::ssize(x);
   AtSwitch result{MatrixXd(n, count()), Eigen::RowVectorXd(count())};
   for (Index k = 0; k < count(); ++k) {
-    auto& [low, high, step] = pairs_[static_cast<std::size_t>(k)];
+    auto& [low, high, step, share] = pairs_[static_cast<std::size_t>(k)];
     VectorXd reset = VectorXd::Zero(n);
     double value = 0.0;
     for (const bool up : {true, false}) {
       Side& side = up ? *high : *low;
-      const double share = (up ? 0.5 : -0.5) / step;
+      const double weight = (up ? 0.5 : -0.5) / step;
       const VectorXd by = move(side, field, x, t);
       side.field.guards(moved_, t, guards_);
-      value += share * (guards_.at(guard) - slopes.guard * by);
+      value += weight * (guards_.at(guard) - slopes.guard * by);
       side.field.fire(moved_, t, guard);
       if (side.field.modes() != after) return std::nullopt;
-      reset += share * (as_vector(moved_) - slopes.reset * by);
+      reset += weight * (as_vector(moved_) - slopes.reset * by);
     }
     result.guard(k) = value;
     result.jump.col(k) = reset + (slopes.after - slopes.reset * slopes.before) * (value / slopes.crossing);
@@ -121,7 +122,7 @@ std::optional<ParameterRates::Rubbing> ParameterRates::rubbing(const LoopField& 
   Rubbing found{velocity(field), Eigen::RowVectorXd::Zero(std::ssize(x)), Eigen::RowVectorXd(count())};
   found.by_state.head(loop_->states()) = loop_->ports[*rubbing_].C_v;
   for (Index k = 0; k < count(); ++k) {
-    auto& [low, high, step] = pairs_[static_cast<std::size_t>(k)];
+    auto& [low, high, step, share] = pairs_[static_cast<std::size_t>(k)];
     for (Side* side : {low.get(), high.get()}) {
       side->field.modes() = field.modes();
       side->field.rate(x, rate_, t);
@@ -162,7 +163,7 @@ Eigen::RowVectorXd ParameterRates::output(const State& x) const {
   Eigen::RowVectorXd change(count());
   const auto X = as_vector(x).head(loop_->states());
   for (Index k = 0; k < count(); ++k) {
-    const auto& [low, high, step] = pairs_[static_cast<std::size_t>(k)];
+    const auto& [low, high, step, share] = pairs_[static_cast<std::size_t>(k)];
     change(k) = ((high->loop->C_y - low->loop->C_y) * X).value() / (2.0 * step);
   }
   return change;

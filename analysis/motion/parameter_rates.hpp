@@ -14,10 +14,12 @@ namespace limcycle {
 /// A loop whose parameter is a little less, and one whose parameter is a little more.
 struct ParameterNeighbours {
   Loop low, high;
-  /// Half of what the parameter differs by between them, in its unit. A relative 1e-5 serves best: of the equations,
-  /// what is left out is then about 1e-10 of what they say, and so is the rounding. Where the parameter cannot be less,
-  /// `low` may be the loop itself: the error is then of the first order, about 1e-5 times the relative curvature.
+  /// Half of what the parameter differs by between them, in its unit. A relative 1e-6 serves best: of the equations,
+  /// rounding then leaves 1e-10 of what they say, and what is left out is less. Where the parameter cannot be less,
+  /// `low` may be the loop itself; nothing is lost if the equations are linear in it, else they are right to the first
+  /// order.
   double step = 0.0;
+  double value = 0.0;  ///< of the parameter; tells what share of it the step is (0: a millionth is taken for that)
 };
 
 /// How the equations of a loop change with its parameters, state and time standing still: of the rates, of the guards,
@@ -80,6 +82,8 @@ class ParameterRates {
   /// transfer function is realised is the largest of several). The differences are then of the first order.
   double bend(Eigen::Index k) const;
   double step(Eigen::Index k) const { return pairs_[static_cast<std::size_t>(k)].step; }
+  /// The step as a share of the parameter.
+  double share(Eigen::Index k) const { return pairs_[static_cast<std::size_t>(k)].share; }
 
   /// d(C_y)/dp x, the part of dy/dp that comes of how y is read.
   Eigen::RowVectorXd output(const State& x) const;
@@ -93,7 +97,7 @@ class ParameterRates {
   };
   struct Pair {
     std::unique_ptr<Side> low, high;
-    double step;
+    double step, share;
   };
   Eigen::VectorXd move(Side& side, const LoopField& field, const State& x, double t);
   Eigen::VectorXd meet(Side& side, double velocity, State& x, double t);

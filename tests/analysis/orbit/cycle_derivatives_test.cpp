@@ -58,8 +58,8 @@ Loop with(const LoopParts& parts, const Knob& knob, double to) {
 std::vector<ParameterNeighbours> neighbours(const LoopParts& parts, const std::vector<Knob>& knobs) {
   std::vector<ParameterNeighbours> found;
   for (const Knob& knob : knobs) {
-    const double at = value(parts, knob), low = at * (1.0 - 1e-5), high = at * (1.0 + 1e-5);
-    found.push_back({with(parts, knob, low), with(parts, knob, high), 0.5 * (high - low)});
+    const double at = value(parts, knob), low = at * (1.0 - 1e-6), high = at * (1.0 + 1e-6);
+    found.push_back({with(parts, knob, low), with(parts, knob, high), 0.5 * (high - low), at});
   }
   return found;
 }
@@ -245,7 +245,7 @@ TEST_CASE("derivatives of the hunting LuGre servo by all its numbers, against di
   const auto found = derived(parts, knobs);
   check_differences(parts, knobs, found);
   for (const auto& one : found.by) {
-    CHECK(one.period_error < 1e-6 * std::abs(one.period));
+    CHECK(one.period_error < 1e-5 * std::abs(one.period));
     REQUIRE(one.multipliers.size() == 3);
     REQUIRE(one.multipliers[0].has_value());
     CHECK_FALSE(one.multipliers[1].has_value());  // below rounding
@@ -265,7 +265,12 @@ TEST_CASE("derivatives of the LuGre servo obey its scalings, multipliers include
   const auto expect = [&](const std::vector<double>& weights, double of_period, double of_amplitude) {
     CHECK(std::abs(euler(found, parts, knobs, weights, period) - of_period * T) < 1e-6 * T);
     CHECK(std::abs(euler(found, parts, knobs, weights, amplitude) - of_amplitude * a) < 1e-6 * a);
-    CHECK(std::abs(euler(found, parts, knobs, weights, largest_multiplier)) < 1e-5 * m);
+    const double of_multiplier = std::abs(euler(found, parts, knobs, weights, largest_multiplier));
+    CHECK(of_multiplier < 3e-4 * m);
+    double error = 0.0;
+    for (std::size_t k = 0; k < knobs.size(); ++k)
+      error += std::abs(weights[k] * value(parts, knobs[k])) * found.by[k].multiplier_error;
+    CHECK(of_multiplier <= error);
   };
   expect({1, 1, 1, 1, 1, 1, 0, 1, 1, 1}, 0.0, 0.0);           // all forces
   expect({0, 0, 0, 0, 1, 1, 1, 0, 0, 0}, 0.0, 1.0);           // all lengths
@@ -287,7 +292,7 @@ TEST_CASE("derivatives through break-away and exact sticking: the Coulomb servo,
   for (std::size_t k = 0; k < knobs.size(); ++k) {
     CAPTURE(knobs[k].name);
     const double expected = differences(parts, knobs[k], found.cycle).multiplier;
-    CHECK(std::abs(found.by[k].multipliers[0].value() - expected) < 1e-7 * std::abs(expected) + 1e-9);
+    CHECK(std::abs(found.by[k].multipliers[0].value() - expected) < 3e-6 * std::abs(expected) + 1e-9);
     CHECK_FALSE(found.by[k].multipliers[1].has_value());
   }
 }
@@ -346,7 +351,7 @@ TEST_CASE("derivatives of van der Pol: what only scales y leaves period and mult
 
   const auto best = derived(parts, knobs, 1.0, 1e-12);
   double last = infinite;
-  for (const double rtol : {1e-5, 1e-7, 1e-9}) {
+  for (const double rtol : {1e-6, 1e-8, 1e-10}) {
     const auto rough = derived(parts, knobs, 1.0, rtol);
     const double error = std::abs(rough.by[1].period - best.by[1].period);
     CAPTURE(rtol, error, rough.by[1].period_error);
@@ -405,6 +410,6 @@ TEST_CASE("derivatives of a cycle: what cannot be derived is told") {
   CHECK_THROWS_AS(cycle_derivatives(loop, cycle, pairs), std::invalid_argument);
   pairs[0].step = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(cycle_derivatives(loop, cycle, pairs), std::invalid_argument);
-  pairs[0] = {build_loop(servo_parts(coulomb(1.5, 1.0))), loop, 1e-5};
+  pairs[0] = {build_loop(servo_parts(coulomb(1.5, 1.0))), loop, 1e-5, 1.0};
   CHECK_THROWS_AS(cycle_derivatives(loop, cycle, pairs), std::invalid_argument);
 }
