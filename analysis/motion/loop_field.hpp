@@ -16,6 +16,17 @@ namespace limcycle {
 /// External signals and their rates at time t; the default of a field is the loop's own constants.
 using ExternalSignals = std::function<void(double t, External& value, External& rate)>;
 
+/// What a switch does to small deviations: n the gradient of the guard, f- and f+ the rates before and after, dh the
+/// derivative of the reset, of which the taking out of a velocity is a part.
+struct SwitchSlopes {
+  Eigen::MatrixXd reset;      ///< dh
+  Eigen::RowVectorXd guard;   ///< n
+  Eigen::VectorXd before;     ///< f-
+  Eigen::VectorXd after;      ///< f+
+  double crossing = 0.0;      ///< n f-, the rate of the guard
+  Eigen::MatrixXd saltation;  ///< dh + (f+ - dh f-) n/(n f-)
+};
+
 /// The vector field of a loop in its present modes, smooth as long as every guard is >= 0.
 /// State: linear states, then the states of the elements in order. One object serves one thread.
 ///
@@ -56,6 +67,8 @@ class LoopField {
   /// n S = 0: the rank drops by one. Autonomous loops only. Returns false (S undefined) where the switch is not crossed
   /// transversally.
   bool fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation);
+  /// The same, with what the saltation matrix is made of.
+  bool fire(State& x, double t, std::size_t guard, SwitchSlopes& slopes);
   /// The element whose guard this is.
   std::size_t owner(std::size_t guard) const;
   /// Modes of elements without history at this state, whose own states are set too.

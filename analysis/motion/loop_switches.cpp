@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "limcycle/analysis/motion/loop_field.hpp"
 
@@ -95,28 +96,41 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
 }
 
 bool LoopField::fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation) {
+  SwitchSlopes slopes;
+  const bool transversal = fire(x, t, guard, slopes);
+  saltation = std::move(slopes.saltation);
+  return transversal;
+}
+
+bool LoopField::fire(State& x, double t, std::size_t guard, SwitchSlopes& slopes) {
   const std::size_t i = owner(guard), k = first_guard_of(i, guard);
   const auto size = static_cast<Index>(size_);
   State before, after;
   rate(x, before, t);
   output_gradients(x);
   find_inputs(x);
-  const Eigen::RowVectorXd n = guard_gradient(x, i, k);
-  Eigen::MatrixXd reset = reset_gradient(x, i, k);
+  slopes.guard = guard_gradient(x, i, k);
+  slopes.reset = reset_gradient(x, i, k);
   const Port& port = loop_->ports[i];
   const Eigen::VectorXd column = loop_->B.col(static_cast<Index>(i));
   const auto stop = [&](Eigen::MatrixXd& gradient) {  // derivative of arrest()
     const Eigen::MatrixXd velocity = port.C_v * gradient.topRows(column.size());
     gradient.topRows(column.size()) -= column * velocity / (port.C_v * column).value();
   };
-  if (arrests_at(i, k)) stop(reset);
+  if (arrests_at(i, k)) stop(slopes.reset);
   fire(x, t, guard);
   rate(x, after, t);
-  const Eigen::Map<const Eigen::VectorXd> f_minus(before.data(), size), f_plus(after.data(), size);
-  const double crossing = n * f_minus, speed = n.cwiseAbs() * f_minus.cwiseAbs();
-  if (!(std::abs(crossing) > 1e-12 * speed)) return false;
-  saltation = reset + (f_plus - reset * f_minus) * n / crossing;
-  if (held(i) == Held::rate) stop(saltation);  // deviations of the held velocity end here, to the last bit
+  slopes.before = Eigen::Map<const Eigen::VectorXd>(before.data(), size);
+  slopes.after = Eigen::Map<const Eigen::VectorXd>(after.data(), size);
+  const Eigen::RowVectorXd& n = slopes.guard;
+  slopes.crossing = n * slopes.before;
+  const double speed = n.cwiseAbs() * slopes.before.cwiseAbs();
+  if (!(std::abs(slopes.crossing) > 1e-12 * speed)) return false;
+  slopes.saltation = slopes.reset + (slopes.after - slopes.reset * slopes.before) * n / slopes.crossing;
+  if (held(i) == Held::rate) {  // deviations of the held velocity end here, to the last bit
+    stop(slopes.reset);
+    stop(slopes.saltation);
+  }
   return true;
 }
 

@@ -12,7 +12,9 @@ namespace limcycle {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-Eigen::MatrixXd transition(LoopField& field, const Step& step) {
+Eigen::MatrixXd transition(LoopField& field, const Step& step) { return transition(field, step, 0, {}); }
+
+Eigen::MatrixXd transition(LoopField& field, const Step& step, Index count, const Forcing& forcing) {
   const double s6 = std::sqrt(6.0);
   const std::array<double, 3> c{(4.0 - s6) / 10.0, (4.0 + s6) / 10.0, 1.0};
   const std::array<std::array<double, 3>, 3> a{
@@ -23,13 +25,13 @@ Eigen::MatrixXd transition(LoopField& field, const Step& step) {
   const double h = step.t1 - step.t0;
   // Row-major, the right sides [I; I; I] beside it. Unknowns and rows component by component, the stages of each in a
   // row, so that components which hardly depend on each other leave zeros.
-  const Index m = 3 * n, width = m + n;
+  const Index m = 3 * n, right = n + count, width = m + right;
   thread_local std::vector<double> system;
   system.assign(static_cast<std::size_t>(m * width), 0.0);
   const auto at = [&](Index row, Index column) -> double& {
     return system[static_cast<std::size_t>(row * width + column)];
   };
-  MatrixXd J;
+  MatrixXd J, forced(n, count);
   State x, time;
   for (Index j = 0; j < 3; ++j) {
     const auto stage = static_cast<std::size_t>(j);
@@ -41,16 +43,22 @@ Eigen::MatrixXd transition(LoopField& field, const Step& step) {
         if (change == 0.0) continue;
         for (Index i = 0; i < 3; ++i) at(3 * row + i, 3 * column + j) = a[static_cast<std::size_t>(i)][stage] * change;
       }
+    if (count == 0) continue;
+    forcing(x, J, step.t0 + c[stage] * h, forced);
+    for (Index row = 0; row < n; ++row)
+      for (Index column = 0; column < count; ++column)
+        for (Index i = 0; i < 3; ++i)
+          at(3 * row + i, m + n + column) += h * a[static_cast<std::size_t>(i)][stage] * forced(row, column);
   }
   for (Index row = 0; row < m; ++row) {
     at(row, row) += 1.0;
     at(row, m + row / 3) = 1.0;
   }
-  MatrixXd result(n, n);
-  if (!eliminate(system, static_cast<std::size_t>(m), static_cast<std::size_t>(n)))
-    return MatrixXd::Constant(n, n, NAN);
+  MatrixXd result(n, right);
+  if (!eliminate(system, static_cast<std::size_t>(m), static_cast<std::size_t>(right)))
+    return MatrixXd::Constant(n, right, NAN);
   for (Index row = 0; row < n; ++row)
-    for (Index column = 0; column < n; ++column) result(row, column) = at(3 * row + 2, m + column);
+    for (Index column = 0; column < right; ++column) result(row, column) = at(3 * row + 2, m + column);
   return result;
 }
 

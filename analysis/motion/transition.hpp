@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 
 #include "limcycle/analysis/motion/loop_field.hpp"
 
@@ -13,5 +14,12 @@ struct Step;
 /// noise; Hairer and Wanner II, 1996, section IV.5). Order 5 for a constant J, 4 along a curve, which is interpolated.
 /// Cost: three Jacobians and a linear system of 3n.
 Eigen::MatrixXd transition(LoopField& field, const Step& step);
+
+/// What acts on deviations along a step: a column b of rates for each, at the state x where the Jacobian is J.
+using Forcing = std::function<void(const State& x, const Eigen::MatrixXd& J, double t, Eigen::MatrixXd& columns)>;
+
+/// The same, and beside it a column for each of `count` deviations s that start at zero under a forcing,
+/// ds/dt = J(x(t)) s + b(t): by the same step of the same method.
+Eigen::MatrixXd transition(LoopField& field, const Step& step, Eigen::Index count, const Forcing& forcing);
 
 }  // namespace limcycle

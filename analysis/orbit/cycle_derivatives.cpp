@@ -1,0 +1,173 @@
+#include "limcycle/analysis/orbit/cycle_derivatives.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/orbit/cycle_pieces.hpp"
+#include "limcycle/analysis/orbit/multiplier_derivatives.hpp"
+#include "limcycle/models/linear/dense.hpp"
+
+namespace limcycle {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+constexpr double looser = 30.0;  ///< the second integration
+/// Share of the difference of the two that is stated: errors go about as the tolerance to the power 0.8 (those of the
+/// interpolated steps), so that the difference is about 14 times that of the tight one; five times as much is stated.
+constexpr double stated = 0.35;
+/// What differences of equations leave: of the derivative itself, and of the size of what is derived over the step.
+constexpr double truncated = 1e-9, rounded = 1e-14;
+/// What the differences of the step derivatives leave of a multiplier, per square of the share that the step is of the
+/// parameter and per multiplier over parameter: measured on the LuGre servo, whose bristles are fast beside its period.
+constexpr double of_factors = 2e7;
+
+VectorXd vector_of(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
+
+/// dy/dx0 and dy/dp where y is largest or least.
+struct Extreme {
+  double y;
+  RowVectorXd by_start, by_parameters;
+};
+
+/// What one period does to deviations of its start and to parameters.
+struct Carried {
+  MatrixXd whole, columns;
+  Extreme low{infinite, {}, {}}, high{-infinite, {}, {}};
+};
+
+Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& cut) {
+  const Index n = cut.sizes.size(), linear = loop.states();
+  Carried carried{MatrixXd::Identity(n, n), MatrixXd::Zero(n, rates.count())};
+  for (const CyclePiece& piece : cut.pieces) {
+    carried.whole = (piece.factor * carried.whole).eval();
+    carried.columns = (piece.factor * carried.columns + piece.columns).eval();
+    const double y = loop.C_y.dot(vector_of(piece.step.x1).head(linear));
+    if (y < carried.low.y || y > carried.high.y) {
+      Extreme here{y, loop.C_y * carried.whole.topRows(linear),
+                   loop.C_y * carried.columns.topRows(linear) + rates.output(piece.step.x1)};
+      if (piece.end) {  // y may have a corner, and the corner moves
+        const double rate = loop.C_y.dot(vector_of(piece.step.dx1).head(linear));
+        here.by_start += rate * (piece.end->by_state * carried.whole);
+        here.by_parameters += rate * (piece.end->by_state * carried.columns + piece.end->by_parameters);
+      }
+      if (y < carried.low.y) carried.low = here;
+      if (y > carried.high.y) carried.high = std::move(here);
+    }
+    if (!piece.event) continue;
+    carried.whole = (piece.event->saltation * carried.whole).eval();
+    carried.columns = (piece.event->saltation * carried.columns + piece.event->jump).eval();
+  }
+  return carried;
+}
+
+/// Combinations of element states that the period keeps, whatever the state is; in units of `sizes`, by columns.
+MatrixXd kept_combinations(const MatrixXd& scaled, Index first) {
+  const Index count = scaled.rows() - first;
+  if (count == 0) return MatrixXd(0, 0);
+  MatrixXd rows = scaled.bottomRows(count);
+  rows.rightCols(count) -= MatrixXd::Identity(count, count);
+  const Eigen::JacobiSVD<MatrixXd> svd(rows, Eigen::ComputeFullU);
+  const auto rank = (svd.singularValues().array() > 1e-9).count();
+  return svd.matrixU().rightCols(count - rank);
+}
+
+/// dx0/dp, with dT/dp in the last row: a column for each parameter.
+MatrixXd solve_cycle(const Loop& loop, const CyclePieces& cut, const Carried& carried) {
+  const Index n = cut.sizes.size();
+  const VectorXd f = vector_of(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes);
+  const MatrixXd scaled = cut.sizes.cwiseInverse().asDiagonal() * carried.whole * cut.sizes.asDiagonal();
+  const MatrixXd kept = kept_combinations(scaled, loop.states());
+  MatrixXd matrix = MatrixXd::Zero(n + 1 + kept.cols(), n + 1);
+  matrix.topLeftCorner(n, n) = MatrixXd::Identity(n, n) - scaled;
+  matrix.block(0, n, n, 1) = -f / f.norm();  // the period in units of 1/|f|
+  matrix.block(n, 0, 1, n) = f.transpose() / f.norm();
+  matrix.block(n + 1, n - kept.rows(), kept.cols(), kept.rows()) = kept.transpose();
+  MatrixXd right = MatrixXd::Zero(matrix.rows(), carried.columns.cols());
+  right.topRows(n) = cut.sizes.cwiseInverse().asDiagonal() * carried.columns;
+  MatrixXd solution(n + 1, right.cols());
+  for (Index k = 0; k < right.cols(); ++k) solution.col(k) = least_squares(matrix, right.col(k), 1e-12);
+  solution.topRows(n) = (cut.sizes.asDiagonal() * solution.topRows(n)).eval();
+  solution.row(n) /= f.norm();
+  return solution;
+}
+
+/// Does the march come back to its start, in the modes of the start?
+bool closes(const CyclePieces& cut, const LoopState& start) {
+  if (cut.last.modes != start.modes) return false;
+  return (vector_of(cut.last.x) - vector_of(start.x)).cwiseQuotient(cut.sizes).cwiseAbs().maxCoeff() < 1e-4;
+}
+
+CycleDerivatives without(Status status, std::string why) { return {status, std::move(why), {}}; }
+
+CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& rates, double rtol,
+                        const CycleDerivativeOptions& options) {
+  const CyclePieces cut = cut_cycle(loop, cycle.start, cycle.period, rates, {rtol, options.max_steps, options.stop});
+  if (cut.status == Status::stalled)
+    return without(cut.status, "a switch is grazed, or comes in another order beside the cycle");
+  if (cut.status != Status::converged) return without(cut.status, "the cycle could not be followed");
+  if (!closes(cut, cycle.start)) return without(Status::stalled, "the motion does not close after the period");
+  const Carried carried = carry(loop, rates, cut);
+  const MatrixXd solution = solve_cycle(loop, cut, carried);
+  if (!solution.allFinite()) return without(Status::not_finite, "the equations of the cycle are singular");
+  const Index n = cut.sizes.size();
+  const RowVectorXd by_start = 0.5 * (carried.high.by_start - carried.low.by_start);
+  const RowVectorXd amplitude =
+      0.5 * (carried.high.by_parameters - carried.low.by_parameters) + by_start * solution.topRows(n);
+  CycleDerivatives result;
+  for (Index k = 0; k < rates.count(); ++k) {
+    CycleDerivative& one = result.by.emplace_back();
+    one.period = solution(n, k);
+    one.amplitude = amplitude(k);
+  }
+  if (!options.multipliers) return result;
+  const auto moved = multiplier_derivatives(cut, cycle.multipliers, solution, rates);
+  for (std::size_t k = 0; k < moved.size(); ++k) result.by[k].multipliers = moved[k];
+  return result;
+}
+
+/// Errors by comparison with a looser integration.
+void compare(const CycleDerivatives& rough, const Cycle& cycle, const ParameterRates& rates, CycleDerivatives& result) {
+  for (std::size_t k = 0; k < result.by.size(); ++k) {
+    CycleDerivative& one = result.by[k];
+    const CycleDerivative& other = rough.by[k];
+    const auto parameter = static_cast<Index>(k);
+    const double step = std::abs(rates.step(parameter)), part = rates.share(parameter);
+    const double bent = std::max(0.0, rates.bend(parameter) - 1e-3) * part * part;
+    const double grain = (rounded + bent) / step, coarse = of_factors * part * part * part / step;
+    const auto error = [&](auto a, auto b, double size) {
+      return stated * std::abs(a - b) + truncated * std::abs(a) + grain * size;
+    };
+    one.period_error = error(one.period, other.period, cycle.period);
+    one.amplitude_error = error(one.amplitude, other.amplitude, cycle.amplitude);
+    for (std::size_t m = 0; m < one.multipliers.size(); ++m) {
+      auto& value = one.multipliers[m];
+      const auto& rough_value = other.multipliers[m];
+      if (!rough_value) value.reset();  // an error that is not known
+      if (!value) continue;
+      const double size = std::max(1e-3, std::abs(cycle.multipliers[m]));  // of what has been added up to it
+      one.multiplier_error =
+          std::max(one.multiplier_error, error(*value, *rough_value, size) + coarse * std::abs(cycle.multipliers[m]));
+    }
+  }
+}
+
+}  // namespace
+
+CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
+                                   std::span<const ParameterNeighbours> neighbours,
+                                   const CycleDerivativeOptions& options) {
+  ParameterRates rates(loop, neighbours);
+  CycleDerivatives result = derive(loop, cycle, rates, options.rtol, options);
+  if (result.status != Status::converged) return result;
+  const CycleDerivatives rough = derive(loop, cycle, rates, looser * options.rtol, options);
+  if (rough.status != Status::converged) return rough;
+  compare(rough, cycle, rates, result);
+  return result;
+}
+
+}  // namespace limcycle

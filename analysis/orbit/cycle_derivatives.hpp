@@ -1,0 +1,58 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/motion/parameter_rates.hpp"
+#include "limcycle/analysis/status.hpp"
+
+namespace limcycle {
+
+/// How a cycle moves with one parameter p, each per unit of p, with an estimate of its absolute error.
+struct CycleDerivative {
+  double period = 0.0, period_error = 0.0;        ///< s
+  double amplitude = 0.0, amplitude_error = 0.0;  ///< of half the peak-to-peak of y
+  /// In the order of Cycle::multipliers. Empty where the multiplier is not simple or is zero to rounding, so that it
+  /// has no derivative, or none that double precision can tell.
+  std::vector<std::optional<std::complex<double>>> multipliers;
+  double multiplier_error = 0.0;  ///< the largest of those that are told
+};
+
+struct CycleDerivatives {
+  Status status = Status::converged;
+  std::string why;                  ///< one sentence, if there is no answer
+  std::vector<CycleDerivative> by;  ///< in the order of the neighbours
+};
+
+struct CycleDerivativeOptions {
+  double rtol = 1e-10;  ///< of the integration; a second one, thirty times as loose, tells the errors
+  bool multipliers = true;
+  long max_steps = 200000;
+  std::function<bool()> stop;
+};
+
+/// Derivatives of period, amplitude and Floquet multipliers of a cycle with respect to parameters, each given by a pair
+/// of neighbours of the loop.
+///
+/// With P the state after the period T from x0, the cycle is P(x0, T, p) = x0, so that by the implicit function theorem
+///   (I - dP/dx0) dx0/dp - f dT/dp = dP/dp,   f . dx0/dp = 0 (the phase, which nothing else fixes).
+/// dP/dx0 and dP/dp are those of the variational equations through every stick, slip and switch (cut_cycle). The
+/// amplitude follows from the deviations where y turns, or switches at a corner. What the motion remembers for ever
+/// (Cycle::remembered) is held. A multiplier m, simple, with eigenvectors w and v of the product of the step
+/// derivatives F_k, moves by  sum_k w' F_K..F_k+1 (dF_k/dp) F_k-1..F_1 v/(w' v);  dF_k/dp is the difference between the
+/// derivatives over the same step in the neighbours, beginning and ending on their cycles, which the solution above
+/// tells: no cycle but the given one is computed, and no motion is differenced.
+///
+/// The cycle must be as good as shooting makes it (residual 1e-9 or less) and begin off its switches. Where a switch is
+/// grazed there is no derivative: Status stalled. Cost: a march of the period with a linear system of 3n and n + q
+/// columns a step, and for multipliers 2 q such systems more.
+CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
+                                   std::span<const ParameterNeighbours> neighbours,
+                                   const CycleDerivativeOptions& options = {});
+
+}  // namespace limcycle

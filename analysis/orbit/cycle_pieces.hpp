@@ -1,0 +1,56 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/parameter_rates.hpp"
+#include "limcycle/analysis/status.hpp"
+
+namespace limcycle {
+
+/// A moment that is bound to the motion, a zero of something: how it moves with the state there and with parameters.
+struct BoundMoment {
+  Eigen::RowVectorXd by_state, by_parameters;  ///< s per unit
+};
+
+/// A part of a cycle over which the field is smooth, and what happens at its end.
+struct CyclePiece {
+  Step step;
+  std::vector<Mode> modes;         ///< during the piece
+  Eigen::MatrixXd factor;          ///< d(state at the end)/d(state at the start), times standing still
+  Eigen::MatrixXd columns;         ///< d(state at the end)/d(parameters), given the start
+  std::optional<BoundMoment> end;  ///< if the piece ends with a switch, or where the rubbing velocity is zero
+  std::optional<double> reversal;  ///< that velocity there: all but zero, and of the sign that it had before
+  struct Switch {
+    std::size_t guard = 0;
+    Eigen::MatrixXd saltation, jump;  ///< what it does to deviations, and what it adds by parameters
+  };
+  std::optional<Switch> event;
+};
+
+/// One period of a cycle in pieces.
+struct CyclePieces {
+  Status status = Status::converged;
+  std::vector<CyclePiece> pieces;
+  LoopState last;         ///< after the period
+  Eigen::VectorXd sizes;  ///< largest |state| met, at least 1e-6 of the typical one
+};
+
+struct CutOptions {
+  double rtol = 1e-10;
+  long max_steps = 200000;
+  std::function<bool()> stop;
+};
+
+/// Marches from `start` for the time `period` and finds what small deviations do: variational equations along every
+/// step (with a column for each parameter), saltation at every switch. A step is cut in two where y turns, so that
+/// extremes lie at the ends of pieces, and where the rubbing velocity goes through zero, where a law may have a kink:
+/// there the field has a derivative on either side, and each piece has its own. Status stalled: a switch is grazed, or
+/// a neighbour switches to another mode; max_iterations: the budget of steps is spent.
+CyclePieces cut_cycle(const Loop& loop, const LoopState& start, double period, ParameterRates& rates,
+                      const CutOptions& options);
+
+}  // namespace limcycle
