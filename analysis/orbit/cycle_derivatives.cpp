@@ -26,7 +26,7 @@ constexpr double truncated = 1e-9, rounded = 1e-14;
 /// parameter and per multiplier over parameter: measured on the LuGre servo, whose bristles are fast beside its period.
 constexpr double of_factors = 2e7;
 
-VectorXd vector_of(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
+VectorXd as_column(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
 
 /// dy/dx0 and dy/dp where y is largest or least.
 struct Extreme {
@@ -46,12 +46,12 @@ Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& 
   for (const CyclePiece& piece : cut.pieces) {
     carried.whole = (piece.factor * carried.whole).eval();
     carried.columns = (piece.factor * carried.columns + piece.columns).eval();
-    const double y = loop.C_y.dot(vector_of(piece.step.x1).head(linear));
+    const double y = loop.C_y.dot(as_column(piece.step.x1).head(linear));
     if (y < carried.low.y || y > carried.high.y) {
       Extreme here{y, loop.C_y * carried.whole.topRows(linear),
                    loop.C_y * carried.columns.topRows(linear) + rates.output(piece.step.x1)};
       if (piece.end) {  // y may have a corner, and the corner moves
-        const double rate = loop.C_y.dot(vector_of(piece.step.dx1).head(linear));
+        const double rate = loop.C_y.dot(as_column(piece.step.dx1).head(linear));
         here.by_start += rate * (piece.end->by_state * carried.whole);
         here.by_parameters += rate * (piece.end->by_state * carried.columns + piece.end->by_parameters);
       }
@@ -79,7 +79,7 @@ MatrixXd kept_combinations(const MatrixXd& scaled, Index first) {
 /// dx0/dp, with dT/dp in the last row: a column for each parameter.
 MatrixXd solve_cycle(const Loop& loop, const CyclePieces& cut, const Carried& carried) {
   const Index n = cut.sizes.size();
-  const VectorXd f = vector_of(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes);
+  const VectorXd f = as_column(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes);
   const MatrixXd scaled = cut.sizes.cwiseInverse().asDiagonal() * carried.whole * cut.sizes.asDiagonal();
   const MatrixXd kept = kept_combinations(scaled, loop.states());
   MatrixXd matrix = MatrixXd::Zero(n + 1 + kept.cols(), n + 1);
@@ -99,7 +99,7 @@ MatrixXd solve_cycle(const Loop& loop, const CyclePieces& cut, const Carried& ca
 /// Does the march come back to its start, in the modes of the start?
 bool closes(const CyclePieces& cut, const LoopState& start) {
   if (cut.last.modes != start.modes) return false;
-  return (vector_of(cut.last.x) - vector_of(start.x)).cwiseQuotient(cut.sizes).cwiseAbs().maxCoeff() < 1e-4;
+  return (as_column(cut.last.x) - as_column(start.x)).cwiseQuotient(cut.sizes).cwiseAbs().maxCoeff() < 1e-4;
 }
 
 CycleDerivatives without(Status status, std::string why) { return {status, std::move(why), {}}; }
