@@ -1,6 +1,6 @@
 #include "limcycle/analysis/orbit/cycle_derivatives.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -65,32 +65,20 @@ Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& 
   return carried;
 }
 
-/// Combinations of element states that the period keeps, whatever the state is; in units of `sizes`, by columns.
-MatrixXd kept_combinations(const MatrixXd& scaled, Index first) {
-  const Index count = scaled.rows() - first;
-  if (count == 0) return MatrixXd(0, 0);
-  MatrixXd rows = scaled.bottomRows(count);
-  rows.rightCols(count) -= MatrixXd::Identity(count, count);
-  const Eigen::JacobiSVD<MatrixXd> svd(rows, Eigen::ComputeFullU);
-  const auto rank = (svd.singularValues().array() > 1e-9).count();
-  return svd.matrixU().rightCols(count - rank);
-}
-
-/// dx0/dp, with dT/dp in the last row: a column for each parameter.
-MatrixXd solve_cycle(const Loop& loop, const CyclePieces& cut, const Carried& carried) {
+/// dx0/dp, with dT/dp in the last row: a column for each parameter; not finite where there is none (a fold).
+MatrixXd solve_cycle(const CyclePieces& cut, const Carried& carried) {
   const Index n = cut.sizes.size();
-  const VectorXd f = as_column(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes);
-  const MatrixXd scaled = cut.sizes.cwiseInverse().asDiagonal() * carried.whole * cut.sizes.asDiagonal();
-  const MatrixXd kept = kept_combinations(scaled, loop.states());
-  MatrixXd matrix = MatrixXd::Zero(n + 1 + kept.cols(), n + 1);
-  matrix.topLeftCorner(n, n) = MatrixXd::Identity(n, n) - scaled;
-  matrix.block(0, n, n, 1) = -f / f.norm();  // the period in units of 1/|f|
-  matrix.block(n, 0, 1, n) = f.transpose() / f.norm();
-  matrix.block(n + 1, n - kept.rows(), kept.cols(), kept.rows()) = kept.transpose();
-  MatrixXd right = MatrixXd::Zero(matrix.rows(), carried.columns.cols());
+  const VectorXd f = as_column(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes), along = f / f.norm();
+  MatrixXd matrix(n + 1, n + 1);
+  matrix.topLeftCorner(n, n) = MatrixXd::Identity(n, n);
+  matrix.topLeftCorner(n, n) -= cut.sizes.cwiseInverse().asDiagonal() * carried.whole * cut.sizes.asDiagonal();
+  matrix.topRightCorner(n, 1) = -along;  // the period in units of 1/|f|
+  matrix.bottomLeftCorner(1, n) = along.transpose();
+  matrix(n, n) = 0.0;
+  MatrixXd right = MatrixXd::Zero(n + 1, carried.columns.cols());
   right.topRows(n) = cut.sizes.cwiseInverse().asDiagonal() * carried.columns;
-  MatrixXd solution(n + 1, right.cols());
-  for (Index k = 0; k < right.cols(); ++k) solution.col(k) = least_squares(matrix, right.col(k), 1e-12);
+  MatrixXd solution = solve_columns_fully_pivoted(matrix, right);
+  if (!((matrix * solution - right).norm() <= 1e-6 * right.norm())) solution.setConstant(infinite);
   solution.topRows(n) = (cut.sizes.asDiagonal() * solution.topRows(n)).eval();
   solution.row(n) /= f.norm();
   return solution;
@@ -112,8 +100,8 @@ CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& ra
   if (cut.status != Status::converged) return without(cut.status, "the cycle could not be followed");
   if (!closes(cut, cycle.start)) return without(Status::stalled, "the motion does not close after the period");
   const Carried carried = carry(loop, rates, cut);
-  const MatrixXd solution = solve_cycle(loop, cut, carried);
-  if (!solution.allFinite()) return without(Status::not_finite, "the equations of the cycle are singular");
+  const MatrixXd solution = solve_cycle(cut, carried);
+  if (!solution.allFinite()) return without(Status::stalled, "the equations of the cycle are singular: a fold");
   const Index n = cut.sizes.size();
   const RowVectorXd by_start = 0.5 * (carried.high.by_start - carried.low.by_start);
   const RowVectorXd amplitude =
@@ -162,6 +150,8 @@ CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
                                    std::span<const ParameterNeighbours> neighbours,
                                    const CycleDerivativeOptions& options) {
   ParameterRates rates(loop, neighbours);
+  if (cycle.remembered > 0)
+    return without(Status::undefined, "the cycle keeps something of what was before: another history, another cycle");
   CycleDerivatives result = derive(loop, cycle, rates, options.rtol, options);
   if (result.status != Status::converged) return result;
   const CycleDerivatives rough = derive(loop, cycle, rates, looser * options.rtol, options);
