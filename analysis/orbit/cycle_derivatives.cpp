@@ -1,6 +1,6 @@
 #include "limcycle/analysis/orbit/cycle_derivatives.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,7 @@ constexpr double truncated = 1e-9, rounded = 1e-14;
 /// parameter and per multiplier over parameter: measured on the LuGre servo, whose bristles are fast beside its period.
 constexpr double of_factors = 2e7;
 
-VectorXd vector_of(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
+VectorXd as_column(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
 
 /// dy/dx0 and dy/dp where y is largest or least.
 struct Extreme {
@@ -46,12 +46,12 @@ Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& 
   for (const CyclePiece& piece : cut.pieces) {
     carried.whole = (piece.factor * carried.whole).eval();
     carried.columns = (piece.factor * carried.columns + piece.columns).eval();
-    const double y = loop.C_y.dot(vector_of(piece.step.x1).head(linear));
+    const double y = loop.C_y.dot(as_column(piece.step.x1).head(linear));
     if (y < carried.low.y || y > carried.high.y) {
       Extreme here{y, loop.C_y * carried.whole.topRows(linear),
                    loop.C_y * carried.columns.topRows(linear) + rates.output(piece.step.x1)};
       if (piece.end) {  // y may have a corner, and the corner moves
-        const double rate = loop.C_y.dot(vector_of(piece.step.dx1).head(linear));
+        const double rate = loop.C_y.dot(as_column(piece.step.dx1).head(linear));
         here.by_start += rate * (piece.end->by_state * carried.whole);
         here.by_parameters += rate * (piece.end->by_state * carried.columns + piece.end->by_parameters);
       }
@@ -65,32 +65,20 @@ Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& 
   return carried;
 }
 
-/// Combinations of element states that the period keeps, whatever the state is; in units of `sizes`, by columns.
-MatrixXd kept_combinations(const MatrixXd& scaled, Index first) {
-  const Index count = scaled.rows() - first;
-  if (count == 0) return MatrixXd(0, 0);
-  MatrixXd rows = scaled.bottomRows(count);
-  rows.rightCols(count) -= MatrixXd::Identity(count, count);
-  const Eigen::JacobiSVD<MatrixXd> svd(rows, Eigen::ComputeFullU);
-  const auto rank = (svd.singularValues().array() > 1e-9).count();
-  return svd.matrixU().rightCols(count - rank);
-}
-
-/// dx0/dp, with dT/dp in the last row: a column for each parameter.
-MatrixXd solve_cycle(const Loop& loop, const CyclePieces& cut, const Carried& carried) {
+/// dx0/dp, with dT/dp in the last row: a column for each parameter; not finite where there is none (a fold).
+MatrixXd solve_cycle(const CyclePieces& cut, const Carried& carried) {
   const Index n = cut.sizes.size();
-  const VectorXd f = vector_of(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes);
-  const MatrixXd scaled = cut.sizes.cwiseInverse().asDiagonal() * carried.whole * cut.sizes.asDiagonal();
-  const MatrixXd kept = kept_combinations(scaled, loop.states());
-  MatrixXd matrix = MatrixXd::Zero(n + 1 + kept.cols(), n + 1);
-  matrix.topLeftCorner(n, n) = MatrixXd::Identity(n, n) - scaled;
-  matrix.block(0, n, n, 1) = -f / f.norm();  // the period in units of 1/|f|
-  matrix.block(n, 0, 1, n) = f.transpose() / f.norm();
-  matrix.block(n + 1, n - kept.rows(), kept.cols(), kept.rows()) = kept.transpose();
-  MatrixXd right = MatrixXd::Zero(matrix.rows(), carried.columns.cols());
+  const VectorXd f = as_column(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes), along = f / f.norm();
+  MatrixXd matrix(n + 1, n + 1);
+  matrix.topLeftCorner(n, n) = MatrixXd::Identity(n, n);
+  matrix.topLeftCorner(n, n) -= cut.sizes.cwiseInverse().asDiagonal() * carried.whole * cut.sizes.asDiagonal();
+  matrix.topRightCorner(n, 1) = -along;  // the period in units of 1/|f|
+  matrix.bottomLeftCorner(1, n) = along.transpose();
+  matrix(n, n) = 0.0;
+  MatrixXd right = MatrixXd::Zero(n + 1, carried.columns.cols());
   right.topRows(n) = cut.sizes.cwiseInverse().asDiagonal() * carried.columns;
-  MatrixXd solution(n + 1, right.cols());
-  for (Index k = 0; k < right.cols(); ++k) solution.col(k) = least_squares(matrix, right.col(k), 1e-12);
+  MatrixXd solution = solve_columns_fully_pivoted(matrix, right);
+  if (!((matrix * solution - right).norm() <= 1e-6 * right.norm())) solution.setConstant(infinite);
   solution.topRows(n) = (cut.sizes.asDiagonal() * solution.topRows(n)).eval();
   solution.row(n) /= f.norm();
   return solution;
@@ -99,7 +87,7 @@ MatrixXd solve_cycle(const Loop& loop, const CyclePieces& cut, const Carried& ca
 /// Does the march come back to its start, in the modes of the start?
 bool closes(const CyclePieces& cut, const LoopState& start) {
   if (cut.last.modes != start.modes) return false;
-  return (vector_of(cut.last.x) - vector_of(start.x)).cwiseQuotient(cut.sizes).cwiseAbs().maxCoeff() < 1e-4;
+  return (as_column(cut.last.x) - as_column(start.x)).cwiseQuotient(cut.sizes).cwiseAbs().maxCoeff() < 1e-4;
 }
 
 CycleDerivatives without(Status status, std::string why) { return {status, std::move(why), {}}; }
@@ -112,8 +100,8 @@ CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& ra
   if (cut.status != Status::converged) return without(cut.status, "the cycle could not be followed");
   if (!closes(cut, cycle.start)) return without(Status::stalled, "the motion does not close after the period");
   const Carried carried = carry(loop, rates, cut);
-  const MatrixXd solution = solve_cycle(loop, cut, carried);
-  if (!solution.allFinite()) return without(Status::not_finite, "the equations of the cycle are singular");
+  const MatrixXd solution = solve_cycle(cut, carried);
+  if (!solution.allFinite()) return without(Status::stalled, "the equations of the cycle are singular: a fold");
   const Index n = cut.sizes.size();
   const RowVectorXd by_start = 0.5 * (carried.high.by_start - carried.low.by_start);
   const RowVectorXd amplitude =
@@ -162,6 +150,8 @@ CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
                                    std::span<const ParameterNeighbours> neighbours,
                                    const CycleDerivativeOptions& options) {
   ParameterRates rates(loop, neighbours);
+  if (cycle.remembered > 0)
+    return without(Status::undefined, "the cycle keeps something of what was before: another history, another cycle");
   CycleDerivatives result = derive(loop, cycle, rates, options.rtol, options);
   if (result.status != Status::converged) return result;
   const CycleDerivatives rough = derive(loop, cycle, rates, looser * options.rtol, options);

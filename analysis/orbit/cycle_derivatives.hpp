@@ -42,14 +42,15 @@ struct CycleDerivativeOptions {
 /// With P the state after the period T from x0, the cycle is P(x0, T, p) = x0, so that by the implicit function theorem
 ///   (I - dP/dx0) dx0/dp - f dT/dp = dP/dp,   f . dx0/dp = 0 (the phase, which nothing else fixes).
 /// dP/dx0 and dP/dp are those of the variational equations through every stick, slip and switch (cut_cycle). The
-/// amplitude follows from the deviations where y turns, or switches at a corner. What the motion remembers for ever
-/// (Cycle::remembered) is held. A multiplier m, simple, with eigenvectors w and v of the product of the step
-/// derivatives F_k, moves by  sum_k w' F_K..F_k+1 (dF_k/dp) F_k-1..F_1 v/(w' v);  dF_k/dp is the difference between the
-/// derivatives over the same step in the neighbours, beginning and ending on their cycles, which the solution above
-/// tells: no cycle but the given one is computed, and no motion is differenced.
+/// amplitude follows from the deviations where y turns, or switches at a corner. A multiplier m, simple, with
+/// eigenvectors w and v of the product of the step derivatives F_k, moves by  sum_k w' F_K..F_k+1 (dF_k/dp) F_k-1..F_1
+/// v/(w' v);  dF_k/dp is the difference between the derivatives over the same step in the neighbours, beginning and
+/// ending on their cycles, which the solution above tells: no cycle but the given one is computed, and no motion is
+/// differenced.
 ///
 /// The cycle must be as good as shooting makes it (residual 1e-9 or less) and begin off its switches. Where a switch is
-/// grazed there is no derivative: Status stalled. Cost: a march of the period with a linear system of 3n and n + q
+/// grazed there is no derivative: Status stalled. Nor is there one of a cycle that keeps something of what was before
+/// (Cycle::remembered): Status undefined. Cost: a march of the period with a linear system of 3n and n + q
 /// columns a step, and for multipliers 2 q such systems more.
 CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
                                    std::span<const ParameterNeighbours> neighbours,

@@ -36,20 +36,20 @@ std::optional<Eigenpair> eigenpair(const MatrixXd& scaled, Complex multiplier) {
   return pair;
 }
 
-Eigen::Map<const VectorXd> vector_of(const State& x) { return {x.data(), std::ssize(x)}; }
+Eigen::Map<const VectorXd> state_vector(const State& x) { return {x.data(), std::ssize(x)}; }
 
 /// n, with n f = 1, of the surface across the flow of rate f; zero where nothing moves.
 RowVectorXd across(const State& rate, const VectorXd& sizes) {
-  const double speed = vector_of(rate).cwiseQuotient(sizes).squaredNorm();
+  const double speed = state_vector(rate).cwiseQuotient(sizes).squaredNorm();
   if (speed == 0.0) return RowVectorXd::Zero(sizes.size());
-  return vector_of(rate).cwiseQuotient(sizes.cwiseAbs2()).transpose() / speed;
+  return state_vector(rate).cwiseQuotient(sizes.cwiseAbs2()).transpose() / speed;
 }
 
 /// Takes out of a factor what it makes along the flow at its end.
 MatrixXd projected(const MatrixXd& factor, const State& rate, const RowVectorXd& n) {
-  const double speed = n * vector_of(rate);
+  const double speed = n * state_vector(rate);
   if (speed == 0.0) return factor;
-  return factor - vector_of(rate) * (n * factor) / speed;
+  return factor - state_vector(rate) * (n * factor) / speed;
 }
 
 /// The factors of the pieces, projected along the flow where they do not end with anything bound. That leaves all
@@ -108,8 +108,8 @@ Beside go_beside(const CyclePieces& cut, Index k, const VectorXd& solution) {
       const Step& step = cut.pieces[j].step;
       bind(beside.start_moment[j], step.t0);
       bind(beside.end_moment[j], step.t1);
-      beside.start[j] += beside.start_moment[j] * vector_of(step.dx0);
-      beside.end[j] += beside.end_moment[j] * vector_of(step.dx1);
+      beside.start[j] += beside.start_moment[j] * state_vector(step.dx0);
+      beside.end[j] += beside.end_moment[j] * state_vector(step.dx1);
     }
     if (piece.event) deviation = (piece.event->saltation * deviation + piece.event->jump.col(k)).eval();
     start_moment = end_moment;
