@@ -12,15 +12,30 @@ namespace limcycle {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+namespace {
+
+/// Nodes and coefficients of the three-stage Radau IIA method.
+struct RadauStages {
+  std::array<double, 3> c;
+  std::array<std::array<double, 3>, 3> a;
+};
+
+const RadauStages& radau_stages() {
+  static const double s6 = std::sqrt(6.0);
+  static const RadauStages stages{
+      {(4.0 - s6) / 10.0, (4.0 + s6) / 10.0, 1.0},
+      {{{(88.0 - 7.0 * s6) / 360.0, (296.0 - 169.0 * s6) / 1800.0, (-2.0 + 3.0 * s6) / 225.0},
+        {(296.0 + 169.0 * s6) / 1800.0, (88.0 + 7.0 * s6) / 360.0, (-2.0 - 3.0 * s6) / 225.0},
+        {(16.0 - s6) / 36.0, (16.0 + s6) / 36.0, 1.0 / 9.0}}}};
+  return stages;
+}
+
+}  // namespace
+
 Eigen::MatrixXd transition(LoopField& field, const Step& step) { return transition(field, step, 0, {}); }
 
 Eigen::MatrixXd transition(LoopField& field, const Step& step, Index count, const Forcing& forcing) {
-  const double s6 = std::sqrt(6.0);
-  const std::array<double, 3> c{(4.0 - s6) / 10.0, (4.0 + s6) / 10.0, 1.0};
-  const std::array<std::array<double, 3>, 3> a{
-      {{(88.0 - 7.0 * s6) / 360.0, (296.0 - 169.0 * s6) / 1800.0, (-2.0 + 3.0 * s6) / 225.0},
-       {(296.0 + 169.0 * s6) / 1800.0, (88.0 + 7.0 * s6) / 360.0, (-2.0 - 3.0 * s6) / 225.0},
-       {(16.0 - s6) / 36.0, (16.0 + s6) / 36.0, 1.0 / 9.0}}};
+  const auto& [c, a] = radau_stages();
   const auto n = static_cast<Index>(field.size());
   const double h = step.t1 - step.t0;
   // Row-major, the right sides [I; I; I] beside it. Unknowns and rows component by component, the stages of each in a
