@@ -70,7 +70,7 @@ void add_output(const SensitivityReport& report, const OutputSensitivity& output
                      {"total", value_json(index.total)},
                      {"first_interval", interval_json(index.first)},
                      {"total_interval", interval_json(index.total)},
-                     {"samples", index.samples}});
+                     {"pairs", index.total_pairs}});
   }
   for (const auto& pair : output.sobol.interactions)
     interactions.push_back({{"names", {name(pair.one), name(pair.other)}},

@@ -109,17 +109,13 @@ Table morris_table(const SensitivityReport& report, const OutputSensitivity& out
 }
 
 Table sobol_table(const SensitivityReport& report, const OutputSensitivity& output) {
-  Table table{{{"number", "", Align::left},
-               {"first", "share"},
-               {"95 %", ""},
-               {"total", "share"},
-               {"95 % ", ""},
-               {"samples", ""}},
-              {}};
+  Table table{
+      {{"number", "", Align::left}, {"first", "share"}, {"95 %", ""}, {"total", "share"}, {"95 % ", ""}, {"pairs", ""}},
+      {}};
   for (const std::size_t i : output.sobol.by_total()) {
     const SobolIndex& index = output.sobol.parameters[i];
     table.rows.push_back({report.spread.parameters[i].path, estimate_text(index.first), interval_text(index.first),
-                          estimate_text(index.total), interval_text(index.total), std::to_string(index.samples)});
+                          estimate_text(index.total), interval_text(index.total), std::to_string(index.total_pairs)});
   }
   return table;
 }

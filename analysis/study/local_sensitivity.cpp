@@ -11,7 +11,7 @@ namespace limcycle {
 namespace {
 
 constexpr double unknown_derivative = std::numeric_limits<double>::quiet_NaN();
-constexpr double neighbourhood = 1e-5;  // relative
+constexpr double neighbourhood = 1e-6;  // relative
 
 bool same_shape(const Loop& one, const Loop& other) {
   const auto states = [](const Element<double>& element) {
@@ -38,7 +38,7 @@ std::optional<ParameterNeighbours> beside(const Loop& loop, const LoopNumber& nu
     return std::nullopt;
   }
   const bool border = number.loop_at(number.value - h).has_value() != number.loop_at(number.value + h).has_value();
-  return ParameterNeighbours{std::move(*low), std::move(*high), border ? 0.5 * h : h};
+  return ParameterNeighbours{std::move(*low), std::move(*high), border ? 0.5 * h : h, number.value};
 }
 
 void take(LocalSensitivity& into, const CycleDerivative& by) {
