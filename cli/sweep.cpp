@@ -1,9 +1,6 @@
 #include "limcycle/cli/sweep.hpp"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <iostream>
 #include <limits>
 #include <optional>
@@ -68,19 +65,10 @@ SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& colu
   catch_interrupts();
   {
     Progress bar(flags.quiet);
-    using Clock = std::chrono::steady_clock;
-    const auto begin = Clock::now();
-    std::optional<std::size_t> first;
     SweepOptions options;
     options.threads = flags.threads;
     options.stop = interrupted;
-    options.progress = [&](std::size_t done, std::size_t total) {
-      if (!first) first = done;
-      const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-      const double rate = seconds > 0.0 ? static_cast<double>(done - *first) / seconds : 0.0;
-      bar.show(total > *first ? static_cast<double>(done - *first) / static_cast<double>(total - *first) : 1.0,
-               fmt::format("{} of {} points, {:.0f} a second", done, total, rate));
-    };
+    options.progress = [&](std::size_t done, std::size_t total) { bar.count(done, total); };
     swept.status = run_sweep(task, known_before, sink, options);
   }
   if (store) store->flush();

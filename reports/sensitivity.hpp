@@ -23,6 +23,9 @@ std::string sensitivity_csv(const SensitivityReport& report);
 std::string sensitivity_page(const SensitivityReport& report, const Provenance& provenance,
                              const std::string& case_text, const Units& units, const std::string& flags);
 
+/// What a reader must know: notes of the study, and numbers without a derivative.
+std::vector<std::string> sensitivity_notes(const SensitivityReport& report);
+
 Table derivative_table(const SensitivityReport& report, const Units& units);
 Table change_table(const SensitivityReport& report, const Units& units);
 Table morris_table(const SensitivityReport& report, const OutputSensitivity& output);

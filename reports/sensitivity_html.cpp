@@ -16,6 +16,8 @@ std::string figure_of(const std::string& picture, const std::string& caption) {
 std::string output_section(const SensitivityReport& report, const OutputSensitivity& output) {
   std::string out = "<h2>" + html_escaped("Global: " + output.output) + "</h2>\n";
   out += html_tag("p", fmt::format("No answer from {} of the loops.", as_percent(output.share_without_answer)));
+  if (output.sobol.deviation == 0.0)
+    return out + html_tag("p", "It is the same for every loop that answered: nothing to share out.");
   out += figure_of(indices_picture(report, output),
                    "Shares of the variance with 95 % intervals; beside them how the total indices settled.");
   out += html_table(sobol_table(report, output), "Sobol indices of " + output.output);
@@ -43,7 +45,7 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
             figure_of(scatter_picture(report), "Every loop of the fair sample over each of the parameters.");
     for (const auto& output : report.global->outputs) body += output_section(report, output);
   }
-  body += html_notes(report.notes);
+  body += html_notes(sensitivity_notes(report));
   return html_page({.provenance = provenance,
                     .answer = sensitivity_answer(report),
                     .body = body,

@@ -17,6 +17,23 @@ std::string interval_text(const Estimate& estimate) {
                             : "?";
 }
 
+/// Shares of a variance have three decimals: what lies below is noise.
+std::string share_text(const Estimate& estimate) {
+  return estimate.known ? fmt::format("{:.3f}", estimate.value) : "?";
+}
+
+std::string share_interval_text(const Estimate& estimate) {
+  return estimate.bounded() ? fmt::format("{:.3f}..{:.3f}", estimate.low, estimate.high) : "?";
+}
+
+std::string same_everywhere(const OutputSensitivity& output) {
+  if (output.share_without_answer >= 1.0) return "No loop of the spread has an answer.";
+  return fmt::format("It is {} for every loop that answered: nothing to share out.", with_digits(output.sobol.mean, 6));
+}
+
+/// "loop." goes without saying.
+std::string name_of(const std::string& path) { return path.starts_with("loop.") ? path.substr(5) : path; }
+
 std::string estimate_text(const Estimate& estimate) {
   return estimate.known ? with_digits(estimate.value, index_digits) : "?";
 }
@@ -68,11 +85,13 @@ Table derivative_table(const SensitivityReport& report, const Units& units) {
                {"period", "% per %"}},
               {}};
   if (!report.cycle) return table;
-  for (const auto& one : report.local)
-    table.rows.push_back({one.path, with_digits(one.value, 6), with_error(one.amplitude, one.error),
+  for (const auto& one : report.local) {
+    if (!one.why.empty()) continue;
+    table.rows.push_back({name_of(one.path), with_digits(one.value, 6), with_error(one.amplitude, one.error),
                           with_error(one.period, one.error),
                           with_digits(per_cent_a_per_cent(one, one.amplitude, report.cycle->amplitude), 4),
                           with_digits(per_cent_a_per_cent(one, one.period, report.cycle->period), 4)});
+  }
   return table;
 }
 
@@ -85,7 +104,7 @@ Table change_table(const SensitivityReport& report, const Units& units) {
                {"period", "s"}},
               {}};
   for (const auto& change : report.one_at_a_time)
-    table.rows.push_back({change.path, with_digits(change.factor, 3), with_digits(change.value, 6),
+    table.rows.push_back({name_of(change.path), with_digits(change.factor, 3), with_digits(change.value, 6),
                           change.found.in_words(), with_digits(change.found.amplitude, 6),
                           with_digits(change.found.period, 6)});
   return table;
@@ -101,7 +120,7 @@ Table morris_table(const SensitivityReport& report, const OutputSensitivity& out
               {}};
   for (const std::size_t i : output.morris.by_mu_star()) {
     const MorrisEffects& effects = output.morris.parameters[i];
-    table.rows.push_back({report.spread.parameters[i].path, estimate_text(effects.mu_star),
+    table.rows.push_back({name_of(report.spread.parameters[i].path), estimate_text(effects.mu_star),
                           interval_text(effects.mu_star), estimate_text(effects.mu), estimate_text(effects.sigma),
                           std::to_string(effects.effects)});
   }
@@ -114,14 +133,22 @@ Table sobol_table(const SensitivityReport& report, const OutputSensitivity& outp
       {}};
   for (const std::size_t i : output.sobol.by_total()) {
     const SobolIndex& index = output.sobol.parameters[i];
-    table.rows.push_back({report.spread.parameters[i].path, estimate_text(index.first), interval_text(index.first),
-                          estimate_text(index.total), interval_text(index.total), std::to_string(index.total_pairs)});
+    table.rows.push_back({name_of(report.spread.parameters[i].path), share_text(index.first),
+                          share_interval_text(index.first), share_text(index.total), share_interval_text(index.total),
+                          std::to_string(index.total_pairs)});
   }
   return table;
 }
 
+std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
+  std::vector<std::string> notes = report.notes;
+  for (const auto& one : report.local)
+    if (!one.why.empty()) notes.push_back("no derivative by " + name_of(one.path) + ": " + one.why);
+  return notes;
+}
+
 std::string sensitivity_text(const std::string& title, const SensitivityReport& report, const Units& units) {
-  std::string out = title + "\n\n" + wrapped(sensitivity_answer(report)) + "\n";
+  std::string out = title + "\n\n" + wrapped(sensitivity_answer(report));
   if (report.cycle && !report.local.empty())
     out += "\nDerivatives of the cycle (exact, at the values of the case)\n" + derivative_table(report, units).text();
   if (!report.one_at_a_time.empty()) out += "\nOne at a time\n" + change_table(report, units).text();
@@ -129,13 +156,17 @@ std::string sensitivity_text(const std::string& title, const SensitivityReport& 
     for (const auto& output : report.global->outputs) {
       out += fmt::format("\nOutput \"{}\": no answer from {} of the loops\n", output.output,
                          as_percent(output.share_without_answer));
+      if (output.sobol.deviation == 0.0) {
+        out += wrapped(same_everywhere(output));
+        continue;
+      }
       out += "\nMorris: mean effect of the whole range\n" + morris_table(report, output).text();
       out += "\nSobol indices: shares of the variance\n" + sobol_table(report, output).text();
       std::vector<std::string> notes = output.sobol.notes;
       notes.insert(notes.end(), output.morris.notes.begin(), output.morris.notes.end());
       out += notes_text(notes);
     }
-  return out + notes_text(report.notes);
+  return out + notes_text(sensitivity_notes(report));
 }
 
 }  // namespace limcycle

@@ -61,9 +61,9 @@ class GlobalPlan {
 };
 
 struct GlobalSensitivity {
-  std::vector<OutputSensitivity> outputs;     ///< in the order of HuntingAnswer::names
-  Probability hunting;                     ///< that the loop hunts, from Sobol's points A and B
-  std::optional<std::size_t> matters_most;    ///< parameter with the largest total index for "hunts"
+  std::vector<OutputSensitivity> outputs;   ///< in the order of HuntingAnswer::names
+  Probability hunting;                      ///< that the loop hunts, from Sobol's points A and B
+  std::optional<std::size_t> matters_most;  ///< parameter with the largest total index for "hunts"
 };
 
 /// Indices from the answers to all rows of a plan, empty where not computed. `noise`: relative error of amplitudes and

@@ -1,0 +1,118 @@
+#include "limcycle/analysis/study/sensitivity.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "limcycle/analysis/orbit/settle.hpp"
+#include "limcycle/analysis/study/local_sensitivity.hpp"
+#include "limcycle/tests/cycle_knobs.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+
+namespace {
+
+ParameterSpread spread_of(std::vector<SpreadParameter> parameters) {
+  ParameterSpread spread;
+  spread.parameters = std::move(parameters);
+  spread.samples = 64;
+  return spread;
+}
+
+SpreadParameter evenly(const std::string& path, double low, double high) {
+  SpreadParameter one;
+  one.path = path;
+  one.value = one.mean = 0.5 * (low + high);
+  one.low = low;
+  one.high = high;
+  return one;
+}
+
+LoopNumber number_of(const LoopParts& parts, const test::Knob& knob) {
+  return {knob.name, "", test::value(parts, knob), [parts, knob](double to) -> std::optional<Loop> {
+            if (to < 0.0) return std::nullopt;
+            return test::with(parts, knob, to);
+          }};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "many loops are asked at once: as predict says, whatever stands beside, and values that are no case are missing") {
+  const std::vector<std::optional<Loop>> loops{test::servo(test::lugre()), std::nullopt,
+                                               test::servo(test::lugre(1.0, 1.0)), test::servo(test::lugre(2.0, 1.0))};
+  const HuntingQuestion question = hunting_question(*loops[0]);
+  const auto answers = hunting_answers(loops, question);
+  REQUIRE(answers.size() == 4);
+  CHECK(answers[0].hunts == 1.0);
+  CHECK(answers[0].period == Approx(24.4368).epsilon(3e-4));
+  CHECK(answers[0].amplitude == Approx(0.0639025).epsilon(3e-4));
+  CHECK(std::isnan(answers[1].hunts));
+  CHECK(answers[2].hunts == 0.0);
+  CHECK(std::isnan(answers[2].amplitude));
+  CHECK(answers[3].hunts == 1.0);
+  const auto alone = hunting_answers(std::span(loops).subspan(3, 1), question);
+  CHECK(alone[0].period == answers[3].period);  // to the last bit
+
+  HuntingQuestion stopped = question;
+  stopped.stop = [] { return true; };
+  CHECK(hunting_answers(loops, stopped).size() < 4);
+}
+
+TEST_CASE("global sensitivity: where a loop hunts is shared out as it should be") {
+  // Hunts if a > 1/2, whatever b: amplitude 1 + 2 a + 0 b there, none elsewhere.
+  const GlobalPlan plan(spread_of({evenly("a", 0.0, 1.0), evenly("b", 10.0, 20.0)}), 20, 512, false);
+  std::vector<std::optional<HuntingAnswer>> answers;
+  for (std::size_t k = 0; k < plan.size(); ++k) {
+    const auto at = plan.values(k);
+    REQUIRE((at[1] > 10.0 && at[1] < 20.0));
+    const bool hunts = at[0] > 0.5;
+    answers.push_back(HuntingAnswer{hunts ? 1.0 : 0.0, hunts ? 1.0 + 2.0 * at[0] : NAN, hunts ? at[0] : NAN});
+  }
+  const GlobalSensitivity found = global_sensitivity(plan, answers, 0.0);
+  REQUIRE(found.outputs.size() == 3);
+  CHECK(found.hunting.among_decided.value == Approx(0.5).margin(0.01));
+  CHECK(found.matters_most == std::size_t{0});
+  CHECK(found.outputs[0].sobol.parameters[0].total.value == Approx(1.0).margin(0.05));
+  CHECK(found.outputs[0].sobol.parameters[1].total.value == Approx(0.0).margin(0.01));
+  CHECK(found.outputs[0].share_without_answer == 0.0);
+  CHECK(found.outputs[1].share_without_answer == Approx(0.5).margin(0.01));
+  CHECK(found.outputs[1].sobol.parameters[0].first.value == Approx(1.0).margin(0.1));
+  CHECK(found.outputs[1].morris.parameters[1].mu_star.value == Approx(0.0).margin(1e-12));
+  CHECK_THROWS_AS(global_sensitivity(plan, std::span(answers).first(3), 0.0), std::invalid_argument);
+
+  // Nothing computed yet: nothing is known, and nothing is NaN.
+  const GlobalSensitivity none = global_sensitivity(plan, std::vector<std::optional<HuntingAnswer>>(plan.size()), 0.0);
+  CHECK(!none.hunting.among_decided.known);
+  CHECK(none.outputs[1].share_without_answer == 1.0);
+  CHECK(!none.outputs[1].sobol.parameters[0].total.known);
+}
+
+TEST_CASE("local sensitivity: damping beside viscous friction, borders, and numbers that are not there") {
+  LoopParts parts = test::servo_parts(test::lugre());
+  const Loop loop = build_loop(parts);
+  SettleOptions options;
+  options.shooting.accuracy = 1e-9;
+  options.shooting.rtol = 1e-10;
+  options.shooting.tolerance = 1e-11;
+  const auto settled = settle(loop, displaced(loop, 1.0), options);
+  REQUIRE(settled.shot);
+  const Cycle& cycle = settled.shot->cycle;
+  const std::vector<LoopNumber> numbers{number_of(parts, test::of_law("sigma2", &LuGre<double>::sigma2)),
+                                        number_of(parts, test::of_plant("damping", &Mass::damping)),
+                                        number_of(parts, test::of_law("vd", &LuGre<double>::vd)),
+                                        number_of(parts, test::of_pid("tf", &Pid::tf))};
+  const auto local = local_sensitivities(loop, cycle, numbers);
+  REQUIRE(local.size() == 4);
+  // Viscous friction and damping of the mass are one and the same.
+  CHECK(local[0].why.empty());
+  CHECK(local[1].why.empty());
+  CHECK(local[1].period == Approx(local[0].period).epsilon(1e-6));
+  CHECK(local[1].amplitude == Approx(local[0].amplitude).epsilon(1e-6));
+  CHECK(local[0].error < 1e-5);
+  // At 0 these two stand for something absent.
+  CHECK(!local[2].why.empty());
+  CHECK(std::isnan(local[2].period));
+  CHECK(!local[3].why.empty());
+  CHECK(std::isnan(local[3].amplitude));
+}

@@ -1,0 +1,91 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "limcycle/tests/cli/program.hpp"
+
+using namespace limcycle::test;
+using nlohmann::json;
+
+namespace {
+
+const std::string servo_case = LIMCYCLE_SOURCE_DIR "/cases/pid-lugre.toml";
+
+std::vector<std::string> small_map(std::vector<std::string> more) {
+  std::vector<std::string> all{
+      "map", servo_case, "--x", "loop.controller.kd=6:120:3", "--y", "loop.friction.Fs=0.5:1.5:2", "--quiet"};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+std::string without_provenance(const std::string& document) {
+  json all = json::parse(document);
+  all.erase("provenance");
+  return all.dump();
+}
+
+}  // namespace
+
+TEST_CASE("map: what happens, and that the describing function misses the hunting servo") {
+  const Scratch scratch;
+  const Ran ran = run(small_map({"--json", "-", "--csv", scratch.file("map.csv"), "--svg", scratch.file("map.svg"),
+                                 "--html", scratch.file("map.html")}));
+  REQUIRE(ran.code == 0);
+  const json document = json::parse(ran.out);
+  CHECK(document["schema"] == "limcycle/1");
+  CHECK(document["command"] == "map");
+  CHECK(document["x"]["parameter"] == "loop.controller.kd");
+  REQUIRE(document["points"].size() == 6);
+  CHECK(document["points"][0]["happens"] == "not valid");  // Fs below Fc
+  CHECK(document["points"][0]["amplitude"].is_null());
+  const json& hunting = document["points"][3];
+  CHECK(hunting["stable_cycles"] == 1);
+  CHECK(hunting["period"].get<double>() == Approx(24.4368).epsilon(1e-5));
+  CHECK(hunting["methods"][0]["worth"] == "missed");
+  CHECK(document["points"][5]["stable_cycles"] == 0);  // beyond the fold
+  const std::string csv = scratch.get("map.csv"), svg = scratch.get("map.svg");
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 7);
+  CHECK(svg.starts_with("<svg"));
+  CHECK(svg.find("nan") == std::string::npos);
+  CHECK(scratch.get("map.html").find("<svg") != std::string::npos);
+}
+
+TEST_CASE("map: the same bytes for any number of threads, and from a store that was begun and finished") {
+  const Scratch scratch;
+  const Ran one = run(small_map({"--threads", "1", "--json", "-"}));
+  const Ran two = run(small_map({"--threads", "2", "--json", "-", "--store", scratch.file("map.store")}));
+  REQUIRE(two.code == 0);
+  CHECK(without_provenance(two.out) == without_provenance(one.out));
+  const Ran again = run(small_map({"--json", "-", "--store", scratch.file("map.store"), "--resume"}));
+  REQUIRE(again.code == 0);
+  CHECK(without_provenance(again.out) == without_provenance(one.out));
+  const Ran status = run({"status", scratch.file("map.store")});
+  CHECK(status.code == 0);
+  CHECK(status.out.find("6 of 6") != std::string::npos);
+
+  const Ran refused = run(small_map({"--store", scratch.file("map.store")}));
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("--resume") != std::string::npos);
+  const Ran other = run({"map", servo_case, "--set", "loop.plant.mass=2.0", "--x", "loop.controller.kd=6:120:3", "--y",
+                         "loop.friction.Fs=0.5:1.5:2", "--store", scratch.file("map.store"), "--resume"});
+  CHECK(other.code == 2);
+}
+
+TEST_CASE("map: what cannot be a map is refused") {
+  const auto refused = [](std::vector<std::string> flags, const std::string& words) {
+    std::vector<std::string> all{"map", servo_case};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const Ran ran = run(all);
+    CHECK(ran.code == 2);
+    INFO(ran.err);
+    CHECK(ran.err.find(words) != std::string::npos);
+  };
+  const std::string y = "loop.controller.ki=1:2:3";
+  refused({"--x", "loop.controller.kd=1:50", "--y", y}, "PATH=FROM:TO:N");
+  refused({"--x", "loop.controller.kd=1:50:1", "--y", y}, "whole number");
+  refused({"--x", "loop.controller.kd=1:50:2.5", "--y", y}, "whole number");
+  refused({"--x", "loop.controller.kd=0:50:5:log", "--y", y}, "one sign");
+  refused({"--x", "loop.controller.kdd=1:50:5", "--y", y}, "kd");
+  refused({"--x", y, "--y", y}, "same parameter");
+  refused({"--x", "loop.controller.kd=1:50:5", "--y", y, "--methods", "describing-functoin"}, "describing-function");
+  refused({"--x", "loop.controller.kd=1:50:5", "--y", y, "--resume"}, "--store");
+}

@@ -1,0 +1,95 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "limcycle/tests/cli/program.hpp"
+
+using namespace limcycle::test;
+using nlohmann::json;
+
+namespace {
+
+const std::string lugre_case = LIMCYCLE_SOURCE_DIR "/cases/pid-lugre.toml";
+
+const char* const spread_section = R"(
+[sensitivity]
+samples = 64
+parameters = [
+  {path = "loop.friction.Fs", from = 0.9, to = 1.8},
+  {path = "loop.controller.kd", factor = 1.5},
+  {path = "loop.friction.vs", distribution = "log-uniform", from = 1e-4, to = 1e-2},
+]
+)";
+
+std::string with_spread(const Scratch& scratch) {
+  std::ifstream in(lugre_case, std::ios::binary);
+  return scratch.put("spread.toml", std::string(std::istreambuf_iterator<char>(in), {}) + spread_section);
+}
+
+json parameter(const json& document, const std::string& name) {
+  for (const auto& one : document["parameters"])
+    if (one["name"] == name) return one;
+  return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("sensitivity: derivatives, changes, indices and the share of loops without a case") {
+  const Scratch scratch;
+  const Ran ran = run({"sensitivity", with_spread(scratch), "--json", "-", "--quiet", "--html", scratch.file("s.html"),
+                       "--csv", scratch.file("s.csv")});
+  REQUIRE(ran.code == 0);
+  const json document = json::parse(ran.out);
+  const json kp = parameter(document, "loop.controller.kp"), Fs = parameter(document, "loop.friction.Fs");
+  // By differences of cycles of `predict`, Fs and kp moved by 1e-4 of themselves.
+  CHECK(kp["derivative"]["period"].get<double>() == Approx(4.749126).epsilon(1e-5));
+  CHECK(Fs["derivative"]["amplitude"].get<double>() == Approx(0.1234977).epsilon(1e-5));
+  CHECK(kp["elasticity"]["period"].get<double>() ==
+        Approx(kp["derivative"]["period"].get<double>() * 3.0 / document["cycle"]["period"].get<double>()));
+  CHECK(parameter(document, "loop.controller.tf")["derivative"]["period"].is_null());
+
+  bool twice = false;
+  for (const auto& change : document["one_at_a_time"])
+    twice = twice || (change["name"] == "loop.controller.kd" && change["factor"] == 2.0 && change["hunts"] == true);
+  CHECK(twice);
+  CHECK(document["morris"].size() == 9);  // three parameters, three outputs
+  CHECK(document["sobol"].size() == 9);
+  for (const auto& one : document["sobol"]) CHECK(one.contains("total_interval"));
+  // A ninth of the range of Fs lies below Fc: no case there, and so no answer.
+  CHECK(document["robustness"]["undecided"].get<int>() > 5);
+  CHECK(document["share_without_answer"].get<double>() == Approx(1.0 / 9.0).margin(0.04));
+  CHECK(document["robustness"]["probability_of_hunting"].get<double>() > 0.5);
+  CHECK(scratch.get("s.html").find("Elasticities") != std::string::npos);
+  CHECK(scratch.get("s.html").find("nan") == std::string::npos);
+  CHECK(scratch.get("s.csv").starts_with("kind,name,output,value"));
+}
+
+TEST_CASE("sensitivity: the same for any number of threads, and from a store") {
+  const Scratch scratch;
+  const std::string from = with_spread(scratch);
+  const auto document = [&](std::vector<std::string> flags) {
+    std::vector<std::string> all{"sensitivity", from, "--json", "-", "--quiet"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const Ran ran = run(all);
+    REQUIRE(ran.code == 0);
+    json made = json::parse(ran.out);
+    made.erase("provenance");
+    return made.dump();
+  };
+  const std::string one = document({"--threads", "1"});
+  CHECK(document({"--threads", "2", "--store", scratch.file("s.store")}) == one);
+  CHECK(document({"--store", scratch.file("s.store"), "--resume"}) == one);
+  const Ran other = run({"sensitivity", from, "--seed", "7", "--store", scratch.file("s.store"), "--resume"});
+  CHECK(other.code == 2);
+}
+
+TEST_CASE("sensitivity: without a cycle there is nothing to differentiate, and that is said") {
+  const Ran ran =
+      run({"sensitivity", lugre_case, "--set", "loop.friction.Fs=1.0", "--local", "--json", "-", "--quiet"});
+  REQUIRE(ran.code == 0);
+  const json document = json::parse(ran.out);
+  CHECK(document["cycle"].is_null());
+  CHECK(document["parameters"].empty());
+  CHECK(document["share_without_answer"].is_null());
+  CHECK(document["answer"].get<std::string>().find("no stable limit cycle") != std::string::npos);
+  CHECK(run({"sensitivity", lugre_case, "--factors", "0,2"}).code == 2);
+}
