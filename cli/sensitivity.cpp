@@ -99,7 +99,6 @@ void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& fla
     for (const double factor : factors) {
       if (interrupted()) return;
       ParameterChange change{number.path, number.unit, factor, factor * number.value, {}};
-      change.found.amplitude = change.found.period = std::numeric_limits<double>::quiet_NaN();
       if (const auto changed = loop_with(from, number.path, change.value)) change.found = map_point(*changed, options);
       report.one_at_a_time.push_back(std::move(change));
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "limcycle/analysis/study/composite_balance.hpp"
@@ -12,7 +11,6 @@
 namespace limcycle {
 namespace {
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr Outcome every_outcome[] = {Outcome::rest, Outcome::sliding, Outcome::cycle, Outcome::divergence,
                                      Outcome::undecided};
 constexpr std::size_t of_point = 5, of_method = 3;  // columns of a row
@@ -36,7 +34,7 @@ Worth worth_of(const std::string& method, const PredictReport& report) {
 
 /// The prediction nearest to the cycle that it is about.
 MethodAtPoint method_at(const std::string& method, const PredictReport& report) {
-  MethodAtPoint at{worth_of(method, report), no_number, no_number};
+  MethodAtPoint at{worth_of(method, report)};
   double nearest = infinite;
   for (const Prediction& p : report.predictions) {
     if (p.method != method || !p.cycle) continue;
@@ -57,7 +55,6 @@ MapPoint seen(const PredictReport& report) {
     if (std::ranges::any_of(report.outcomes, [&](const OutcomeOfStart& one) { return one.outcome == outcome; }))
       point.outcomes.push_back(outcome);
   point.cycles = static_cast<int>(report.cycles.size());
-  point.amplitude = point.period = no_number;
   for (const Cycle& cycle : report.cycles) {
     if (cycle.stable != true) continue;
     ++point.stable;
@@ -117,11 +114,9 @@ MapPoint map_point(const Loop& loop, const PredictOptions& options) {
     const PredictReport report = predict(loop, here);
     point = seen(report);
     for (const auto& method : methods)
-      point.methods.push_back(applies(method, loop) ? method_at(method, report)
-                                                    : MethodAtPoint{Worth::not_applicable, no_number, no_number});
+      point.methods.push_back(applies(method, loop) ? method_at(method, report) : MethodAtPoint{});
   } catch (const std::invalid_argument&) {  // a method refuses the loop
-    point.methods.assign(methods.size(), {Worth::undecided, no_number, no_number});
-    point.amplitude = point.period = no_number;
+    point.methods.assign(methods.size(), {Worth::undecided});
   }
   if (point.outcomes.empty()) point.outcomes.push_back(Outcome::undecided);
   return point;

@@ -1,5 +1,5 @@
 #pragma once
-#include <functional>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,16 +26,16 @@ std::string_view to_string(Worth worth);
 
 struct MethodAtPoint {
   Worth worth = Worth::not_applicable;
-  double amplitude = 0.0;  ///< predicted over true, of y's first harmonic, at the prediction nearest to a cycle; or NaN
-  double frequency = 0.0;  ///< likewise
+  double amplitude = NAN;  ///< predicted over true, of y's first harmonic, at the prediction nearest to a cycle; or NaN
+  double frequency = NAN;  ///< likewise
 };
 
 /// What happens at one point of a map.
 struct MapPoint {
   std::vector<Outcome> outcomes;  ///< each once, that motions came to; none: the values are not a valid case
   int cycles = 0, stable = 0;     ///< distinct limit cycles, and how many of them attract
-  double amplitude = 0.0;         ///< of the stable cycle that swings most; NaN without one
-  double period = 0.0;            ///< of the same, s
+  double amplitude = NAN;         ///< of the stable cycle that swings most; NaN without one
+  double period = NAN;            ///< of the same, s
   std::vector<MethodAtPoint> methods;
 
   bool has(Outcome outcome) const;

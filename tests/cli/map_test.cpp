@@ -12,7 +12,7 @@ const std::string servo_case = LIMCYCLE_SOURCE_DIR "/cases/pid-lugre.toml";
 
 std::vector<std::string> small_map(std::vector<std::string> more) {
   std::vector<std::string> all{
-      "map", servo_case, "--x", "loop.controller.kd=6:120:3", "--y", "loop.friction.Fs=0.5:1.5:2", "--quiet"};
+      "map", servo_case, "--x", "loop.controller.kd=6:120:3", "--y", "loop.friction.Fs=0.5:1.5:3", "--quiet"};
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -34,16 +34,17 @@ TEST_CASE("map: what happens, and that the describing function misses the huntin
   CHECK(document["schema"] == "limcycle/1");
   CHECK(document["command"] == "map");
   CHECK(document["x"]["parameter"] == "loop.controller.kd");
-  REQUIRE(document["points"].size() == 6);
+  REQUIRE(document["points"].size() == 9);
   CHECK(document["points"][0]["happens"] == "not valid");  // Fs below Fc
   CHECK(document["points"][0]["amplitude"].is_null());
-  const json& hunting = document["points"][3];
+  const json& hunting = document["points"][6];
   CHECK(hunting["stable_cycles"] == 1);
   CHECK(hunting["period"].get<double>() == Approx(24.4368).epsilon(1e-5));
   CHECK(hunting["methods"][0]["worth"] == "missed");
-  CHECK(document["points"][5]["stable_cycles"] == 0);  // beyond the fold
+  CHECK(document["points"][3]["happens"] == "rest");  // Fs = Fc
+  CHECK(document["points"][3]["methods"][0]["worth"] == "right");
   const std::string csv = scratch.get("map.csv"), svg = scratch.get("map.svg");
-  CHECK(std::count(csv.begin(), csv.end(), '\n') == 7);
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 10);
   CHECK(svg.starts_with("<svg"));
   CHECK(svg.find("nan") == std::string::npos);
   CHECK(scratch.get("map.html").find("<svg") != std::string::npos);
@@ -60,13 +61,13 @@ TEST_CASE("map: the same bytes for any number of threads, and from a store that 
   CHECK(without_provenance(again.out) == without_provenance(one.out));
   const Ran status = run({"status", scratch.file("map.store")});
   CHECK(status.code == 0);
-  CHECK(status.out.find("6 of 6") != std::string::npos);
+  CHECK(status.out.find("9 of 9") != std::string::npos);
 
   const Ran refused = run(small_map({"--store", scratch.file("map.store")}));
   CHECK(refused.code == 2);
   CHECK(refused.err.find("--resume") != std::string::npos);
   const Ran other = run({"map", servo_case, "--set", "loop.plant.mass=2.0", "--x", "loop.controller.kd=6:120:3", "--y",
-                         "loop.friction.Fs=0.5:1.5:2", "--store", scratch.file("map.store"), "--resume"});
+                         "loop.friction.Fs=0.5:1.5:3", "--store", scratch.file("map.store"), "--resume"});
   CHECK(other.code == 2);
 }
 
