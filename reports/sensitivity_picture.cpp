@@ -141,7 +141,8 @@ std::string indices_picture(const SensitivityReport& report, const OutputSensiti
   const auto& parameters = report.spread.parameters;
   const double top = 56.0, left = label_width, width = 300.0, height = 26.0 * static_cast<double>(parameters.size()),
                right = left + width + 40.0;
-  std::string body = words_at(left, top - 10.0, "", "0") + words_at(left + width, top - 10.0, "end", "1") +
+  std::string body = words_at(place(0.0, left, width, -0.1, 1.1), top - 10.0, "middle", "0") +
+                     words_at(place(1.0, left, width, -0.1, 1.1), top - 10.0, "middle", "1") +
                      words_at(left + 0.5 * width, top - 10.0, "middle", "first (blue) and total (orange) index");
   std::string label = "Sobol indices of " + output.output + ":";
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -180,6 +181,11 @@ std::string scatter_picture(const SensitivityReport& report) {
       high = std::max(high, row[i]);
     }
     if (!(high > low)) high = low + 1.0;
+    const bool logarithmic = parameters[i].distribution == Distribution::log_uniform;
+    const auto across = [&](double value) {
+      return logarithmic ? place(std::log(value / low), left, side, 0.0, std::log(high / low))
+                         : place(value, left, side, low, high);
+    };
     body += fmt::format("<rect class=\"axis\" x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.0f}\" height=\"{2:.0f}\"/>\n",
                         left, top, side);
     for (std::size_t k = 0; k < report.sample.size(); k += step) {
@@ -188,9 +194,9 @@ std::string scatter_picture(const SensitivityReport& report) {
       if (!(hunts >= 0.0)) continue;  // no answer
       const double y = hunts > 0.0 ? place(amplitude, 0.0, side, 0.0, highest) : 0.0;
       body += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>", hunts > 0.0 ? "hunts" : "still",
-                          place(row[i], left, side, low, high), top + side - y);
+                          across(row[i]), top + side - y);
     }
-    body += "\n" + words_at(left, top - 5.0, "", short_path(parameters[i].path)) +
+    body += "\n" + words_at(left, top - 5.0, "", short_path(parameters[i].path) + (logarithmic ? " (log)" : "")) +
             words_at(left, top + side + 13.0, "", with_digits(low, 3)) +
             words_at(left + side, top + side + 13.0, "end", with_digits(high, 3));
   }
