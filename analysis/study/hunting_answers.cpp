@@ -15,7 +15,7 @@ namespace {
 constexpr double no_answer = std::numeric_limits<double>::quiet_NaN();
 constexpr int delay_order = 8;  // of the Pade approximation, where a delay does not act through a relay
 
-HuntingAnswer answer_of(std::span<const EnsembleResult> starts) {
+HuntingAnswer from_starts(std::span<const EnsembleResult> starts) {
   HuntingAnswer answer{0.0, no_answer, no_answer};
   for (const EnsembleResult& start : starts) {
     if (start.outcome == Outcome::cycle) {
@@ -76,7 +76,7 @@ std::vector<HuntingAnswer> hunting_answers(std::span<const std::optional<Loop>> 
     const auto own = std::span(run.members).subspan(next, starts);
     next += starts;
     if (std::ranges::any_of(own, [](const auto& one) { return one.status == Status::interrupted; })) return answers;
-    answers.push_back(answer_of(own));
+    answers.push_back(from_starts(own));
   }
   return answers;
 }
