@@ -94,11 +94,11 @@ std::string map_answer(const MapReport& report) {
 
 Table happens_table(const MapReport& report) {
   Table table{{{"what happens", "", Align::left}, {"points", ""}, {"share", ""}, {"letter", "", Align::left}}, {}};
-  for (const auto& [words, number] : what_happens(report.map)) {
-    const auto sample =
-        std::ranges::find_if(report.map.points, [&](const auto& point) { return point && point->in_words() == words; });
-    table.rows.push_back(
-        {words, std::to_string(number), share(number, report.map.known()), std::string(1, map_letter(*sample))});
+  for (const auto& entry : what_happens(report.map)) {
+    const auto sample = std::ranges::find_if(
+        report.map.points, [&](const auto& point) { return point && point->in_words() == entry.first; });
+    table.rows.push_back({entry.first, std::to_string(entry.second), share(entry.second, report.map.known()),
+                          std::string(1, map_letter(*sample))});
   }
   return table;
 }
