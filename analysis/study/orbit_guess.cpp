@@ -9,6 +9,11 @@
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
+namespace {
+
+using Complex = std::complex<double>;
+
+}  // namespace
 
 OrbitGuess guess_orbit(const Loop& loop, const std::function<Eigen::VectorXd(double phase)>& linear_states,
                        double frequency, bool half, int nodes) {
@@ -37,7 +42,6 @@ OrbitGuess guess_orbit(const Loop& loop, const std::function<Eigen::VectorXd(dou
 }
 
 Eigen::VectorXd linear_states(const Loop& loop, const HarmonicBalance& balance, double phase, double late) {
-  using Complex = std::complex<double>;
   const Eigen::Index n = loop.states();
   const auto output = [&](int order) {
     Eigen::VectorXcd W(std::ssize(balance.outputs));

@@ -1,5 +1,4 @@
 #include "limcycle/analysis/study/scene_answer.hpp"
-#include "limcycle/analysis/study/method_names.hpp"
 
 #include <algorithm>
 #include <cmath>
