@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/sweep.hpp"
+#include "limcycle/analysis/sweep.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/reports/store.hpp"
 

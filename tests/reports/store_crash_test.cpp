@@ -11,7 +11,7 @@
 #include <random>
 #include <thread>
 
-#include "limcycle/analysis/study/sweep.hpp"
+#include "limcycle/analysis/sweep.hpp"
 #include "limcycle/tests/cli/program.hpp"
 #include "limcycle/tests/reports/store_samples.hpp"
 

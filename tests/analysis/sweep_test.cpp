@@ -1,4 +1,4 @@
-#include "limcycle/analysis/study/sweep.hpp"
+#include "limcycle/analysis/sweep.hpp"
 
 #include <algorithm>
 #include <bit>
