@@ -83,20 +83,4 @@ std::optional<Case> case_with(const Case& from, std::span<const std::pair<std::s
   }
 }
 
-std::optional<LoopParts> parts_with(const Case& from, std::span<const std::pair<std::string, double>> values) {
-  const auto changed = case_with(from, values);
-  return changed ? std::optional(need_loop(*changed)) : std::nullopt;
-}
-
-std::optional<Loop> loop_with(const Case& from, const std::string& path, double value) {
-  const std::pair<std::string, double> change(path, value);
-  const auto parts = parts_with(from, std::span(&change, 1));
-  if (!parts) return std::nullopt;
-  try {
-    return build_loop(*parts);
-  } catch (const std::invalid_argument&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace limcycle

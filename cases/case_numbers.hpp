@@ -28,11 +28,4 @@ CaseNumber number_at(const Case& from, const std::string& flag, const std::strin
 /// The case with other values at some paths, read as `--set` would; empty where that is not a valid case.
 std::optional<Case> case_with(const Case& from, std::span<const std::pair<std::string, double>> values);
 
-/// The parts of the case's loop with other values at some paths, read as `--set` would; empty where that is not a valid
-/// case.
-std::optional<LoopParts> parts_with(const Case& from, std::span<const std::pair<std::string, double>> values);
-
-/// The case's loop with another value at a path, read as `--set` would; empty where that is not a valid case.
-std::optional<Loop> loop_with(const Case& from, const std::string& path, double value);
-
 }  // namespace limcycle

@@ -78,6 +78,12 @@ void check_together(const Section& section, const LoopParts& parts) {
 
 }  // namespace
 
+std::optional<Loop> finite_loop(const LoopParts& parts) {
+  if (!is_finite(parts.plant) || validate(parts)) return std::nullopt;
+  Loop loop = build_loop(parts);
+  return is_finite(loop) ? std::optional(std::move(loop)) : std::nullopt;
+}
+
 InputError unknown_kind(const Place& kind, const std::vector<std::string>& available, const KindNames& names) {
   const std::string name = *kind.value.as<std::string>();
   if (std::ranges::find(names.elsewhere, name) != names.elsewhere.end()) return kind.error(names.elsewhere_hint);

@@ -10,6 +10,9 @@ namespace limcycle::case_file {
 /// [loop]: either all parts of a loop, or one lone element.
 void read_loop(const Section& section, Case& into);
 
+/// The parts joined; empty where they do not fit together, as read_loop() would refuse them.
+std::optional<Loop> finite_loop(const LoopParts& parts);
+
 SearchBox read_search(const Section& section);
 DfSection read_df(const Section& section);
 void read_predict(const Section& section, Case& into);

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <span>
 
-#include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
@@ -48,10 +48,13 @@ void spread_of_case(const Case& from, AdequateOptions& options, std::vector<std:
   const auto points = corner_points(*from.sensitivity);
   options.spread_rule = "the middle and " + std::to_string(points.size() - 1) + " corners of [sensitivity]";
   options.spread = 0.0;
+  std::vector<std::string> paths;
+  for (const auto& parameter : from.sensitivity->parameters) paths.push_back(parameter.path);
+  const LoopVariation variation(from, "[sensitivity]", paths);
   for (const auto& point : points) {
     std::vector<std::pair<std::string, double>> values;
     for (std::size_t i = 0; i < point.size(); ++i) values.emplace_back(from.sensitivity->parameters[i].path, point[i]);
-    if (auto parts = parts_with(from, values); parts && parts->friction)
+    if (auto parts = variation.parts(point); parts && parts->friction)
       options.variations.push_back({name_of(values), std::move(*parts)});
     else
       left_out.push_back(name_of(values) + ": no valid case, left out");

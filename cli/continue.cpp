@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
@@ -47,7 +48,7 @@ int run(ContinueFlags flags) {
     options.predict.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
     if (std::isfinite(number.value)) options.own = number.value;
     catch_interrupts();
-    report.found = follow([&](double p) { return loop_with(from, range.path, p); }, options);
+    report.found = follow(LoopVariation(from, "--parameter", range.path), options);
   }
   const auto made = provenance(flags, &from);
   std::string text = continue_text(from.title, report, units);

@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/study/hunting_map.hpp"
 #include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
@@ -53,17 +54,6 @@ std::string flags_text(const HuntingMap& map, const MapFlags& flags) {
   return text;
 }
 
-std::optional<Loop> loop_at(const Case& from, const HuntingMap& map, std::size_t k) {
-  const std::pair<std::string, double> values[] = {{map.x.path, map.x_of(k)}, {map.y.path, map.y_of(k)}};
-  const auto parts = parts_with(from, values);
-  if (!parts) return std::nullopt;
-  try {
-    return build_loop(*parts);
-  } catch (const std::invalid_argument&) {
-    return std::nullopt;
-  }
-}
-
 PredictOptions point_options(const Case& from, const MapFlags& flags, const Methods& methods) {
   PredictOptions options = from.predict;
   options.methods = methods;
@@ -76,11 +66,14 @@ PredictOptions point_options(const Case& from, const MapFlags& flags, const Meth
 SweptRows sweep_map(const Case& from, HuntingMap& map, const MapFlags& flags, const Methods& methods) {
   const PredictOptions options = point_options(from, flags, methods);
   const auto columns = map_columns(map.methods);
+  const std::string paths[] = {map.x.path, map.y.path};
+  const LoopVariation variation(from, "--x, --y", paths);
   SweepTask task{map.size(), columns.size(), 1, {}};
   task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) -> std::size_t {
     for (std::size_t i = 0; i < points.size(); ++i) {
       MapPoint point;
-      if (const auto loop = loop_at(from, map, points[i]))
+      const double values[] = {map.x_of(points[i]), map.y_of(points[i])};
+      if (const auto loop = variation.loop(values))
         point = map_point(*loop, options);
       else
         point.methods.resize(map.methods.size());

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
@@ -21,7 +22,7 @@ struct MarginFlags : CommonFlags {
 
 MarginParameter parameter_of(const Case& from, const CaseNumber& number) {
   return {number.path, number.unit, number.value, number.path.starts_with("loop.friction."),
-          [&from, path = number.path](double p) { return loop_with(from, path, p); }};
+          LoopVariation(from, "--parameter", number.path)};
 }
 
 /// The parameters that were asked for, or all that a factor can change; what is left out goes into `notes`.

@@ -8,6 +8,7 @@
 #include "limcycle/analysis/study/local_sensitivity.hpp"
 #include "limcycle/analysis/study/sensitivity.hpp"
 #include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
@@ -32,16 +33,6 @@ struct SensitivityFlags : SweepFlags {
   bool local_only = false;                ///< --local
   std::string html;                       ///< --html
 };
-
-std::optional<Loop> loop_of(const Case& from, std::span<const std::pair<std::string, double>> values) {
-  const auto parts = parts_with(from, values);
-  if (!parts) return std::nullopt;
-  try {
-    return build_loop(*parts);
-  } catch (const std::invalid_argument&) {
-    return std::nullopt;
-  }
-}
 
 /// The numbers that a user would vary: written or with a default, finite.
 std::vector<CaseNumber> own_numbers(const Case& from) {
@@ -84,7 +75,7 @@ void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& fla
     std::vector<LoopNumber> numbers;
     for (const auto& number : own_numbers(from))
       numbers.push_back({number.path, number.unit, number.value,
-                         [&from, path = number.path](double value) { return loop_with(from, path, value); }});
+                         LoopVariation(from, "--set", number.path)});
     report.local = local_sensitivities(loop, *report.cycle, numbers, interrupted);
   }
   PredictOptions options = from.predict;
@@ -96,10 +87,11 @@ void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& fla
   std::ranges::sort(factors);
   for (const auto& number : own_numbers(from)) {
     if (number.value == 0.0) continue;  // times anything, it stays
+    const LoopVariation variation(from, "--set", number.path);
     for (const double factor : factors) {
       if (interrupted()) return;
       ParameterChange change{number.path, number.unit, factor, factor * number.value, {}};
-      if (const auto changed = loop_with(from, number.path, change.value)) change.found = map_point(*changed, options);
+      if (const auto changed = variation(change.value)) change.found = map_point(*changed, options);
       report.one_at_a_time.push_back(std::move(change));
     }
   }
@@ -122,16 +114,13 @@ SweptRows sweep_plan(const Case& from, const Loop& loop, const GlobalPlan& plan,
   question.isa = instruction_set(flags);
   question.stop = interrupted;
   const std::vector<std::string> columns(std::begin(HuntingAnswer::names), std::end(HuntingAnswer::names));
+  std::vector<std::string> paths;
+  for (const auto& one : plan.spread().parameters) paths.push_back(one.path);
+  const LoopVariation variation(from, "[sensitivity]", paths);
   SweepTask task{plan.size(), columns.size(), loops_a_block, {}};
   task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) {
     std::vector<std::optional<Loop>> loops;
-    std::vector<std::pair<std::string, double>> values;
-    for (const auto& one : plan.spread().parameters) values.emplace_back(one.path, 0.0);
-    for (const std::size_t point : points) {
-      const auto at = plan.values(point);
-      for (std::size_t i = 0; i < at.size(); ++i) values[i].second = at[i];
-      loops.push_back(loop_of(from, values));
-    }
+    for (const std::size_t point : points) loops.push_back(variation.loop(plan.values(point)));
     const auto answers = hunting_answers(loops, question);
     for (std::size_t i = 0; i < answers.size(); ++i) {
       const double numbers[] = {answers[i].hunts, answers[i].amplitude, answers[i].period};

@@ -10,6 +10,7 @@ namespace {
 
 Json axis_json(const MapAxis& axis, const std::string& unit) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(axis.points));
   for (int i = 0; i < axis.points; ++i) values.push_back(axis.value(i));
   return {{"parameter", axis.path}, {"unit", unit}, {"values", numbers(values)}, {"logarithmic", axis.logarithmic}};
 }

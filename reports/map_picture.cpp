@@ -59,7 +59,7 @@ std::string cells(const HuntingMap& map, double left, double top, const ColourOf
   std::string out;
   for (int row = 0; row < map.y.points; ++row) {
     const auto colour = [&](int column) -> std::string {
-      const auto& point = map.points[static_cast<std::size_t>(row * map.x.points + column)];
+      const auto& point = map.at(column, row);
       return point ? colour_of(*point) : "";
     };
     for (int column = 0, next = 0; column < map.x.points; column = next) {
@@ -181,11 +181,13 @@ std::string map_picture(const MapReport& report, const Units& units) {
   for (std::size_t m = 0; m < report.map.methods.size(); ++m) panels.push_back(worth_panel(report.map, m));
   constexpr double row_height = map_side + 76.0;
   std::string body;
-  for (std::size_t i = 0; i < panels.size(); ++i)
-    body +=
-        panel_of(report, 22.0 + map_pitch * static_cast<double>(i % 3), 52.0 + row_height * static_cast<double>(i / 3),
-                 panels[i].name, panels[i].colour, panels[i].legend);
-  const double height = 34.0 + row_height * static_cast<double>((panels.size() + 2) / 3);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const std::size_t row = i / 3;
+    body += panel_of(report, 22.0 + map_pitch * static_cast<double>(i % 3), 52.0 + row_height * static_cast<double>(row),
+                     panels[i].name, panels[i].colour, panels[i].legend);
+  }
+  const std::size_t rows = (panels.size() + 2) / 3;
+  const double height = 34.0 + row_height * static_cast<double>(rows);
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
              "height=\"{1:.0f}\" role=\"img\" aria-label=\"{2}\">\n<style>{3}</style>\n<text class=\"title\" x=\"10\" "

@@ -174,7 +174,8 @@ std::string scatter_picture(const SensitivityReport& report) {
   std::string body;
   const std::size_t step = (report.sample.size() + most - 1) / most;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const double left = 12.0 + pitch * static_cast<double>(i % 4), top = 48.0 + 212.0 * static_cast<double>(i / 4);
+    const std::size_t line = i / 4;
+    const double left = 12.0 + pitch * static_cast<double>(i % 4), top = 48.0 + 212.0 * static_cast<double>(line);
     double low = infinite, high = -infinite;
     for (const auto& row : report.sample) {
       low = std::min(low, row[i]);
@@ -193,14 +194,15 @@ std::string scatter_picture(const SensitivityReport& report) {
       const double hunts = row[parameters.size()], amplitude = row[parameters.size() + 1];
       if (!(hunts >= 0.0)) continue;  // no answer
       const double y = hunts > 0.0 ? place(amplitude, 0.0, side, 0.0, highest) : 0.0;
-      body += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>", hunts > 0.0 ? "hunts" : "still",
+      body += fmt::format(R"(<circle class="{}" cx="{:.1f}" cy="{:.1f}" r="2"/>)", hunts > 0.0 ? "hunts" : "still",
                           across(row[i]), top + side - y);
     }
     body += "\n" + words_at(left, top - 5.0, "", short_path(parameters[i].path) + (logarithmic ? " (log)" : "")) +
             words_at(left, top + side + 13.0, "", with_digits(low, 3)) +
             words_at(left + side, top + side + 13.0, "end", with_digits(high, 3));
   }
-  const double height = 56.0 + 212.0 * static_cast<double>((parameters.size() + 3) / 4);
+  const std::size_t lines = (parameters.size() + 3) / 4;
+  const double height = 56.0 + 212.0 * static_cast<double>(lines);
   return svg(
       height, "Amplitude of hunting over each parameter, one point for each loop of the sample",
       fmt::format("Amplitude over each parameter, 0 to {} (red: hunts, green: does not)", with_digits(highest, 3)),

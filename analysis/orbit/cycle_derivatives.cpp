@@ -154,7 +154,7 @@ CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
     return without(Status::undefined, "the cycle keeps something of what was before: another history, another cycle");
   CycleDerivatives result = derive(loop, cycle, rates, options.rtol, options);
   if (result.status != Status::converged) return result;
-  const CycleDerivatives rough = derive(loop, cycle, rates, looser * options.rtol, options);
+  CycleDerivatives rough = derive(loop, cycle, rates, looser * options.rtol, options);
   if (rough.status != Status::converged) return rough;
   compare(rough, cycle, rates, result);
   return result;

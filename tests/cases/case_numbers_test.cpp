@@ -50,18 +50,3 @@ TEST_CASE("numbers of a case: an unknown path is refused with the nearest one") 
                     Contains("--parameter loop.controller.kdd") && Contains("did you mean loop.controller.kd?"));
   CHECK_THROWS_AS(number_at(from, "--parameter", "loop.plant.kind"), InputError);
 }
-
-TEST_CASE("a case's loop with another value is the one that --set would make") {
-  const Case from = read_case(servo, "servo.toml", {"loop.controller.ki=4.0"});
-  const auto changed = loop_with(from, "loop.plant.mass", 4.0);
-  REQUIRE(changed);
-  const Case same = read_case(servo, "servo.toml", {"loop.controller.ki=4.0", "loop.plant.mass=4.0"});
-  CHECK(changed->A == build_loop(*same.loop).A);
-  // What is not written follows: a higher Fs is the Fs of both directions.
-  const auto stiction = loop_with(from, "loop.friction.Fs", 2.0);
-  REQUIRE(stiction);
-  CHECK(std::get<Coulomb<double>>(stiction->elements.back()).Fs_minus == 2.0);
-  CHECK_FALSE(loop_with(from, "loop.friction.Fs", 0.5));  // below Fc
-  CHECK_FALSE(loop_with(from, "loop.plant.mass", -1.0));
-  CHECK(loop_with(from, "loop.plant.mass", 1e-5));  // written with an exponent
-}

@@ -69,15 +69,3 @@ TEST_CASE("section sensitivity: what is refused") {
   CHECK_THAT(message(with_spread("parameters = [{" + Fs + "factor = 2}, {" + Fs + "factor = 3}]\n")),
              Contains("stands in the list twice"));
 }
-
-TEST_CASE("a case with several other values, and one that is none") {
-  const Case from = read_case(servo, "a.toml");
-  const std::pair<std::string, double> good[] = {{"loop.friction.Fs", 1.75}, {"loop.controller.kd", 5.0}};
-  const auto parts = parts_with(from, good);
-  REQUIRE(parts);
-  CHECK(std::get<LuGre<double>>(*parts->friction).Fs == 1.75);
-  CHECK(std::get<Pid>(parts->controller).kd == 5.0);
-  CHECK(std::get<Pid>(parts->controller).kp == 3.0);
-  const std::pair<std::string, double> bad[] = {{"loop.friction.Fs", 0.5}};  // below Fc
-  CHECK_FALSE(parts_with(from, bad));
-}

@@ -104,7 +104,7 @@ std::vector<SobolIndices> sobol_convergence(const SobolDesign& design, RowAnswer
                                             const SobolOptions& options) {
   const std::size_t samples = options.samples > 0 ? options.samples : design.samples();
   std::vector<SobolIndices> steps;
-  for (const std::size_t part : {8, 4, 2, 1}) {
+  for (const std::size_t part : {8U, 4U, 2U, 1U}) {
     SobolOptions fewer = options;
     fewer.samples = samples / part;
     if (fewer.samples >= fewest_samples || part == 1) steps.push_back(sobol_indices(design, answers, fewer));
