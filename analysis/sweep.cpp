@@ -106,4 +106,14 @@ Status run_sweep(const SweepTask& task, const std::vector<bool>& known, const Sw
   return SweepRun(task, known, sink, options).run();
 }
 
+Status run_each(std::size_t count, const std::function<void(std::size_t)>& work, const SweepOptions& options) {
+  SweepTask task{count, 1, 1, {}};
+  task.compute = [&](std::span<const std::size_t> points, std::span<double>) {
+    for (const std::size_t i : points) work(i);
+    return points.size();
+  };
+  return run_sweep(
+      task, {}, [](std::span<const std::size_t>, std::span<const double>) {}, options);
+}
+
 }  // namespace limcycle

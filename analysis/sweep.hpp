@@ -71,4 +71,8 @@ class SweepBlocks {
 Status run_sweep(const SweepTask& task, const std::vector<bool>& known, const SweepSink& sink,
                  const SweepOptions& options = {});
 
+/// A sweep that keeps its own answers: work(i) for every i = 0 .. count-1. Of the options and the Status the same
+/// holds.
+Status run_each(std::size_t count, const std::function<void(std::size_t)>& work, const SweepOptions& options = {});
+
 }  // namespace limcycle

@@ -15,14 +15,23 @@ using case_file::Value;
 
 constexpr Range no_number{infinite, -infinite};
 
-/// Calls visitor(path, part) for every part of a loop that has parameters; part(parts) is that variant in any LoopParts.
+/// Calls visitor(path, part) for every part of a loop that has parameters; part(parts) is that variant in any
+/// LoopParts.
 template <class Visitor>
 void for_each_part(const LoopParts& parts, const Visitor& visitor) {
-  visitor("loop.plant", [](auto& p) -> auto& { return p.plant; });
-  visitor("loop.controller", [](auto& p) -> auto& { return p.controller; });
-  if (parts.friction) visitor("loop.friction", [](auto& p) -> auto& { return *p.friction; });
-  if (parts.element) visitor("loop.element", [](auto& p) -> auto& { return *p.element; });
-  if (parts.error) visitor("loop.error", [](auto& p) -> auto& { return *p.error; });
+  visitor(
+      "loop.plant", [](auto& p) -> auto& { return p.plant; });
+  visitor(
+      "loop.controller", [](auto& p) -> auto& { return p.controller; });
+  if (parts.friction)
+    visitor(
+        "loop.friction", [](auto& p) -> auto& { return *p.friction; });
+  if (parts.element)
+    visitor(
+        "loop.element", [](auto& p) -> auto& { return *p.element; });
+  if (parts.error)
+    visitor(
+        "loop.error", [](auto& p) -> auto& { return *p.error; });
 }
 
 /// The value at a path of dots, or null.
@@ -62,7 +71,8 @@ LoopVariation::LoopVariation(const Case& from, const std::string& flag, std::spa
     return value_at(document.root, path) != nullptr || std::ranges::find(paths, path) != paths.end();
   };
   numbers_.resize(paths.size());
-  const auto found = [&](const std::string& path, const Range& range, const std::function<void(LoopParts&, double)>& set) {
+  const auto found = [&](const std::string& path, const Range& range,
+                         const std::function<void(LoopParts&, double)>& set) {
     for (std::size_t i = 0; i < paths.size(); ++i)
       if (paths[i] == path) numbers_[i] = {set, range};
   };
@@ -78,7 +88,8 @@ LoopVariation::LoopVariation(const Case& from, const std::string& flag, std::spa
             found(path, there ? parameter.range : no_number,
                   [part, member](LoopParts& p, double value) { std::get<Owner>(part(p)).*member = value; });
             if (parameter.default_from.empty() || written(path)) continue;
-            const auto source = number_member(*std::ranges::find(table, parameter.default_from, &Parameter<Owner, double>::key));
+            const auto source =
+                number_member(*std::ranges::find(table, parameter.default_from, &Parameter<Owner, double>::key));
             if (source == nullptr) continue;
             not_written_.emplace_back([part, member, source](LoopParts& p) {
               auto& owner = std::get<Owner>(part(p));

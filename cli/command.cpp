@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <stdexcept>
-#include <thread>
 
 #include "build_info.hpp"
+#include "limcycle/analysis/on_threads.hpp"
 
 namespace limcycle {
 
@@ -58,8 +58,7 @@ Provenance provenance(const CommonFlags& flags, const Case* from) {
   instruction_set(flags);  // one that this machine lacks is refused by every command
   made.isa = to_string(Isa::scalar);
   made.seed = flags.seed;
-  made.threads =
-      flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  made.threads = static_cast<int>(thread_count(flags.threads));
   if (from != nullptr) {
     made.title = from->title;
     made.file = from->file;

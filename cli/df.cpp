@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <iostream>
 
+#include "limcycle/analysis/frequency/df_table.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
-#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/sweep.hpp"
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/text.hpp"
@@ -13,7 +14,28 @@
 namespace limcycle {
 namespace {
 
-int run(const CommonFlags& flags) {
+/// The results from the first one on without a gap.
+std::vector<DescribingFunction> sweep_table(const Case& from, const std::vector<DfPoint>& points,
+                                            const DfOptions& options, const SweepFlags& flags) {
+  DfTable table(df_element(from), points, options);
+  const auto columns = df_columns(options.harmonics);
+  SweepTask task{points.size(), columns.size(), table.block(), {}};
+  task.compute = [&](std::span<const std::size_t> which, std::span<double> rows) {
+    std::vector<DescribingFunction> results(which.size());
+    const std::size_t finished = table.compute(which, results, interrupted);
+    for (std::size_t i = 0; i < finished; ++i)
+      std::ranges::copy(df_to_row(results[i]), rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
+    return finished;
+  };
+  const SweptRows swept = run_stored(task, columns, "df", flags, from);
+  std::vector<DescribingFunction> results;
+  results.reserve(points.size());
+  for (std::size_t k = 0; k < points.size() && swept.known[k]; ++k)
+    results.push_back(df_of_row(std::span(swept.rows).subspan(k * columns.size(), columns.size())));
+  return results;
+}
+
+int run(const SweepFlags& flags) {
   const Case from = load_case(flags);
   const DfSection& section = need_df(from);
   const auto points = section.points();
@@ -22,23 +44,14 @@ int run(const CommonFlags& flags) {
   options.threads = flags.threads;
   Output output(flags);
 
-  std::vector<DescribingFunction> results;
-  {
-    Progress progress(flags.quiet);
-    const auto total = static_cast<double>(points.size());
-    catch_interrupts();
-    results = describing_function_table(df_element(from), points, options, interrupted, [&](std::size_t done) {
-      progress.show(static_cast<double>(done) / total, "describing functions");
-    });
-  }
+  const auto results = sweep_table(from, points, options, flags);
   output.text(df_text(from.title, points, results));
   Provenance made = provenance(flags, &from);
   made.isa = to_string(options.isa);
   if (output.wants_json()) output.json(df_json(made, points, results));
   if (output.wants_csv()) output.csv(df_csv(points, results));
   output.finish();
-  if (results.size() < points.size() && !flags.quiet)
-    std::cerr << "limcycle: interrupted; the points computed until then are written\n";
+  if (results.size() < points.size()) tell_how_to_resume(flags);
   const bool answered = std::ranges::any_of(results, [](const auto& result) { return result.answered(); });
   return answered ? exit_done : exit_no_answer;
 }
@@ -46,9 +59,10 @@ int run(const CommonFlags& flags) {
 }  // namespace
 
 void add_df(CLI::App& program, Action& action) {
-  const auto flags = std::make_shared<CommonFlags>();
-  add_command(program, action, "df", "Describing functions over amplitude x frequency x bias", true, flags,
-              [flags] { return run(*flags); });
+  const auto flags = std::make_shared<SweepFlags>();
+  CLI::App* command = add_command(program, action, "df", "Describing functions over amplitude x frequency x bias", true,
+                                  flags, [flags] { return run(*flags); });
+  add_sweep_flags(*command, *flags);
 }
 
 }  // namespace limcycle

@@ -74,8 +74,7 @@ void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& fla
   if (report.cycle && loop.delay == 0.0) {
     std::vector<LoopNumber> numbers;
     for (const auto& number : own_numbers(from))
-      numbers.push_back({number.path, number.unit, number.value,
-                         LoopVariation(from, "--set", number.path)});
+      numbers.push_back({number.path, number.unit, number.value, LoopVariation(from, "--set", number.path)});
     report.local = local_sensitivities(loop, *report.cycle, numbers, interrupted);
   }
   PredictOptions options = from.predict;

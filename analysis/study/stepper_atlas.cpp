@@ -1,17 +1,15 @@
 #include "limcycle/analysis/study/stepper_atlas.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <mutex>
 #include <numbers>
 
 #include "limcycle/analysis/motion/affine_flow.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/orbit/settle.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/cycle_reference.hpp"
+#include "limcycle/analysis/sweep.hpp"
 
 namespace limcycle {
 namespace {
@@ -224,23 +222,17 @@ Truth truth_of(const AtlasLoop& loop, const AtlasOptions& options) {
   return truth;
 }
 
-/// Work that threads take in turn; results stand where their task does, so that their order is always the same.
+/// Work of several threads; results stand where their task does, so that their order is always the same.
 void share(std::size_t count, const AtlasOptions& options, double from, double to, std::string_view what,
            const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0}, done{0};
-  std::atomic<bool> failed{false};
-  std::mutex telling;
-  on_threads(
-      std::min(thread_count(options.threads), std::max<std::size_t>(count, 1)),
-      [&] {
-        for (std::size_t i = next++; i < count && !failed && !stopped(options); i = next++) {
-          work(i);
-          const double share = static_cast<double>(++done) / static_cast<double>(count);
-          const std::scoped_lock lock(telling);
-          if (options.progress) options.progress(from + (to - from) * share, what);
-        }
-      },
-      [&] { failed = true; });
+  SweepOptions each;
+  each.threads = options.threads;
+  each.stop = options.stop;
+  if (options.progress)
+    each.progress = [&](std::size_t done, std::size_t total) {
+      options.progress(from + (to - from) * static_cast<double>(done) / static_cast<double>(total), what);
+    };
+  run_each(count, work, each);
 }
 
 }  // namespace

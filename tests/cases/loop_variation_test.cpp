@@ -41,8 +41,7 @@ std::optional<std::optional<LoopParts>> as_set(const Case& from, std::vector<std
   try {
     return read_case(from.text, from.file, overrides).loop;
   } catch (const InputError& error) {
-    if (!error.fault().key.starts_with("loop"))
-      return std::nullopt;
+    if (!error.fault().key.starts_with("loop")) return std::nullopt;
     return std::optional<LoopParts>();
   }
 }

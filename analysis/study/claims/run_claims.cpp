@@ -1,12 +1,10 @@
 #include "limcycle/analysis/study/claims/run_claims.hpp"
 
-#include <atomic>
 #include <cmath>
 #include <exception>
-#include <mutex>
 #include <optional>
 
-#include "limcycle/analysis/on_threads.hpp"
+#include "limcycle/analysis/sweep.hpp"
 
 namespace limcycle {
 namespace {
@@ -35,18 +33,15 @@ ClaimResult tested(const Claim& claim, const ClaimOptions& options) {
 
 std::vector<TestedClaim> run_claims(const std::vector<Claim>& which, const ClaimRunOptions& options) {
   std::vector<std::optional<ClaimResult>> results(which.size());
-  std::atomic<std::size_t> next = 0, done = 0;
-  std::mutex telling;
-  const auto stopped = [&options] { return options.stop && options.stop(); };
-  on_threads(std::min(which.size(), thread_count(options.threads)), [&] {
-    for (std::size_t i = next++; i < which.size() && !stopped(); i = next++) {
-      results[i] = tested(which[i], options);
-      const std::size_t finished = ++done;
-      const std::scoped_lock lock(telling);
-      if (options.progress)
-        options.progress(static_cast<double>(finished) / static_cast<double>(which.size()), which[i].id);
-    }
-  });
+  SweepOptions each;
+  each.threads = options.threads;
+  each.stop = options.stop;
+  if (options.progress)
+    each.progress = [&](std::size_t done, std::size_t total) {
+      options.progress(static_cast<double>(done) / static_cast<double>(total), "claims");
+    };
+  run_each(
+      which.size(), [&](std::size_t i) { results[i] = tested(which[i], options); }, each);
   std::vector<TestedClaim> all;
   for (std::size_t i = 0; i < which.size(); ++i)
     if (results[i]) all.push_back({which[i], std::move(*results[i])});

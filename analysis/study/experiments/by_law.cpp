@@ -1,13 +1,12 @@
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
 
-#include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/sweep.hpp"
 
 namespace limcycle {
 namespace {
@@ -28,19 +27,6 @@ double width(const std::vector<double>& values) {
 
 }  // namespace
 
-void in_parallel(std::size_t count, const ExperimentOptions& options, std::string_view what,
-                 const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next = 0, done = 0;
-  on_threads(std::min(count, thread_count(options.threads)), [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      if (options.stop && options.stop()) return;
-      work(i);
-      const std::size_t finished = ++done;
-      if (options.progress) options.progress(static_cast<double>(finished) / static_cast<double>(count), what);
-    }
-  });
-}
-
 void run_by_law(Experiment& experiment, const ExperimentOptions& options,
                 const std::function<LawPart(const LawSetting&)>& one) {
   std::vector<LawSetting> laws;
@@ -48,7 +34,7 @@ void run_by_law(Experiment& experiment, const ExperimentOptions& options,
     if (is_friction_kind(law.kind)) laws.push_back(law);
   std::vector<LawPart> parts(laws.size());
   std::vector<char> ran(laws.size(), 0);
-  in_parallel(laws.size(), options, experiment.name, [&](std::size_t i) {
+  const auto run_one = [&](std::size_t i) {
     try {
       const auto begin = std::chrono::steady_clock::now();
       LawSetting law = laws[i];
@@ -60,7 +46,15 @@ void run_by_law(Experiment& experiment, const ExperimentOptions& options,
       parts[i] = {{}, std::string("could not be run: ") + error.what(), Status::not_finite, {}};
     }
     ran[i] = 1;
-  });
+  };
+  SweepOptions each;
+  each.threads = options.threads;
+  each.stop = options.stop;
+  if (options.progress)
+    each.progress = [&](std::size_t done, std::size_t total) {
+      options.progress(static_cast<double>(done) / static_cast<double>(total), experiment.name);
+    };
+  run_each(laws.size(), run_one, each);
   for (std::size_t i = 0; i < laws.size(); ++i) {
     if (ran[i] == 0) {
       experiment.status = Status::interrupted;

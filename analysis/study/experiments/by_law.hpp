@@ -24,10 +24,6 @@ struct LawPart {
 void run_by_law(Experiment& experiment, const ExperimentOptions& options,
                 const std::function<LawPart(const LawSetting&)>& one);
 
-/// Calls work(i) for i in 0..count-1 on several threads. The first exception is thrown again here.
-void in_parallel(std::size_t count, const ExperimentOptions& options, std::string_view what,
-                 const std::function<void(std::size_t)>& work);
-
 /// A curve of at most about `most` points, evenly spaced along its drawing: corners and jumps stay, rests cost little.
 Curve thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y, std::size_t most = 300);
 

@@ -1,14 +1,13 @@
 #include "limcycle/analysis/study/experiments/froude.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
-#include <thread>
 
 #include "limcycle/analysis/dual.hpp"
 #include "limcycle/analysis/frequency/harmonics_by_fft.hpp"
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/sweep.hpp"
 
 namespace limcycle {
 namespace {
@@ -219,19 +218,14 @@ FroudeResult froude_experiment(const std::vector<FroudeSetting>& settings, const
   starts.reserve(settings.size());
   for (const auto& setting : settings) starts.push_back(start_of(setting, stop));
   const std::size_t columns = clearances.size() + 1, runs = settings.size() * columns;
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < runs; i = next++) {
-      const std::size_t at = settings.size() - 1 - i / columns;  // the longest first
-      auto& comparison = result.series[at].clearances[i % columns];
-      comparison.run = one_run(settings[at], starts[at], comparison.clearance, stop);
-    }
+  SweepOptions each;
+  each.threads = threads;
+  const auto one = [&](std::size_t i) {
+    const std::size_t at = settings.size() - 1 - i / columns;  // the longest first
+    auto& comparison = result.series[at].clearances[i % columns];
+    comparison.run = one_run(settings[at], starts[at], comparison.clearance, stop);
   };
-  {
-    std::vector<std::jthread> others;
-    for (int i = 1; i < threads; ++i) others.emplace_back(work);
-    work();
-  }
+  run_each(runs, one, each);
   for (auto& series : result.series) {
     for (const auto& c : series.clearances)
       if (c.run.status != Status::converged) result.status = c.run.status;

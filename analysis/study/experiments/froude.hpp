@@ -58,8 +58,8 @@ struct FroudeResult {
 /// (dissipation 20 and 2 s/m; a restitution of about 0.75 and 0.97 at 0.02 m/s). All numbers are of our own choice.
 std::vector<FroudeSetting> froude_settings();
 
-/// Without play and with 0.02, 0.05 and 0.1 mm, unless others are given. The runs go in `threads` threads;
-/// some seconds. Status: that of the first run that did not converge, with what there is.
+/// Without play and with 0.02, 0.05 and 0.1 mm, unless others are given. The runs go in `threads` threads
+/// (0: one a core); some seconds. Status: that of the first run that did not converge, with what there is.
 FroudeResult froude_experiment(const std::vector<FroudeSetting>& settings = froude_settings(),
                                const std::vector<double>& clearances = {2e-5, 5e-5, 1e-4}, int threads = 2,
                                const std::function<bool()>& stop = {});

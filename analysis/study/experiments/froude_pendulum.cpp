@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/experiments/by_law.hpp"
@@ -117,9 +116,7 @@ Experiment froude_pendulum_experiment(const ExperimentOptions& options) {
                   {"fast_force", "contact force above 20 w0, rms", "N"},
                   {"losses", "losses of contact", ""},
                   {"apart", "time without contact", "s"}};
-  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const FroudeResult result =
-      froude_experiment(froude_settings(), {2e-5, 5e-5, 1e-4}, std::max(1, threads), options.stop);
+  const FroudeResult result = froude_experiment(froude_settings(), {2e-5, 5e-5, 1e-4}, options.threads, options.stop);
   e.status = result.status;
   if (result.status != Status::converged) {
     e.notes.emplace_back("a run ended with status " + std::string(to_string(result.status)));
