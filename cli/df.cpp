@@ -27,7 +27,7 @@ std::vector<DescribingFunction> sweep_table(const Case& from, const std::vector<
       std::ranges::copy(df_to_row(results[i]), rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
     return finished;
   };
-  const SweptRows swept = run_stored(task, columns, "df", flags, from);
+  const SweptRows swept = run_stored(task, columns, "df " + std::string(to_string(options.isa)), flags, from);
   std::vector<DescribingFunction> results;
   results.reserve(points.size());
   for (std::size_t k = 0; k < points.size() && swept.known[k]; ++k)

@@ -7,6 +7,7 @@
 #include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/map.hpp"
 #include "limcycle/reports/number.hpp"
+#include "limcycle/reports/svg_parts.hpp"
 
 namespace limcycle {
 namespace {
@@ -44,13 +45,6 @@ std::string colour_of_what(const MapPoint& point) {
 std::string colour_of_worth(Worth worth) {
   constexpr std::string_view colours[] = {"#5ca66a", "#f2c14e", "#d1495b", "#7a4fa3", "#b9bec4", "#eef0f2"};
   return std::string(colours[static_cast<std::size_t>(worth)]);
-}
-
-/// From light to dark in 24 steps, even in lightness.
-std::string colour_of_share(double share) {
-  const double s = std::round(std::clamp(share, 0.0, 1.0) * 23.0) / 23.0;
-  const auto channel = [s](double light, double dark) { return static_cast<int>(light + s * (dark - light)); };
-  return fmt::format("#{:02x}{:02x}{:02x}", channel(237, 20), channel(244, 52), channel(250, 110));
 }
 
 /// Cells of one row that have one colour are one rectangle.
@@ -183,18 +177,13 @@ std::string map_picture(const MapReport& report, const Units& units) {
   std::string body;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const std::size_t row = i / 3;
-    body += panel_of(report, 22.0 + map_pitch * static_cast<double>(i % 3), 52.0 + row_height * static_cast<double>(row),
-                     panels[i].name, panels[i].colour, panels[i].legend);
+    body += panel_of(report, 22.0 + map_pitch * static_cast<double>(i % 3),
+                     52.0 + row_height * static_cast<double>(row), panels[i].name, panels[i].colour, panels[i].legend);
   }
   const std::size_t rows = (panels.size() + 2) / 3;
   const double height = 34.0 + row_height * static_cast<double>(rows);
-  return fmt::format(
-             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-             "height=\"{1:.0f}\" role=\"img\" aria-label=\"{2}\">\n<style>{3}</style>\n<text class=\"title\" x=\"10\" "
-             "y=\"20\">{4}</text>\n",
-             map_picture_width, height, html_escaped(map_answer(report)), map_style,
-             html_escaped(report.map.y.path + " over " + report.map.x.path)) +
-         body + "</svg>\n";
+  return svg_picture(map_picture_width, height, map_answer(report), map_style,
+                     report.map.y.path + " over " + report.map.x.path, body);
 }
 
 std::string map_page(const MapReport& report, const Provenance& provenance, const std::string& case_text,

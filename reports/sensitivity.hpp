@@ -35,6 +35,10 @@ Table sobol_table(const SensitivityReport& report, const OutputSensitivity& outp
 std::string tornado_picture(const SensitivityReport& report);
 /// First and total indices of an output with their intervals, and how they settled with the number of samples.
 std::string indices_picture(const SensitivityReport& report, const OutputSensitivity& output);
+/// First indices and those of pairs, as a matrix; empty without second order.
+std::string interactions_picture(const SensitivityReport& report, const OutputSensitivity& output);
+/// Share of the loops that hunt over the two parameters that decide it most; empty where they are not known.
+std::string hunting_heat_picture(const SensitivityReport& report);
 /// The fair sample: amplitude, or hunting or not, over each parameter.
 std::string scatter_picture(const SensitivityReport& report);
 

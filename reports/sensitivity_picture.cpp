@@ -5,9 +5,9 @@
 #include <functional>
 #include <numeric>
 
-#include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/sensitivity.hpp"
+#include "limcycle/reports/svg_parts.hpp"
 
 namespace limcycle {
 namespace {
@@ -20,21 +20,7 @@ constexpr std::string_view chart_style =
     ".hunts{fill:#c8442f;fill-opacity:.45}.still{fill:#5ca66a;fill-opacity:.45}.line{fill:none;stroke-width:1.5}";
 
 std::string svg(double height, const std::string& label, const std::string& title, const std::string& body) {
-  return fmt::format(
-             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-             "height=\"{1:.0f}\" role=\"img\" aria-label=\"{2}\">\n<style>{3}</style>\n<text class=\"title\" x=\"10\" "
-             "y=\"20\">{4}</text>\n",
-             chart_width, height, html_escaped(label), chart_style, html_escaped(title)) +
-         body + "</svg>\n";
-}
-
-std::string words_at(double x, double y, std::string_view kind, const std::string& words) {
-  return fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kind, x, y, html_escaped(words));
-}
-
-std::string line_of(double x1, double y1, double x2, double y2, std::string_view kind) {
-  return fmt::format("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", kind, x1, y1, x2,
-                     y2);
+  return svg_picture(chart_width, height, label, chart_style, title, body);
 }
 
 double elasticity(const LocalSensitivity& one, double derivative, double quantity) {
@@ -57,10 +43,6 @@ std::string tornado_panel(double left, double width, double top, const std::stri
   return out + line_of(middle, top - 3.0, middle, top + bar_pitch * static_cast<double>(values.size()), "axis");
 }
 
-double place(double value, double left, double width, double low, double high) {
-  return left + width * std::clamp((value - low) / (high - low), 0.0, 1.0);
-}
-
 std::string bar_with_interval(const Estimate& estimate, std::string_view kind, double left, double width, double y) {
   if (!estimate.known) return words_at(left + 3.0, y + 7.0, "", "not known");
   const double from = place(0.0, left, width, -0.1, 1.1), to = place(estimate.value, left, width, -0.1, 1.1);
@@ -71,8 +53,6 @@ std::string bar_with_interval(const Estimate& estimate, std::string_view kind, d
                    y + 3.5, "interval");
   return out;
 }
-
-std::string short_path(const std::string& path) { return path.starts_with("loop.") ? path.substr(5) : path; }
 
 constexpr std::string_view line_colours[] = {"#2f81c7", "#c8442f", "#5ca66a", "#eda352",
                                              "#7a4fa3", "#1f9e9e", "#8a6d3b"};
