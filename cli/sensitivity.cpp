@@ -70,6 +70,30 @@ std::optional<Cycle> main_cycle(const Loop& loop, const Case& from, std::vector<
   return best;
 }
 
+/// Every number times every factor, all others as they are.
+void change_each(const Case& from, const std::vector<double>& factors, const PredictOptions& options, int threads,
+                 std::vector<ParameterChange>& changes) {
+  for (const auto& number : own_numbers(from)) {
+    if (number.value == 0.0) continue;  // times anything, it stays
+    for (const double factor : factors)
+      changes.push_back({number.path, number.unit, factor, factor * number.value, {}});
+  }
+  std::vector<char> looked_at(changes.size(), 0);
+  const auto look = [&](std::size_t i) {
+    const auto changed = LoopVariation(from, "--factors", changes[i].path)(changes[i].value);
+    if (changed) changes[i].found = map_point(*changed, options);
+    looked_at[i] = interrupted() ? 0 : 1;
+  };
+  SweepOptions each;
+  each.threads = threads;
+  each.stop = interrupted;
+  run_each(changes.size(), look, each);
+  std::vector<ParameterChange> known;
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (looked_at[i] != 0) known.push_back(std::move(changes[i]));
+  changes = std::move(known);
+}
+
 void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& flags, SensitivityReport& report) {
   if (report.cycle && loop.delay == 0.0) {
     std::vector<LoopNumber> numbers;
@@ -84,21 +108,13 @@ void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& fla
   std::vector<double> factors = flags.factors;
   if (std::ranges::find(factors, 1.0) == factors.end()) factors.push_back(1.0);
   std::ranges::sort(factors);
-  for (const auto& number : own_numbers(from)) {
-    if (number.value == 0.0) continue;  // times anything, it stays
-    const LoopVariation variation(from, "--set", number.path);
-    for (const double factor : factors) {
-      if (interrupted()) return;
-      ParameterChange change{number.path, number.unit, factor, factor * number.value, {}};
-      if (const auto changed = variation(change.value)) change.found = map_point(*changed, options);
-      report.one_at_a_time.push_back(std::move(change));
-    }
-  }
+  change_each(from, factors, options, flags.threads, report.one_at_a_time);
 }
 
 std::string design_text(const GlobalPlan& plan, const HuntingQuestion& question) {
-  std::string text = fmt::format("sensitivity {} trajectories, {} samples{}", plan.morris().trajectories(),
-                                 plan.sobol().samples(), plan.sobol().second_order() ? ", second order" : "");
+  std::string text = fmt::format("sensitivity {}: {} trajectories, {} samples{}", to_string(question.isa),
+                                 plan.morris().trajectories(), plan.sobol().samples(),
+                                 plan.sobol().second_order() ? ", second order" : "");
   for (const auto& one : plan.spread().parameters)
     text += fmt::format("; {} {} {} {} {} {}", one.path, to_string(one.distribution), one.low, one.high, one.mean,
                         one.deviation);

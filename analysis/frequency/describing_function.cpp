@@ -31,7 +31,7 @@ void validate(const DfPoint& point) {
 }
 
 DescribingFunction describing_function(const Element<double>& element, const DfPoint& point, const DfOptions& options) {
-  return describing_function_table(element, {point}, options).front();
+  return DfTable(element, {}, options).at(point);
 }
 
 std::vector<DescribingFunction> describing_function_table(const Element<double>& element,

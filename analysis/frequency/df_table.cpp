@@ -130,6 +130,13 @@ DfTable::DfTable(const Element<double>& element, std::vector<DfPoint> points, co
 
 DfTable::~DfTable() = default;
 
+DescribingFunction DfTable::at(const DfPoint& point) const {
+  validate(point);
+  DescribingFunction result;
+  if (kernel_) kernel_->compute({&point, 1}, {&result, 1});
+  return !result.method.empty() && finite(result) ? result : solver_->at(point, options_);
+}
+
 std::size_t DfTable::compute(std::span<const std::size_t> which, std::span<DescribingFunction> results,
                              const std::function<bool()>& stop) {
   if (kernel_) {

@@ -28,6 +28,9 @@ class DfTable {
   std::size_t size() const { return points_.size(); }
   std::size_t block() const { return block_; }  ///< so many points are best computed at a time
 
+  /// Result at any point, on the list or not; it tells the same as the list would. Throws as the constructor does.
+  DescribingFunction at(const DfPoint& point) const;
+
   /// Results at these points, and how many of them, counted from the first: `stop` is asked for every point, one call
   /// at a time, and once it has returned true no further point is begun.
   std::size_t compute(std::span<const std::size_t> which, std::span<DescribingFunction> results,

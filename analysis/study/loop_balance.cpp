@@ -3,8 +3,10 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
 
-#include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/frequency/df_table.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
 #include "limcycle/analysis/orbit/return_map.hpp"
 #include "limcycle/models/linear/dense.hpp"
@@ -17,11 +19,15 @@ using Eigen::Index;
 
 constexpr Complex undefined{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 
-DescribingFunction df(const Element<double>& element, double A, double w, double bias, double accuracy) {
+DfOptions first_harmonic(double accuracy) {
   DfOptions options;
   options.harmonics = 1;
   options.accuracy = std::clamp(accuracy, 1e-12, 1e-2);
-  return describing_function(element, {A, w, bias}, options);
+  return options;
+}
+
+DescribingFunction df(const Element<double>& element, double A, double w, double bias, double accuracy) {
+  return describing_function(element, {A, w, bias}, first_harmonic(accuracy));
 }
 
 /// Closed form where the element offers one, at no cost.
@@ -41,6 +47,28 @@ bool pulls_back(const Loop& loop, std::size_t i) {
 }
 
 }  // namespace
+
+/// The describing function of the main element, of which a search for roots asks thousands of values at few accuracies.
+class LoopBalance::MainGain {
+ public:
+  explicit MainGain(const Element<double>& element) : element_(&element) {}
+
+  DescribingFunction at(const DfPoint& point, double accuracy) {
+    const DfTable* table = nullptr;
+    {
+      const std::lock_guard lock(guard_);
+      auto& made = by_accuracy_[accuracy];
+      if (!made) made = std::make_unique<DfTable>(*element_, std::vector<DfPoint>{}, first_harmonic(accuracy));
+      table = made.get();
+    }
+    return table->at(point);
+  }
+
+ private:
+  const Element<double>* element_;
+  std::mutex guard_;
+  std::map<double, std::unique_ptr<DfTable>> by_accuracy_;
+};
 
 /// Sorts all elements but the last into those beside it and the rest.
 LoopBalance::Sorted LoopBalance::sort(const Loop& loop) {
@@ -81,7 +109,10 @@ std::optional<std::string> LoopBalance::not_applicable(const Loop& loop) {
 }
 
 LoopBalance::LoopBalance(const Loop& loop)
-    : loop_(&loop), main_(loop.elements.size() - 1), symmetric_(symmetry(loop).has_value()) {
+    : loop_(&loop),
+      main_(loop.elements.size() - 1),
+      main_gain_(std::make_shared<MainGain>(loop.elements[main_])),
+      symmetric_(symmetry(loop).has_value()) {
   const Sorted sorted = sort(loop);
   beside_ = sorted.beside;
   if (!sorted.others.empty()) other_ = sorted.others.front();
@@ -151,7 +182,7 @@ Eigen::VectorXd LoopBalance::mean_inputs(double amplitude, double frequency, dou
 Complex LoopBalance::gain(double amplitude, double frequency, double accuracy) const {
   if (const auto exact = exact_gain(loop_->elements[main_], amplitude, frequency, bias(amplitude, frequency, accuracy)))
     return *exact;
-  const auto result = df(loop_->elements[main_], amplitude, frequency, bias(amplitude, frequency, accuracy), accuracy);
+  const auto result = main_gain_->at({amplitude, frequency, bias(amplitude, frequency, accuracy)}, accuracy);
   if (result.status != Status::converged && result.status != Status::incomplete) return undefined;
   if (symmetric_ && !result.symmetric) return undefined;  // e.g. a relay that does not switch
   return result.gain;

@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -67,8 +68,11 @@ class LoopBalance {
   Eigen::VectorXd mean_state(double amplitude, double frequency, double accuracy, bool& exact) const;
   Eigen::VectorXcd outputs(double amplitude, double frequency, double accuracy) const;
 
+  class MainGain;
+
   const Loop* loop_;
   std::size_t main_ = 0;
+  std::shared_ptr<MainGain> main_gain_;
   std::vector<Beside> beside_;        ///< not the main element itself
   std::optional<std::size_t> other_;  ///< the one that is eliminated
   bool symmetric_ = false;
