@@ -78,7 +78,7 @@ ShootingResult edge_cycle(const Loop& loop, const std::function<LoopState(double
   }
   ShootingOptions shooting = options.shooting;
   shooting.warm_maps = 0;
-  shooting.max_maps = 120;
+  shooting.max_maps = 40;  // those that converge took 5 to 10
   for (const double periods : {2.0, 3.0, 1.0, 4.0}) {
     const auto lingering = after(loop, ray(low), periods * period);
     Trace trace;
