@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/number.hpp"
@@ -14,7 +15,7 @@ namespace {
 constexpr std::string_view heat_style =
     "text{font:11px system-ui,sans-serif;fill:#59636e}.title{font-size:14px;font-weight:600}.end{text-anchor:end}"
     ".middle{text-anchor:middle}.frame{stroke:#8b949e;stroke-opacity:.6;fill:none}.light{fill:#fff;text-anchor:middle}"
-    ".none{fill:#8b949e;fill-opacity:.25}";
+    ".none{fill:#8b949e;fill-opacity:.25}.faint{text-anchor:middle;fill-opacity:.5}";
 constexpr double heat_width = 760.0;
 constexpr std::size_t bins = 10;  ///< to each side of a heat map of two parameters
 
@@ -73,9 +74,14 @@ std::string interactions_picture(const SensitivityReport& report, const OutputSe
                           height);
       return;
     }
-    body += cell_of(x, y, width, height, share.value, tip + ": " + with_digits(share.value, 3));
-    body +=
-        words_at(x + 0.5 * width, y + 17.0, share.value > 0.5 ? "light" : "middle", fmt::format("{:.2f}", share.value));
+    const bool told = !share.bounded() || share.low > 0.0;  // from nothing
+    const std::string interval = share.bounded() ? fmt::format(" ({:.3f} to {:.3f})", share.low, share.high) : "";
+    body += cell_of(x, y, width, height, told ? share.value : 0.0, tip + ": " + with_digits(share.value, 3) + interval);
+    body += words_at(x + 0.5 * width, y + 17.0,
+                     told && share.value > 0.4 ? "light"
+                     : told                    ? "middle"
+                                               : "faint",
+                     fmt::format("{:.2f}", std::abs(share.value) < 0.005 ? 0.0 : share.value));
   };
   std::string label = "Shares of the variance of " + output.output + ", alone and in pairs.";
   double largest = 0.0;
@@ -86,7 +92,7 @@ std::string interactions_picture(const SensitivityReport& report, const OutputSe
   for (const auto& pair : output.sobol.interactions) {
     const std::string both = parameters[pair.one].path + " with " + parameters[pair.other].path;
     cell(pair.other, pair.one, pair.share, both);
-    if (pair.share.known && pair.share.value > largest) {
+    if (pair.share.known && pair.share.bounded() && pair.share.low > 0.0 && pair.share.value > largest) {
       largest = pair.share.value;
       label = fmt::format("Shares of the variance of {}: the largest of a pair is {:.2f}, {}.", output.output, largest,
                           both);

@@ -20,7 +20,8 @@ std::string output_section(const SensitivityReport& report, const OutputSensitiv
     return out + html_tag("p", "It is the same for every loop that answered: nothing to share out.");
   out += figure_of(indices_picture(report, output),
                    "Shares of the variance with 95 % intervals; beside them how the total indices settled.");
-  out += figure_of(interactions_picture(report, output), "What each number does alone, and with another beyond that.");
+  out += figure_of(interactions_picture(report, output),
+                   "What each number does alone, and with another beyond that. Faint numbers cannot be told from 0.");
   out += html_table(sobol_table(report, output), "Sobol indices of " + output.output);
   out += html_table(morris_table(report, output), "Morris: effects on " + output.output + " of each whole range");
   std::vector<std::string> notes = output.sobol.notes;
@@ -42,8 +43,7 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
     body +=
         "<h2>One at a time</h2>\n" + html_table(change_table(report, units), "What happens with one number changed");
   if (report.global) {
-    body += "<h2>The spread</h2>\n" +
-            figure_of(hunting_heat_picture(report), "Where in the spread the loop hunts.") +
+    body += "<h2>The spread</h2>\n" + figure_of(hunting_heat_picture(report), "Where in the spread the loop hunts.") +
             figure_of(scatter_picture(report), "Every loop of the fair sample over each of the parameters.");
     for (const auto& output : report.global->outputs) body += output_section(report, output);
   }

@@ -53,6 +53,9 @@ SobolEstimator by_exchange(const SobolSample& sample);
 /// fitting). Thus the indices become those of the parameters' distribution among answers: Var(E[y | x_u, answer]) /
 /// Var(y | answer) and E[Var(y | all but x_i, answer)] / Var(y | answer).
 ///
+/// What correlation A and B have by chance is taken out of those of B and AB_i: pairs of numbers that do nothing then
+/// have errors four times smaller, first indices on the hunting servo up to ten times.
+///
 /// (by_exchange() would give others, as all four points must answer: for y = x + 2 z where x + z < 1.2 first indices
 /// 0.20 and 0.80 instead of 0.01 and 0.75.) Measured with 16384 samples against brute force, a fifth to two thirds
 /// without an answer: two parameters, three oblique parts of the square: first and total indices to 0.008 (without

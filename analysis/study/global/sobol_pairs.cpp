@@ -142,6 +142,29 @@ Pairs closed_pairs(const SobolSample& s, std::size_t i, std::size_t j) {
   return pairs;
 }
 
+/// A and B share nothing: what correlation their answers have is chance.
+Pairs independent_pairs(const SobolSample& s) {
+  Pairs pairs(s);
+  for (std::size_t k = 0; k < s.samples; ++k) pairs.add(k, s.design.row_a(k), s.design.row_b(k));
+  return pairs;
+}
+
+/// Takes the chance of `independent` out of the correlations: AB_i is A as far as x_i does nothing, that is with the
+/// correlation 1 - T_i, so that B and AB_i share that much of the chance correlation of B and A. (A control variate:
+/// its mean is 0, so that no index is biased.)
+void without_chance(std::vector<std::optional<double>>& found, std::size_t d, std::optional<double> independent) {
+  if (!independent) return;
+  const auto kept = [&](std::size_t i) {
+    return found[2 * i + 1] ? std::clamp(1.0 - *found[2 * i + 1], 0.0, 1.0) : 0.0;
+  };
+  for (std::size_t i = 0; i < d; ++i)
+    if (auto& first = found[2 * i]) *first -= kept(i) * *independent;
+  std::size_t next = 2 * d;
+  for (std::size_t i = 0; next < found.size(); ++i)
+    for (std::size_t j = i + 1; j < d; ++j, ++next)
+      if (auto& closed = found[next]) *closed -= kept(i) * kept(j) * *independent;
+}
+
 std::optional<double> correlation(const std::vector<PairSums>& blocks, std::span<const double> weights, double least) {
   PairSums sum;
   for (std::size_t k = 0; k < blocks.size(); ++k) sum.add(blocks[k], weights[k]);
@@ -164,11 +187,13 @@ SobolEstimator by_pairs(const SobolSample& sample) {
   }
   for (std::size_t i = 0; sample.design.second_order() && i < d; ++i)
     for (std::size_t j = i + 1; j < d; ++j) take(closed_pairs(sample, i, j));
-  return {[d, sums = std::move(sums), least = sample.least](std::span<const double> weights) {
+  return {[d, sums = std::move(sums), chance = independent_pairs(sample).blocks(),
+           least = sample.least](std::span<const double> weights) {
             std::vector<std::optional<double>> found;
             for (const auto& blocks : sums) found.push_back(correlation(blocks, weights, least));
             for (std::size_t i = 0; i < d; ++i)
               if (auto& total = found[2 * i + 1]) total = 1.0 - *total;
+            without_chance(found, d, correlation(chance, weights, least));
             std::size_t next = 2 * d;
             for (std::size_t i = 0; next < found.size(); ++i)
               for (std::size_t j = i + 1; j < d; ++j, ++next)

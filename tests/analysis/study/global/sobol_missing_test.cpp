@@ -78,6 +78,31 @@ TEST_CASE("Sobol indices: a fifth of the answers missing at random biases none o
   }
 }
 
+TEST_CASE(
+    "Sobol indices: of a number that does nothing the first index and pairs are 0 with few samples and answers "
+    "missing") {
+  // Chance correlations of 256 independent answers are 0.06; what A and B share of them is taken out.
+  constexpr int seeds = 40;
+  const auto y = [](const std::vector<double>& x) { return std::exp(x[0]) + 0.3 * x[1]; };
+  for (const bool second_order : {false, true}) {
+    double of_none = 0.0, of_both = 0.0;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      const SobolDesign design(4, 256, second_order, seed);
+      auto answers = answers_in(design, y);
+      take_away(answers, 0.05, seed);
+      const auto found = sobol_indices(design, answers, {.resamples = 200});
+      for (const std::size_t i : {2U, 3U}) {
+        const Estimate& first = found.parameters[i].first;
+        of_none += 0.5 * first.value * first.value / seeds;
+        CHECK(first.high - first.low < 0.15);
+      }
+      if (second_order) of_both += std::pow(found.interactions.back().share.value, 2) / seeds;
+    }
+    CHECK(std::sqrt(of_none) < 0.03);
+    CHECK(std::sqrt(of_both) < 0.01);
+  }
+}
+
 TEST_CASE("Sobol indices: NaN and infinite answers are none") {
   const auto f = ishigami();
   const SobolDesign design(3, 256, true, 3);
