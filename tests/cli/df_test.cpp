@@ -71,3 +71,29 @@ TEST_CASE("df: an interrupt keeps what was computed") {
   CHECK_THAT(scratch.get("err"), Contains("interrupted"));
   CHECK_THAT(scratch.get("out"), Contains("of 810000 points"));
 }
+
+TEST_CASE("df: the same numbers for any number of threads, and from a store that was interrupted and gone on with") {
+  const Scratch scratch;
+  const auto table = [](const std::vector<std::string>& flags) {
+    std::vector<std::string> all{"df",    shipped("df-lugre.toml"),
+                                 "--set", "df.amplitude={from=1e-6, to=0.1, points=40}",
+                                 "--set", "df.frequency={from=0.1, to=1000.0, points=40}",
+                                 "--set", "df.method=\"quadrature\"",
+                                 "--set", "df.accuracy=1e-10",
+                                 "--csv", "-"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    return all;
+  };
+  const auto one = run(table({"--threads", "1"}));
+  REQUIRE(one.code == 0);
+  CHECK(run(table({"--threads", "2"})).out == one.out);
+  const std::string store = scratch.file("df.store");
+  std::string command = "timeout -s KILL 0.3 " + quoted(LIMCYCLE_PROGRAM);
+  for (const auto& word : table({"--store", store})) command += " " + quoted(word);
+  // As a rule it is killed on its way; a machine on which it is not tries the store of a finished run.
+  static_cast<void>(std::system((command + " > " + quoted(scratch.file("cut"))).c_str()));
+  const auto rest = run(table({"--store", store, "--resume"}));
+  CHECK(rest.code == 0);
+  CHECK(rest.out == one.out);
+  CHECK_THAT(run({"status", store}).out, Contains("1600 of 1600 points"));
+}
