@@ -13,17 +13,7 @@ using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 using Json = nlohmann::ordered_json;
 
-TEST_CASE("df: golden documents") {
-  for (const auto& golden : goldens_of("df")) {
-    auto arguments = golden.arguments;
-    arguments.insert(arguments.end(), {"--json", "-"});
-    const auto ran = run(arguments);
-    INFO(golden.name);
-    REQUIRE(ran.code == 0);
-    CHECK(ran.err.empty());
-    CHECK(difference(golden.document, Json::parse(ran.out)) == "");
-  }
-}
+TEST_CASE("df: golden documents") { check_goldens("df"); }
 
 TEST_CASE("df: table, document and columns tell the same") {
   const Scratch scratch;

@@ -1,4 +1,5 @@
 #pragma once
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -6,6 +7,8 @@
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "limcycle/tests/cli/program.hpp"
 
 namespace limcycle::test {
 
@@ -89,6 +92,19 @@ inline std::vector<Golden> goldens_of(const std::string& command) {
   }
   if (out.empty()) throw std::runtime_error("no golden document of " + command);
   return out;
+}
+
+/// Runs the commands again, and holds what they print against their golden documents.
+inline void check_goldens(const std::string& command) {
+  for (const auto& golden : goldens_of(command)) {
+    auto arguments = golden.arguments;
+    arguments.insert(arguments.end(), {"--json", "-"});
+    const auto ran = run(arguments);
+    INFO(golden.name);
+    REQUIRE(ran.code == 0);
+    CHECK(ran.err.empty());
+    CHECK(difference(golden.document, nlohmann::ordered_json::parse(ran.out)) == "");
+  }
 }
 
 }  // namespace limcycle::test

@@ -28,17 +28,7 @@ std::size_t widest_line(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("predict: golden documents") {
-  for (const auto& golden : goldens_of("predict")) {
-    auto arguments = golden.arguments;
-    arguments.insert(arguments.end(), {"--json", "-"});
-    const auto ran = run(arguments);
-    INFO(golden.name);
-    REQUIRE(ran.code == 0);
-    CHECK(ran.err.empty());
-    CHECK(difference(golden.document, Json::parse(ran.out)) == "");
-  }
-}
+TEST_CASE("predict: golden documents") { check_goldens("predict"); }
 
 TEST_CASE("predict: the default case is answered in words, in documents and as a page") {
   const Scratch scratch;

@@ -10,17 +10,7 @@ using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 using Json = nlohmann::ordered_json;
 
-TEST_CASE("simulate: golden documents") {
-  for (const auto& golden : goldens_of("simulate")) {
-    auto arguments = golden.arguments;
-    arguments.insert(arguments.end(), {"--json", "-"});
-    const auto ran = run(arguments);
-    INFO(golden.name);
-    REQUIRE(ran.code == 0);
-    CHECK(ran.err.empty());
-    CHECK(difference(golden.document, Json::parse(ran.out)) == "");
-  }
-}
+TEST_CASE("simulate: golden documents") { check_goldens("simulate"); }
 
 TEST_CASE("simulate: -o takes the samples, the summary stays on stdout") {
   const Scratch scratch;
