@@ -133,15 +133,25 @@ DfTable::~DfTable() = default;
 DescribingFunction DfTable::at(const DfPoint& point) const {
   validate(point);
   DescribingFunction result;
-  if (kernel_) kernel_->compute({&point, 1}, {&result, 1});
-  return !result.method.empty() && finite(result) ? result : solver_->at(point, options_);
+  if (kernel_) by_kernel({&point, 1}, {&result, 1});
+  return result.method.empty() ? solver_->at(point, options_) : result;
+}
+
+std::vector<DescribingFunction> DfTable::some_of(std::span<const DfPoint> points) const {
+  for (const DfPoint& point : points) validate(point);
+  std::vector<DescribingFunction> results(points.size());
+  if (kernel_) by_kernel(points, results);
+  return results;
 }
 
 std::size_t DfTable::compute(std::span<const std::size_t> which, std::span<DescribingFunction> results,
                              const std::function<bool()>& stop) {
   if (kernel_) {
     which = which.first(begun(which.size(), stop));
-    by_kernel(which, results);
+    std::vector<DfPoint> some;
+    some.reserve(which.size());
+    for (const std::size_t k : which) some.push_back(points_[k]);
+    by_kernel(some, results.first(which.size()));
   }
   for (std::size_t i = 0; i < which.size(); ++i) {
     if (kernel_ && !results[i].method.empty()) continue;
@@ -161,13 +171,9 @@ std::size_t DfTable::begun(std::size_t wanted, const std::function<bool()>& stop
   return wanted;
 }
 
-void DfTable::by_kernel(std::span<const std::size_t> which, std::span<DescribingFunction> results) const {
-  std::vector<DfPoint> some;
-  some.reserve(which.size());
-  for (const std::size_t k : which) some.push_back(points_[k]);
-  results = results.first(which.size());
+void DfTable::by_kernel(std::span<const DfPoint> points, std::span<DescribingFunction> results) const {
   std::ranges::fill(results, DescribingFunction{});
-  kernel_->compute(some, results);
+  kernel_->compute(points, results);
   for (DescribingFunction& result : results)
     if (!finite(result)) result = {};
 }

@@ -31,6 +31,9 @@ class DfTable {
   /// Result at any point, on the list or not; it tells the same as the list would. Throws as the constructor does.
   DescribingFunction at(const DfPoint& point) const;
 
+  /// The same at several points at once, in a fraction of the time; `method` is empty where only at() can tell.
+  std::vector<DescribingFunction> some_of(std::span<const DfPoint> points) const;
+
   /// Results at these points, and how many of them, counted from the first: `stop` is asked for every point, one call
   /// at a time, and once it has returned true no further point is begun.
   std::size_t compute(std::span<const std::size_t> which, std::span<DescribingFunction> results,
@@ -38,7 +41,7 @@ class DfTable {
 
  private:
   std::size_t begun(std::size_t wanted, const std::function<bool()>& stop);
-  void by_kernel(std::span<const std::size_t> which, std::span<DescribingFunction> results) const;
+  void by_kernel(std::span<const DfPoint> points, std::span<DescribingFunction> results) const;
 
   std::vector<DfPoint> points_;
   DfOptions options_;

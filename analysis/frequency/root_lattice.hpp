@@ -43,6 +43,7 @@ class RootLattice {
 
   /// Scaled function at a node, with an accuracy at least as tight as asked for; cached.
   std::complex<double> sample(std::int64_t i, std::int64_t j, double accuracy);
+  bool is_known(std::int64_t i, std::int64_t j) const { return known_.contains({i, j}); }
   /// Scaled function anywhere; not cached.
   std::complex<double> at(double p, double q, double accuracy);
   /// The loop equation itself.

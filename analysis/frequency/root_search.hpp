@@ -22,6 +22,11 @@ struct SearchBox {
   double frequency_min, frequency_max;  ///< rad/s
 };
 
+struct SearchPoint {
+  double amplitude;  ///< unit of the element's input
+  double frequency;  ///< rad/s
+};
+
 /// Settings of find_roots().
 struct RootSearchOptions {
   int initial_cells_amplitude = 24;  ///< cells over the range of ln A before refinement, 1..1000 (rounded up to even)
@@ -34,7 +39,9 @@ struct RootSearchOptions {
   double fine_accuracy = 1e-12;      ///< relative accuracy of N for polishing and near-tangencies, >= 1e-15
   std::vector<double> amplitude_hints;  ///< where N has a kink or begins to exist; grid lines are placed there
   std::vector<double> frequency_hints;  ///< rad/s, lightly damped poles and zeros of G; grid lines are placed there
-  std::function<bool()> interrupted;    ///< asked once a cell; true ends the search (default: never)
+  /// Told which values of the equation are asked for next, so that they can be computed together (default: nobody is).
+  std::function<void(const std::vector<SearchPoint>& points, double accuracy)> prepare;
+  std::function<bool()> interrupted;  ///< asked once a cell; true ends the search (default: never)
 };
 
 /// A confirmed root of the loop condition.

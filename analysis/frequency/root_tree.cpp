@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "limcycle/analysis/frequency/root_polish.hpp"
 
@@ -226,9 +228,32 @@ void RootTree::process_border(const Cell& cell, const CellSamples& values) {
   add_near_miss(cell, values);
 }
 
+// Tells what all cells that wait will ask for first.
+void RootTree::prepare() const {
+  std::set<std::pair<std::int64_t, std::int64_t>> nodes;
+  for (const Cell& cell : queue_)
+    for (std::int64_t a = 0; a < 3; ++a)
+      for (std::int64_t b = 0; b < 3; ++b) {
+        const std::int64_t i = cell.place.i + a * (cell.place.width / 2),
+                           j = cell.place.j + b * (cell.place.height / 2);
+        if (!lattice_.is_known(i, j)) nodes.emplace(i, j);
+      }
+  std::vector<SearchPoint> points;
+  points.reserve(nodes.size());
+  for (const auto& [i, j] : nodes)
+    points.push_back({lattice_.amplitude(lattice_.p(i)), lattice_.frequency(lattice_.q(j))});
+  options_.prepare(points, lattice_.accuracies().front());
+}
+
 void RootTree::search() {
+  std::size_t prepared = 0;  // of the cells that wait
   while (!queue_.empty()) {
     if (options_.interrupted && options_.interrupted()) throw RootSearchInterrupted{};
+    if (prepared == 0 && options_.prepare) {
+      prepare();
+      prepared = queue_.size();
+    }
+    if (prepared > 0) --prepared;
     const Cell cell = queue_.front();
     queue_.pop_front();
     process(cell);

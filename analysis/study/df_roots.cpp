@@ -71,6 +71,11 @@ class RootStudy {
       box.amplitude_max *= box.frequency_max;
       if (speed > box.amplitude_min && speed < box.amplitude_max) options.amplitude_hints = {speed};
     }
+    options.prepare = [&](std::vector<SearchPoint> points, double accuracy) {
+      for (SearchPoint& point : points)
+        if (speed > 0.0) point.amplitude /= point.frequency;
+      balance_.prepare(points, accuracy);
+    };
     auto found =
         find_roots([&](double A, double w, double accuracy) { return balance_(speed > 0.0 ? A / w : A, w, accuracy); },
                    box, options);

@@ -1,6 +1,7 @@
 #include "limcycle/analysis/study/loop_balance.hpp"
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -54,21 +55,50 @@ class LoopBalance::MainGain {
   explicit MainGain(const Element<double>& element) : element_(&element) {}
 
   DescribingFunction at(const DfPoint& point, double accuracy) {
-    const DfTable* table = nullptr;
     {
       const std::lock_guard lock(guard_);
-      auto& made = by_accuracy_[accuracy];
-      if (!made) made = std::make_unique<DfTable>(*element_, std::vector<DfPoint>{}, first_harmonic(accuracy));
-      table = made.get();
+      if (accuracy == prepared_accuracy_)
+        if (const auto known = prepared_.find({point.amplitude, point.frequency, point.bias}); known != prepared_.end())
+          return known->second;
     }
-    return table->at(point);
+    return table(accuracy).at(point);
+  }
+
+  /// Forgets what was prepared before.
+  void prepare(const std::vector<DfPoint>& points, double accuracy) {
+    auto results = table(accuracy).some_of(points);
+    const std::lock_guard lock(guard_);
+    prepared_.clear();
+    prepared_accuracy_ = accuracy;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!results[i].method.empty())
+        prepared_.emplace(Place{points[i].amplitude, points[i].frequency, points[i].bias}, std::move(results[i]));
   }
 
  private:
+  using Place = std::array<double, 3>;
+
+  const DfTable& table(double accuracy) {
+    const std::lock_guard lock(guard_);
+    auto& made = by_accuracy_[accuracy];
+    if (!made) made = std::make_unique<DfTable>(*element_, std::vector<DfPoint>{}, first_harmonic(accuracy));
+    return *made;
+  }
+
   const Element<double>* element_;
   std::mutex guard_;
   std::map<double, std::unique_ptr<DfTable>> by_accuracy_;
+  double prepared_accuracy_ = 0.0;
+  std::map<Place, DescribingFunction> prepared_;
 };
+
+void LoopBalance::prepare(const std::vector<SearchPoint>& points, double accuracy) const {
+  if (!is_friction(*loop_, main_)) return;  // means of the inputs of other elements depend on the point
+  std::vector<DfPoint> at;
+  at.reserve(points.size());
+  for (const SearchPoint& point : points) at.push_back({point.amplitude, point.frequency, mean_velocity_});
+  main_gain_->prepare(at, accuracy);
+}
 
 /// Sorts all elements but the last into those beside it and the rest.
 LoopBalance::Sorted LoopBalance::sort(const Loop& loop) {

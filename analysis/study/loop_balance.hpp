@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "limcycle/analysis/cycle.hpp"
 #include "limcycle/analysis/frequency/root_search.hpp"
@@ -24,6 +25,8 @@ class LoopBalance {
 
   /// 1 + N(A,w) G(jw); NaN where N does not exist (no half-wave symmetric steady state in a symmetric loop).
   std::complex<double> operator()(double amplitude, double frequency, double accuracy) const;
+  /// Computes at once what operator() will be asked at these points with this accuracy. From one thread at a time.
+  void prepare(const std::vector<SearchPoint>& points, double accuracy) const;
   /// N(A,w) of the main element.
   std::complex<double> gain(double amplitude, double frequency, double accuracy) const;
   /// Amplitude of y's first harmonic when the main element's input has this amplitude.
