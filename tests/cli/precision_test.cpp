@@ -87,9 +87,11 @@ TEST_CASE("precision: Ctrl-C ends it soon and keeps what was computed") {
                               quoted(scratch.file("out")) + " 2> " + quoted(scratch.file("err"));
   const int status = std::system(command.c_str());
   REQUIRE(WIFEXITED(status));
-  CHECK(WEXITSTATUS(status) == 0);
+  const auto document = Json::parse(scratch.get("r.json"));
+  // On a busy machine nothing may have been computed in a second.
+  CHECK(WEXITSTATUS(status) == (document["points"].empty() ? 3 : 0));
   CHECK_THAT(scratch.get("err"), Contains("interrupted"));
-  CHECK(Json::parse(scratch.get("r.json"))["status"] == "interrupted");
+  CHECK(document["status"] == "interrupted");
 }
 
 TEST_CASE("precision: where steppers fail") {
