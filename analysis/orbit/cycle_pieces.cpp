@@ -22,10 +22,10 @@ class Cutter {
         field_(loop),
         flow_(field_),
         exact_(choose_stepper(loop, options.rtol) == StepperKind::exact),
-        march_(field_, exact_ ? StepperKind::exact : StepperKind::rodas5p, loop_weights(loop, options.rtol)),
+        typical_(options.typical ? *options.typical : typical_sizes(loop)),
+        march_(field_, exact_ ? StepperKind::exact : StepperKind::rodas5p, loop_weights(loop, options.rtol, typical_)),
         options_(options) {
-    const State typical = typical_sizes(loop);
-    result_.sizes = 1e-6 * Eigen::Map<const VectorXd>(typical.data(), std::ssize(typical));
+    result_.sizes = 1e-6 * Eigen::Map<const VectorXd>(typical_.data(), std::ssize(typical_));
   }
 
   CyclePieces operator()(const LoopState& start, double period) {
@@ -179,6 +179,7 @@ class Cutter {
   LoopField field_;
   AffineFlow flow_;
   bool exact_;
+  State typical_;
   March march_;
   const CutOptions& options_;
   CyclePieces result_;

@@ -43,6 +43,7 @@ struct CutOptions {
   double rtol = 1e-10;
   long max_steps = 200000;
   std::function<bool()> stop;
+  std::optional<State> typical = {};  ///< sizes of the states, if they are not to be found from the linear part
 };
 
 /// Marches from `start` for the time `period` and finds what small deviations do: variational equations along every
