@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/orbit/cycle_pieces.hpp"
 #include "limcycle/analysis/orbit/multiplier_derivatives.hpp"
+#include "limcycle/analysis/orbit/output_derivatives.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -94,7 +95,8 @@ CycleDerivatives without(Status status, std::string why) { return {status, std::
 
 CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& rates, double rtol,
                         const CycleDerivativeOptions& options) {
-  const CyclePieces cut = cut_cycle(loop, cycle.start, cycle.period, rates, {rtol, options.max_steps, options.stop});
+  const CyclePieces cut =
+      cut_cycle(loop, cycle.start, cycle.period, rates, {rtol, options.max_steps, options.stop, true, {}});
   if (cut.status == Status::stalled)
     return without(cut.status, "a switch is grazed, or comes in another order beside the cycle");
   if (cut.status != Status::converged) return without(cut.status, "the cycle could not be followed");
@@ -106,11 +108,14 @@ CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& ra
   const RowVectorXd by_start = 0.5 * (carried.high.by_start - carried.low.by_start);
   const RowVectorXd amplitude =
       0.5 * (carried.high.by_parameters - carried.low.by_parameters) + by_start * solution.topRows(n);
+  const OutputDerivatives output = output_derivatives(loop, cut, solution);
   CycleDerivatives result;
   for (Index k = 0; k < rates.count(); ++k) {
     CycleDerivative& one = result.by.emplace_back();
     one.period = solution(n, k);
     one.amplitude = amplitude(k);
+    one.first_harmonic = output.by_first_harmonic(k);
+    one.offset = output.by_mean(k);
   }
   if (!options.multipliers) return result;
   const auto moved = multiplier_derivatives(cut, cycle.multipliers, solution, rates);
@@ -132,6 +137,8 @@ void compare(const CycleDerivatives& rough, const Cycle& cycle, const ParameterR
     };
     one.period_error = error(one.period, other.period, cycle.period);
     one.amplitude_error = error(one.amplitude, other.amplitude, cycle.amplitude);
+    one.first_harmonic_error = error(one.first_harmonic, other.first_harmonic, cycle.first_harmonic);
+    one.offset_error = error(one.offset, other.offset, cycle.amplitude + std::abs(cycle.offset));
     for (std::size_t m = 0; m < one.multipliers.size(); ++m) {
       auto& value = one.multipliers[m];
       const auto& rough_value = other.multipliers[m];

@@ -29,6 +29,12 @@ struct CyclePiece {
     Eigen::MatrixXd saltation, jump;  ///< what it does to deviations, and what it adds by parameters
   };
   std::optional<Switch> event;
+  /// y at a node of a quadrature over the piece, and its deviation given that of the start of the piece.
+  struct Reading {
+    double t, weight, y;
+    Eigen::RowVectorXd by_start, by_parameters;
+  };
+  std::vector<Reading> readings;  ///< if CutOptions ask for them
 };
 
 /// One period of a cycle in pieces.
@@ -43,6 +49,7 @@ struct CutOptions {
   double rtol = 1e-10;
   long max_steps = 200000;
   std::function<bool()> stop;
+  bool read_output = false;
   std::optional<State> typical = {};  ///< sizes of the states, if they are not to be found from the linear part
 };
 
