@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/orbit/cycle_equations.hpp"
 #include "limcycle/analysis/orbit/cycle_pieces.hpp"
 #include "limcycle/analysis/orbit/multiplier_derivatives.hpp"
 #include "limcycle/analysis/orbit/output_derivatives.hpp"
@@ -69,26 +70,14 @@ Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& 
 /// dx0/dp, with dT/dp in the last row: a column for each parameter; not finite where there is none (a fold).
 MatrixXd solve_cycle(const CyclePieces& cut, const Carried& carried) {
   const Index n = cut.sizes.size();
-  const VectorXd f = as_column(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes), along = f / f.norm();
-  MatrixXd matrix(n + 1, n + 1);
-  matrix.topLeftCorner(n, n) = MatrixXd::Identity(n, n);
-  matrix.topLeftCorner(n, n) -= cut.sizes.cwiseInverse().asDiagonal() * carried.whole * cut.sizes.asDiagonal();
-  matrix.topRightCorner(n, 1) = -along;  // the period in units of 1/|f|
-  matrix.bottomLeftCorner(1, n) = along.transpose();
-  matrix(n, n) = 0.0;
+  const MatrixXd matrix = cycle_matrix(cut, carried.whole);
   MatrixXd right = MatrixXd::Zero(n + 1, carried.columns.cols());
   right.topRows(n) = cut.sizes.cwiseInverse().asDiagonal() * carried.columns;
   MatrixXd solution = solve_columns_fully_pivoted(matrix, right);
   if (!((matrix * solution - right).norm() <= 1e-6 * right.norm())) solution.setConstant(infinite);
   solution.topRows(n) = (cut.sizes.asDiagonal() * solution.topRows(n)).eval();
-  solution.row(n) /= f.norm();
+  solution.row(n) /= as_column(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes).norm();
   return solution;
-}
-
-/// Does the march come back to its start, in the modes of the start?
-bool closes(const CyclePieces& cut, const LoopState& start) {
-  if (cut.last.modes != start.modes) return false;
-  return (as_column(cut.last.x) - as_column(start.x)).cwiseQuotient(cut.sizes).cwiseAbs().maxCoeff() < 1e-4;
 }
 
 CycleDerivatives without(Status status, std::string why) { return {status, std::move(why), {}}; }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "limcycle/analysis/orbit/cycle_equations.hpp"
 #include "limcycle/analysis/orbit/cycle_pieces.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
@@ -115,21 +116,12 @@ class DrivenPeriod {
  private:
   struct Passed {
     CyclePieces cut;
-    MatrixXd whole, columns;
+    PeriodMap map;
   };
   Passed pass(double rtol, ParameterRates& rates) {
     cut_.rtol = rtol;
-    Passed passed{cut_cycle(loop_, start_, length(), rates, cut_), {}, {}};
-    const Index n = of_oscillator + own();
-    passed.whole = MatrixXd::Identity(n, n);
-    passed.columns = MatrixXd::Zero(n, rates.count());
-    for (const CyclePiece& piece : passed.cut.pieces) {
-      passed.whole = (piece.factor * passed.whole).eval();
-      passed.columns = (piece.factor * passed.columns + piece.columns).eval();
-      if (!piece.event) continue;
-      passed.whole = (piece.event->saltation * passed.whole).eval();
-      passed.columns = (piece.event->saltation * passed.columns + piece.event->jump).eval();
-    }
+    Passed passed{cut_cycle(loop_, start_, length(), rates, cut_), {}};
+    passed.map = period_map(passed.cut);
     return passed;
   }
 
@@ -151,7 +143,7 @@ class DrivenPeriod {
   }
   MatrixXd loop_matrix(const Passed& passed) const {
     return MatrixXd::Identity(own(), own()) -
-           MatrixXd(mirrored().asDiagonal() * passed.whole.bottomRightCorner(own(), own()));
+           MatrixXd(mirrored().asDiagonal() * passed.map.whole.bottomRightCorner(own(), own()));
   }
   /// (I - P_z)^-1 in the sizes of the states; not finite where P_z has an eigenvalue 1.
   MatrixXd close(const Passed& passed, const MatrixXd& right) const {
@@ -209,14 +201,14 @@ std::optional<std::string> DrivenPeriod::derive(double rtol, ParameterRates& rat
   const Passed passed = pass(rtol, rates);
   if (passed.cut.status != Status::converged) return sentence(passed.cut.status);
   if (modes_after(passed) != start_.modes) return "the motion does not come back to its modes";
-  MatrixXd columns = passed.columns;
+  MatrixXd columns = passed.map.columns;
   // The period ends earlier at a higher frequency.
   columns.col(by_frequency) -= vector_of(passed.cut.pieces.back().step.dx1) * (length() / by_.frequency);
   MatrixXd q = columns.middleRows(2, 2);
   if (own() > 0) {
     const MatrixXd z = close(passed, mirrored().asDiagonal() * columns.bottomRows(own()));
     if (!z.allFinite()) return "the periodic state is not unique: the law keeps something of what was before";
-    q += passed.whole.block(2, of_oscillator, 2, own()) * z;
+    q += passed.map.whole.block(2, of_oscillator, 2, own()) * z;
   }
   const double w = by_.frequency, A = by_.amplitude;
   const Gain factor = std::polar((half_ ? -2.0 : 1.0) * w / (std::numbers::pi * A), -start_phase);
