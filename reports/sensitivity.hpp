@@ -17,7 +17,8 @@ std::string sensitivity_text(const std::string& title, const SensitivityReport& 
 /// JSON document of `sensitivity`.
 std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report);
 
-/// One row a number, told apart by the first column `kind`: local, one-at-a-time, morris, sobol, interaction.
+/// One row a number, told apart by the first column `kind`: local, predicted, threshold, one-at-a-time, morris, sobol,
+/// interaction.
 std::string sensitivity_csv(const SensitivityReport& report);
 
 std::string sensitivity_page(const SensitivityReport& report, const Provenance& provenance,
@@ -27,12 +28,23 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
 std::vector<std::string> sensitivity_notes(const SensitivityReport& report);
 
 Table derivative_table(const SensitivityReport& report, const Units& units);
+/// First harmonic and offset.
+Table harmonic_table(const SensitivityReport& report, const Units& units);
+/// Gain, amplitude and frequency of an oscillation that the describing function predicts.
+Table predicted_table(const PredictedOscillation& predicted, const Units& units);
+Table threshold_table(const ThresholdSensitivity& threshold);
+/// One sentence: where, and what happens there.
+std::string threshold_sentence(const ThresholdSensitivity& threshold);
+/// One sentence: amplitude, frequency and gain.
+std::string predicted_sentence(const PredictedOscillation& predicted, const Units& units);
 Table change_table(const SensitivityReport& report, const Units& units);
 Table morris_table(const SensitivityReport& report, const OutputSensitivity& output);
 Table sobol_table(const SensitivityReport& report, const OutputSensitivity& output);
 
 /// Elasticities of amplitude and period, the largest on top.
 std::string tornado_picture(const SensitivityReport& report);
+/// Elasticities of a threshold, the largest on top.
+std::string threshold_picture(const ThresholdSensitivity& threshold);
 /// First and total indices of an output with their intervals, and how they settled with the number of samples.
 std::string indices_picture(const SensitivityReport& report, const OutputSensitivity& output);
 /// The fair sample: amplitude, or hunting or not, over each parameter.

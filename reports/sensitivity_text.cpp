@@ -144,6 +144,20 @@ std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
   std::vector<std::string> notes = report.notes;
   for (const auto& one : report.local)
     if (!one.why.empty()) notes.push_back("no derivative by " + name_of(one.path) + ": " + one.why);
+  for (const auto& threshold : report.thresholds) {
+    std::string why;
+    bool same = true;  // a reason that all share is told once
+    for (const auto& one : threshold.numbers) {
+      if (why.empty()) why = one.why;
+      same = same && one.why == why;
+    }
+    if (same && !why.empty())
+      notes.push_back("no derivatives of the threshold of " + name_of(threshold.path) + ": " + why);
+    for (const auto& one : threshold.numbers)
+      if (!same && !one.why.empty())
+        notes.push_back("no derivative of the threshold of " + name_of(threshold.path) + " by " + name_of(one.path) +
+                        ": " + one.why);
+  }
   return notes;
 }
 
@@ -151,6 +165,16 @@ std::string sensitivity_text(const std::string& title, const SensitivityReport& 
   std::string out = title + "\n\n" + wrapped(sensitivity_answer(report));
   if (report.cycle && !report.local.empty())
     out += "\nDerivatives of the cycle (exact, at the values of the case)\n" + derivative_table(report, units).text();
+  if (report.cycle && !report.local.empty())
+    out += "\nFirst harmonic and offset of the cycle\n" + harmonic_table(report, units).text();
+  for (const auto& predicted : report.predicted) {
+    out += "\nWhat the describing function predicts\n" + wrapped(predicted_sentence(predicted, units));
+    if (const Table table = predicted_table(predicted, units); !table.rows.empty()) out += table.text();
+  }
+  for (const auto& threshold : report.thresholds) {
+    out += "\nThreshold\n" + wrapped(threshold_sentence(threshold));
+    if (const Table table = threshold_table(threshold); !table.rows.empty()) out += table.text();
+  }
   if (!report.one_at_a_time.empty()) out += "\nOne at a time\n" + change_table(report, units).text();
   if (report.global)
     for (const auto& output : report.global->outputs) {
