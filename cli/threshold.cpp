@@ -40,7 +40,7 @@ ThresholdSensitivity threshold_of(const Case& from, const Loop& loop, const Case
   options.predict = from.predict;
   options.predict.methods = {false, false, false};
   options.predict.nyquist = false;
-  options.predict.stop = interrupted;
+  options.accuracy = 1e-9;  // derivatives need the fold itself  options.predict.stop = interrupted;
   const LoopFamily family = [&](double p) { return loop_with(from, number.path, p); };
   const auto found = margin(
       loop, {{number.path, number.unit, number.value, number.path.starts_with("loop.friction."), family}}, options);

@@ -30,8 +30,12 @@ std::vector<std::string> sensitivity_notes(const SensitivityReport& report);
 Table derivative_table(const SensitivityReport& report, const Units& units);
 /// First harmonic and offset.
 Table harmonic_table(const SensitivityReport& report, const Units& units);
-/// Gain, amplitude and frequency of an oscillation that the describing function predicts.
+/// Amplitude and frequency of an oscillation that the describing function predicts.
 Table predicted_table(const PredictedOscillation& predicted, const Units& units);
+/// The gain there, with amplitude and frequency standing still.
+Table gain_table(const PredictedOscillation& predicted, const Units& units);
+/// "What the describing function predicts", with its number if there are several.
+std::string predicted_heading(const SensitivityReport& report, std::size_t index);
 Table threshold_table(const ThresholdSensitivity& threshold);
 /// One sentence: where, and what happens there.
 std::string threshold_sentence(const ThresholdSensitivity& threshold);

@@ -38,10 +38,14 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
     body += html_table(derivative_table(report, units), "Exact derivatives of amplitude and period");
     body += html_table(harmonic_table(report, units), "Exact derivatives of first harmonic and offset");
   }
-  for (const auto& predicted : report.predicted) {
-    body += "<h2>What the describing function predicts</h2>\n" + html_tag("p", predicted_sentence(predicted, units));
+  for (std::size_t k = 0; k < report.predicted.size(); ++k) {
+    const auto& predicted = report.predicted[k];
+    body += "<h2>" + html_escaped(predicted_heading(report, k)) + "</h2>\n" +
+            html_tag("p", predicted_sentence(predicted, units));
     if (const Table table = predicted_table(predicted, units); !table.rows.empty())
-      body += html_table(table, "Exact derivatives of the describing function and of the predicted oscillation");
+      body += html_table(table, "Exact derivatives of the predicted oscillation");
+    if (const Table table = gain_table(predicted, units); !table.rows.empty())
+      body += html_table(table, "Exact derivatives of the describing function, at this amplitude and frequency");
   }
   for (const auto& threshold : report.thresholds) {
     body += "<h2>" + html_escaped("Threshold of " + threshold.path) + "</h2>\n" +

@@ -55,7 +55,6 @@ std::string predicted_sentence(const PredictedOscillation& predicted, const Unit
 
 Table predicted_table(const PredictedOscillation& predicted, const Units& units) {
   Table table{{{"number", "", Align::left},
-               {"dN (at A and w)", "its unit"},
                {"d 1st harm.", units.y + " / unit"},
                {"d frequency", "rad/s / unit"},
                {"1st harm.", "% per %"},
@@ -65,13 +64,29 @@ Table predicted_table(const PredictedOscillation& predicted, const Units& units)
   for (const auto& one : predicted.numbers) {
     if (!one.why.empty()) continue;
     const PredictionDerivative& by = one.by;
-    table.rows.push_back({without_loop(one.path), complex_text(by.gain.gain, by.gain.error),
-                          with_absolute_error(by.amplitude, by.amplitude_error),
+    table.rows.push_back({without_loop(one.path), with_absolute_error(by.amplitude, by.amplitude_error),
                           with_absolute_error(by.frequency, by.frequency_error),
                           per_cent(by.amplitude, by.amplitude_error, one.value, predicted.found.amplitude),
                           per_cent(by.frequency, by.frequency_error, one.value, predicted.found.frequency)});
   }
   return table;
+}
+
+Table gain_table(const PredictedOscillation& predicted, const Units& units) {
+  const std::string unit = units.force + (units.input.empty() ? "" : "/" + units.input) + " / unit";
+  Table table{{{"number", "", Align::left}, {"d Re N", unit}, {"d Im N", unit}}, {}};
+  if (predicted.found.status != Status::converged) return table;
+  for (const auto& one : predicted.numbers)
+    if (one.why.empty() && std::abs(one.by.gain.gain) > one.by.gain.error)
+      table.rows.push_back({without_loop(one.path), with_absolute_error(one.by.gain.gain.real(), one.by.gain.error),
+                            with_absolute_error(one.by.gain.gain.imag(), one.by.gain.error)});
+  return table;
+}
+
+std::string predicted_heading(const SensitivityReport& report, std::size_t index) {
+  const std::string heading = "What the describing function predicts";
+  return report.predicted.size() < 2 ? heading
+                                     : fmt::format("{}, {} of {}", heading, index + 1, report.predicted.size());
 }
 
 std::string threshold_sentence(const ThresholdSensitivity& threshold) {

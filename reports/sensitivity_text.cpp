@@ -145,18 +145,19 @@ std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
   for (const auto& one : report.local)
     if (!one.why.empty()) notes.push_back("no derivative by " + name_of(one.path) + ": " + one.why);
   for (const auto& threshold : report.thresholds) {
-    std::string why;
-    bool same = true;  // a reason that all share is told once
-    for (const auto& one : threshold.numbers) {
-      if (why.empty()) why = one.why;
-      same = same && one.why == why;
+    const std::string what = "the threshold of " + name_of(threshold.path);
+    const auto same = [&](const ThresholdNumber& one) { return one.why == threshold.numbers.front().why; };
+    if (threshold.numbers.empty()) continue;
+    if (std::ranges::all_of(threshold.numbers, same)) {  // a reason that all share is told once
+      if (!threshold.numbers.front().why.empty())
+        notes.push_back("no derivatives of " + what + ": " + threshold.numbers.front().why);
+      continue;
     }
-    if (same && !why.empty())
-      notes.push_back("no derivatives of the threshold of " + name_of(threshold.path) + ": " + why);
-    for (const auto& one : threshold.numbers)
-      if (!same && !one.why.empty())
-        notes.push_back("no derivative of the threshold of " + name_of(threshold.path) + " by " + name_of(one.path) +
-                        ": " + one.why);
+    for (const auto& one : threshold.numbers) {
+      const auto told = [&](const LocalSensitivity& other) { return other.path == one.path && other.why == one.why; };
+      if (!one.why.empty() && std::ranges::none_of(report.local, told))
+        notes.push_back("no derivative of " + what + " by " + name_of(one.path) + ": " + one.why);
+    }
   }
   return notes;
 }
@@ -167,9 +168,12 @@ std::string sensitivity_text(const std::string& title, const SensitivityReport& 
     out += "\nDerivatives of the cycle (exact, at the values of the case)\n" + derivative_table(report, units).text();
   if (report.cycle && !report.local.empty())
     out += "\nFirst harmonic and offset of the cycle\n" + harmonic_table(report, units).text();
-  for (const auto& predicted : report.predicted) {
-    out += "\nWhat the describing function predicts\n" + wrapped(predicted_sentence(predicted, units));
+  for (std::size_t k = 0; k < report.predicted.size(); ++k) {
+    const auto& predicted = report.predicted[k];
+    out += "\n" + predicted_heading(report, k) + "\n" + wrapped(predicted_sentence(predicted, units));
     if (const Table table = predicted_table(predicted, units); !table.rows.empty()) out += table.text();
+    if (const Table table = gain_table(predicted, units); !table.rows.empty())
+      out += "Its gain N, at this amplitude and frequency\n" + table.text();
   }
   for (const auto& threshold : report.thresholds) {
     out += "\nThreshold\n" + wrapped(threshold_sentence(threshold));
