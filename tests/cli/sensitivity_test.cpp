@@ -109,7 +109,8 @@ TEST_CASE("sensitivity: harmonics, predictions and thresholds") {
 
   REQUIRE(document["predicted"].size() == 2);
   CHECK(document["predicted"][0]["gain"][0].get<double>() == Approx(8.0).epsilon(1e-6));
-  const json& by_level = document["predicted"][0]["parameters"][0];
+  const json by_level = parameter(document["predicted"][0], "loop.element.level");
+  REQUIRE_FALSE(by_level.is_null());
   CHECK(by_level["derivative"]["gain"][0].get<double>() == Approx(8.0).epsilon(1e-6));
 
   REQUIRE(document["thresholds"].size() == 2);
