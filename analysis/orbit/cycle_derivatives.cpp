@@ -64,6 +64,20 @@ Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& 
     carried.whole = (piece.event->saltation * carried.whole).eval();
     carried.columns = (piece.event->saltation * carried.columns + piece.event->jump).eval();
   }
+  if (cut.mirror) {  // the extremes of the other half are those of this one, reflected
+    const auto& [S, centre, moved] = *cut.mirror;
+    const double middle = loop.C_y.dot(centre.head(linear));
+    const State at(centre.data(), centre.data() + n);
+    const RowVectorXd middle_moves = loop.C_y * moved.topRows(linear) + rates.output(at);
+    const bool upper = carried.high.y - middle > middle - carried.low.y;
+    const Extreme& here = upper ? carried.high : carried.low;
+    Extreme& there = upper ? carried.low : carried.high;
+    there = {2.0 * middle - here.y, -here.by_start, 2.0 * middle_moves - here.by_parameters};
+  }
+  PeriodMap map{std::move(carried.whole), std::move(carried.columns)};
+  reflect(cut, map);
+  carried.whole = std::move(map.whole);
+  carried.columns = std::move(map.columns);
   return carried;
 }
 
@@ -82,10 +96,9 @@ MatrixXd solve_cycle(const CyclePieces& cut, const Carried& carried) {
 
 CycleDerivatives without(Status status, std::string why) { return {status, std::move(why), {}}; }
 
-CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& rates, double rtol,
-                        const CycleDerivativeOptions& options) {
-  const CyclePieces cut =
-      cut_cycle(loop, cycle.start, cycle.period, rates, {rtol, options.max_steps, options.stop, true, {}});
+CycleDerivatives derive(const Loop& loop, const Cycle& cycle, const std::optional<CycleMirror>& mirror,
+                        ParameterRates& rates, double rtol, const CycleDerivativeOptions& options) {
+  const CyclePieces cut = cut_period(loop, cycle, mirror, rates, {rtol, options.max_steps, options.stop, true, {}});
   if (cut.status == Status::stalled)
     return without(cut.status, "a switch is grazed, or comes in another order beside the cycle");
   if (cut.status != Status::converged) return without(cut.status, "the cycle could not be followed");
@@ -97,11 +110,11 @@ CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& ra
   const RowVectorXd by_start = 0.5 * (carried.high.by_start - carried.low.by_start);
   const RowVectorXd amplitude =
       0.5 * (carried.high.by_parameters - carried.low.by_parameters) + by_start * solution.topRows(n);
-  const OutputDerivatives output = output_derivatives(loop, cut, solution);
+  const OutputDerivatives output = output_derivatives(loop, cut, rates, solution);
   CycleDerivatives result;
   for (Index k = 0; k < rates.count(); ++k) {
     CycleDerivative& one = result.by.emplace_back();
-    one.period = solution(n, k);
+    one.period = (mirror ? 2.0 : 1.0) * solution(n, k);
     one.amplitude = amplitude(k);
     one.first_harmonic = output.by_first_harmonic(k);
     one.offset = output.by_mean(k);
@@ -148,9 +161,10 @@ CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
   ParameterRates rates(loop, neighbours);
   if (cycle.remembered > 0)
     return without(Status::undefined, "the cycle keeps something of what was before: another history, another cycle");
-  CycleDerivatives result = derive(loop, cycle, rates, options.rtol, options);
+  const auto mirror = common_mirror(loop, cycle, neighbours);
+  CycleDerivatives result = derive(loop, cycle, mirror, rates, options.rtol, options);
   if (result.status != Status::converged) return result;
-  const CycleDerivatives rough = derive(loop, cycle, rates, looser * options.rtol, options);
+  const CycleDerivatives rough = derive(loop, cycle, mirror, rates, looser * options.rtol, options);
   if (rough.status != Status::converged) return rough;
   compare(rough, cycle, rates, result);
   return result;

@@ -1,5 +1,7 @@
 #include "limcycle/analysis/orbit/cycle_equations.hpp"
 
+#include "limcycle/analysis/orbit/return_map.hpp"
+
 namespace limcycle {
 
 using Eigen::Index;
@@ -16,7 +18,40 @@ PeriodMap period_map(const CyclePieces& cut) {
     map.whole = (piece.event->saltation * map.whole).eval();
     map.columns = (piece.event->saltation * map.columns + piece.event->jump).eval();
   }
+  reflect(cut, map);
   return map;
+}
+
+void reflect(const CyclePieces& cut, PeriodMap& map) {
+  if (!cut.mirror) return;
+  const auto& [S, centre, moved] = *cut.mirror;
+  map.whole = (S.asDiagonal() * map.whole).eval();
+  map.columns = (S.asDiagonal() * map.columns).eval();
+  map.columns += moved - MatrixXd(S.asDiagonal() * moved);
+}
+
+std::optional<CycleMirror> common_mirror(const Loop& loop, const Cycle& cycle,
+                                         std::span<const ParameterNeighbours> neighbours) {
+  const auto own = symmetry(loop);
+  if (!cycle.half_wave_symmetric || !own) return std::nullopt;
+  const Index n = std::ssize(cycle.start.x), linear = loop.states();
+  CycleMirror mirror{Reflection::signs(loop), VectorXd::Zero(n), MatrixXd::Zero(n, std::ssize(neighbours))};
+  mirror.centre.head(linear) = own->centre;
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    const auto low = symmetry(neighbours[k].low), high = symmetry(neighbours[k].high);
+    if (!low || !high || low->centre.size() != linear || high->centre.size() != linear) return std::nullopt;
+    mirror.moved.col(static_cast<Index>(k)).head(linear) = (high->centre - low->centre) / (2.0 * neighbours[k].step);
+  }
+  return mirror;
+}
+
+CyclePieces cut_period(const Loop& loop, const Cycle& cycle, const std::optional<CycleMirror>& mirror,
+                       ParameterRates& rates, const CutOptions& options) {
+  CyclePieces cut = cut_cycle(loop, cycle.start, mirror ? 0.5 * cycle.period : cycle.period, rates, options);
+  if (!mirror) return cut;
+  cut.mirror = mirror;
+  cut.last = Reflection{mirror->centre.head(loop.states())}.of(loop, cut.last);
+  return cut;
 }
 
 MatrixXd cycle_matrix(const CyclePieces& cut, const MatrixXd& whole) {

@@ -37,12 +37,20 @@ struct CyclePiece {
   std::vector<Reading> readings;  ///< if CutOptions ask for them
 };
 
-/// One period of a cycle in pieces.
+/// The reflection x -> c + S (x - c) under which a cycle is half-wave symmetric, S diagonal.
+struct CycleMirror {
+  Eigen::VectorXd signs;   ///< S
+  Eigen::VectorXd centre;  ///< c
+  Eigen::MatrixXd moved;   ///< dc/dp, a column for each parameter
+};
+
+/// One period of a cycle in pieces, or half of one.
 struct CyclePieces {
   Status status = Status::converged;
   std::vector<CyclePiece> pieces;
-  LoopState last;         ///< after the period
-  Eigen::VectorXd sizes;  ///< largest |state| met, at least 1e-6 of the typical one
+  std::optional<CycleMirror> mirror;  ///< half a period was gone over: reflecting its end gives the start
+  LoopState last;                     ///< after the period, or reflected after half of it
+  Eigen::VectorXd sizes;              ///< largest |state| met, at least 1e-6 of the typical one
 };
 
 struct CutOptions {

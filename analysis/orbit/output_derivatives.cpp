@@ -26,9 +26,15 @@ struct OutputIntegrals {
   RowVectorXcd by_harmonic;
 };
 
-OutputIntegrals integrate(const Loop& loop, const CyclePieces& cut, const MatrixXd& solution) {
+/// What y swings about, where that is known beforehand: its middle on a half-wave symmetric cycle.
+struct Middle {
+  double y = 0.0;
+  RowVectorXd moves;
+};
+
+OutputIntegrals integrate(const Loop& loop, const CyclePieces& cut, const MatrixXd& solution, double w,
+                          const Middle& middle) {
   const Index n = cut.sizes.size(), count = solution.cols();
-  const double w = 2.0 * std::numbers::pi / cut.pieces.back().step.t1;
   MatrixXd deviation = solution.topRows(n);
   OutputIntegrals sum;
   sum.by_mean = RowVectorXd::Zero(count);
@@ -37,10 +43,11 @@ OutputIntegrals integrate(const Loop& loop, const CyclePieces& cut, const Matrix
     const CyclePiece& piece = cut.pieces[i];
     for (const auto& reading : piece.readings) {
       const Turn turn = reading.weight * std::polar(1.0, -w * reading.t);
-      const RowVectorXd moved = reading.by_start * deviation + reading.by_parameters;
-      sum.mean += reading.weight * reading.y;
-      sum.harmonic += turn * reading.y;
-      sum.late += turn * (reading.t * reading.y);
+      const double y = reading.y - middle.y;
+      const RowVectorXd moved = reading.by_start * deviation + reading.by_parameters - middle.moves;
+      sum.mean += reading.weight * y;
+      sum.harmonic += turn * y;
+      sum.late += turn * (reading.t * y);
       sum.by_mean += reading.weight * moved;
       sum.by_harmonic += turn * moved.cast<Turn>();
     }
@@ -59,19 +66,31 @@ OutputIntegrals integrate(const Loop& loop, const CyclePieces& cut, const Matrix
 
 }  // namespace
 
-OutputDerivatives output_derivatives(const Loop& loop, const CyclePieces& cut, const MatrixXd& solution) {
-  const OutputIntegrals sum = integrate(loop, cut, solution);
-  const double T = cut.pieces.back().step.t1, y = read_y(loop, cut.last.x);
-  const RowVectorXd period = solution.bottomRows(1);
+OutputDerivatives output_derivatives(const Loop& loop, const CyclePieces& cut, const ParameterRates& rates,
+                                     const MatrixXd& solution) {
+  const double halves = cut.mirror ? 2.0 : 1.0, T = halves * cut.pieces.back().step.t1, w = 2.0 * std::numbers::pi / T;
+  const RowVectorXd period = halves * solution.bottomRows(1);
+  Middle middle{0.0, RowVectorXd::Zero(period.size())};
+  if (cut.mirror) {
+    const auto& centre = cut.mirror->centre;
+    const State at(centre.begin(), centre.end());
+    middle.y = read_y(loop, at);
+    middle.moves = loop.C_y * cut.mirror->moved.topRows(loop.states()) + rates.output(at);
+  }
+  const OutputIntegrals sum = integrate(loop, cut, solution, w, middle);
+  const double y = read_y(loop, cut.pieces.back().step.x1) - middle.y;
   OutputDerivatives result;
-  result.mean = sum.mean / T;
-  result.by_mean = (sum.by_mean + (y - result.mean) * period) / T;
-  const Turn harmonic = 2.0 / T * sum.harmonic;
+  result.mean = cut.mirror ? middle.y : sum.mean / T;
+  result.by_mean = cut.mirror ? middle.moves : RowVectorXd((sum.by_mean + (y - result.mean) * period) / T);
+  // Over the half period that is left out the integral of y less its middle is the same once more.
+  const Turn harmonic = 2.0 * halves / T * sum.harmonic;
   result.first_harmonic = std::abs(harmonic);
   result.by_first_harmonic = RowVectorXd::Zero(period.size());
   if (result.first_harmonic == 0.0) return result;
-  const Turn of_period = y + Turn(0.0, 2.0 * std::numbers::pi / (T * T)) * sum.late;
-  const RowVectorXcd moved = (2.0 / T) * sum.by_harmonic + ((2.0 * of_period - harmonic) / T) * period.cast<Turn>();
+  const Turn end = y * std::polar(1.0 / halves, -w * cut.pieces.back().step.t1);
+  const Turn of_period = halves * (end + Turn(0.0, w / T) * sum.late);
+  const RowVectorXcd moved =
+      (2.0 * halves / T) * sum.by_harmonic + ((2.0 * of_period - harmonic) / T) * period.cast<Turn>();
   result.by_first_harmonic = (std::conj(harmonic) / result.first_harmonic * moved).real();
   return result;
 }

@@ -16,7 +16,9 @@ struct OutputDerivatives {
 ///   dI/dp = int y' e^{-jwt} dt + y(T) dT/dp - j dw/dp int t y e^{-jwt} dt,   first harmonic |2 I/T|,
 /// and a switch that makes y jump adds the jump times how its moment moves. The integrals are those of the method that
 /// follows the deviations (Radau IIA of order 5), or of Boole's rule where the flow is exact. `solution`: dx0/dp, with
-/// dT/dp in the last row. Without a first harmonic its derivative is 0.
-OutputDerivatives output_derivatives(const Loop& loop, const CyclePieces& cut, const Eigen::MatrixXd& solution);
+/// that of the time gone over in the last row: with a mirror half a period, over which y is taken from its middle.
+/// Without a first harmonic its derivative is 0.
+OutputDerivatives output_derivatives(const Loop& loop, const CyclePieces& cut, const ParameterRates& rates,
+                                     const Eigen::MatrixXd& solution);
 
 }  // namespace limcycle
