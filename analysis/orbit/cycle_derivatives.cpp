@@ -42,6 +42,18 @@ struct Carried {
   Extreme low{infinite, {}, {}}, high{-infinite, {}, {}};
 };
 
+/// Over half a period: the extremes of the other half are those of this one, reflected.
+void reflect_extreme(const Loop& loop, const ParameterRates& rates, const CycleMirror& mirror, Carried& carried) {
+  const Index linear = loop.states();
+  const double middle = loop.C_y.dot(mirror.centre.head(linear));
+  const State at(mirror.centre.begin(), mirror.centre.end());
+  const RowVectorXd moves = loop.C_y * mirror.moved.topRows(linear) + rates.output(at);
+  const bool upper = carried.high.y - middle > middle - carried.low.y;
+  const Extreme& here = upper ? carried.high : carried.low;
+  Extreme& there = upper ? carried.low : carried.high;
+  there = {2.0 * middle - here.y, -here.by_start, 2.0 * moves - here.by_parameters};
+}
+
 Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& cut) {
   const Index n = cut.sizes.size(), linear = loop.states();
   Carried carried{MatrixXd::Identity(n, n), MatrixXd::Zero(n, rates.count())};
@@ -64,16 +76,7 @@ Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& 
     carried.whole = (piece.event->saltation * carried.whole).eval();
     carried.columns = (piece.event->saltation * carried.columns + piece.event->jump).eval();
   }
-  if (cut.mirror) {  // the extremes of the other half are those of this one, reflected
-    const auto& [S, centre, moved] = *cut.mirror;
-    const double middle = loop.C_y.dot(centre.head(linear));
-    const State at(centre.data(), centre.data() + n);
-    const RowVectorXd middle_moves = loop.C_y * moved.topRows(linear) + rates.output(at);
-    const bool upper = carried.high.y - middle > middle - carried.low.y;
-    const Extreme& here = upper ? carried.high : carried.low;
-    Extreme& there = upper ? carried.low : carried.high;
-    there = {2.0 * middle - here.y, -here.by_start, 2.0 * middle_moves - here.by_parameters};
-  }
+  if (cut.mirror) reflect_extreme(loop, rates, *cut.mirror, carried);
   PeriodMap map{std::move(carried.whole), std::move(carried.columns)};
   reflect(cut, map);
   carried.whole = std::move(map.whole);

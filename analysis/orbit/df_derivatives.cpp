@@ -19,15 +19,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Gain = std::complex<double>;
 
-constexpr double start_phase = 0.3704;  ///< off every round value at which an element might switch
-constexpr double looser_period = 30.0;  ///< the second integration
-constexpr double stated_share = 0.35;   ///< of the difference of the two, as for cycles (cycle_derivatives.cpp)
-constexpr double step_share = 1e-6;     ///< of amplitude and frequency
-constexpr Index of_oscillator = 4;      ///< s, c, q1, q2
+constexpr double start_phase = 0.3704;   ///< off every round value at which an element might switch
+constexpr double looser_period = 30.0;   ///< the second integration
+constexpr double stated_of_gain = 0.35;  ///< of the difference of the two, as for cycles (cycle_derivatives.cpp)
+constexpr double step_share = 1e-6;      ///< of amplitude and frequency
+constexpr Index of_oscillator = 4;       ///< s, c, q1, q2
 constexpr int most_periods = 60;
 enum Drive : Index { by_amplitude, by_frequency, by_bias, drive_count };
 
-VectorXd vector_of(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
+VectorXd driven_vector(const State& x) { return Eigen::Map<const VectorXd>(x.data(), std::ssize(x)); }
 
 /// What drives an element.
 struct Driven {
@@ -136,7 +136,7 @@ class DrivenPeriod {
     return half_ ? VectorXd(Eigen::Map<const VectorXd>(mirror_.data(), own())) : VectorXd::Ones(own());
   }
   VectorXd defect(const Passed& passed) const {
-    return mirrored().cwiseProduct(vector_of(passed.cut.last.x).tail(own())) - vector_of(start_.x).tail(own());
+    return mirrored().cwiseProduct(driven_vector(passed.cut.last.x).tail(own())) - driven_vector(start_.x).tail(own());
   }
   VectorXd own_sizes() const {
     return Eigen::Map<const VectorXd>(cut_.typical->data(), std::ssize(*cut_.typical)).tail(own());
@@ -177,9 +177,9 @@ std::optional<std::string> DrivenPeriod::settle(double rtol) {
   X(0) = std::sin(start_phase);
   X(1) = std::cos(start_phase);
   start_ = without_history(loop_, X);
-  ParameterRates none(loop_, {});
+  ParameterRates no_parameters(loop_, {});
   for (int i = 0; i < most_periods; ++i) {
-    const Passed passed = pass(i < 2 ? std::max(rtol, 1e-7) : rtol, none);
+    const Passed passed = pass(i < 2 ? std::max(rtol, 1e-7) : rtol, no_parameters);
     if (passed.cut.status != Status::converged) return sentence(passed.cut.status);
     const auto modes = modes_after(passed);
     const bool same = modes == start_.modes;
@@ -203,7 +203,7 @@ std::optional<std::string> DrivenPeriod::derive(double rtol, ParameterRates& rat
   if (modes_after(passed) != start_.modes) return "the motion does not come back to its modes";
   MatrixXd columns = passed.map.columns;
   // The period ends earlier at a higher frequency.
-  columns.col(by_frequency) -= vector_of(passed.cut.pieces.back().step.dx1) * (length() / by_.frequency);
+  columns.col(by_frequency) -= driven_vector(passed.cut.pieces.back().step.dx1) * (length() / by_.frequency);
   MatrixXd q = columns.middleRows(2, 2);
   if (own() > 0) {
     const MatrixXd z = close(passed, mirrored().asDiagonal() * columns.bottomRows(own()));
@@ -243,7 +243,7 @@ bool is_odd(const Element<double>& element) {
 }
 
 GainDerivative judged(Gain tight, Gain rough, Gain of, double step) {
-  return {tight, stated_share * std::abs(tight - rough) + 1e-9 * std::abs(tight) + 1e-14 * std::abs(of) / step};
+  return {tight, stated_of_gain * std::abs(tight - rough) + 1e-9 * std::abs(tight) + 1e-14 * std::abs(of) / step};
 }
 
 }  // namespace
@@ -276,7 +276,7 @@ DfDerivatives df_derivatives(const Element<double>& element, double amplitude, d
   if (options.stop && options.stop()) return none(Status::interrupted, "it was stopped");
   if (why) return none(why->starts_with("the periodic state") ? Status::undefined : Status::stalled, std::move(*why));
   result.gain = tight.gain;
-  result.gain_error = stated_share * std::abs(tight.gain - rough.gain) + 1e-12 * std::abs(tight.gain);
+  result.gain_error = stated_of_gain * std::abs(tight.gain - rough.gain) + 1e-12 * std::abs(tight.gain);
   for (std::size_t k = 0; k < tight.by.size(); ++k) {
     const GainDerivative one = judged(tight.by[k], rough.by[k], tight.gain, rates.step(static_cast<Index>(k)));
     if (!std::isfinite(std::abs(one.gain))) return none(Status::not_finite, "the derivative is not finite");

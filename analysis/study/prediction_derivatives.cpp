@@ -28,12 +28,12 @@ Responses responses(const Loop& loop, double w) {
   return {input, std::abs(y) / std::abs(input)};
 }
 
-struct Slopes {
+struct ResponseSlopes {
   Point input;
   double y_per_input;
 };
-Slopes by_frequency_at(const Loop& loop, double w) {
-  Slopes sum{0.0, 0.0};
+ResponseSlopes by_frequency_at(const Loop& loop, double w) {
+  ResponseSlopes sum{0.0, 0.0};
   const double h = apart * w;
   for (const auto& [steps, weight] : {std::pair(1.0, 45.0), {2.0, -9.0}, {3.0, 1.0}}) {
     const Responses above = responses(loop, w + steps * h), below = responses(loop, w - steps * h);
@@ -93,7 +93,7 @@ class RootMoves {
   double A_, w_;
   const DfDerivatives& df_;
   Responses here_;
-  Slopes slopes_;
+  ResponseSlopes slopes_;
   Matrix2d matrix_, inverse_;
   double matrix_error_ = 0.0;
 };
