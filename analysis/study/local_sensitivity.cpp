@@ -59,12 +59,45 @@ class Neighbourhood {
       }
   }
 
-  const std::vector<ParameterNeighbours>& pairs() const { return pairs_; }
+  /// What `derive` says of all pairs. Where it fails because a number that is 0 makes the motion switch otherwise as
+  /// soon as it is there (a dead zone), it is asked about the others without those, and about each of those alone.
+  template <class Derive>
+  auto derive_apart(Derive&& derive) const {
+    Told<std::decay_t<decltype(derive(pairs_))>> told{derive(pairs_), std::vector<std::string>(pairs_.size())};
+    if (told.found.status != Status::stalled) return told;
+    const auto ask = [&](const std::vector<std::size_t>& which) {
+      std::vector<ParameterNeighbours> some;
+      for (const std::size_t k : which) some.push_back(pairs_[k]);
+      return derive(some);
+    };
+    const auto put = [&](const auto& from, const std::vector<std::size_t>& which) {
+      for (std::size_t j = 0; j < which.size(); ++j)
+        if (from.status == Status::converged)
+          told.found.by[which[j]] = from.by[j];
+        else
+          told.failed[which[j]] = from.why;
+    };
+    std::vector<std::size_t> firm;
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+      if (pairs_[k].value != 0.0) firm.push_back(k);
+    auto without = ask(firm);
+    if (firm.size() == pairs_.size() || without.status != Status::converged) return told;
+    told.found = without;
+    told.found.by.assign(pairs_.size(), {});
+    put(without, firm);
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      if (pairs_[k].value != 0.0) continue;
+      std::vector<std::size_t> alone{k};
+      if (k + 1 < pairs_.size() && owners_[k + 1] == owners_[k]) alone.push_back(++k);
+      put(ask(alone), alone);
+    }
+    return told;
+  }
 
-  /// Hands out derivatives `by` of all pairs: take(i, derivative) for each number i, or leave(i, why). Of a loop that
-  /// moves smoothly those from two distances differ by as little as the distances are: agree(near, far).
-  template <class Derivatives>
-  void hand_out(const Derivatives& found, auto&& agree, auto&& take, auto&& leave) const {
+  /// Hands out what derive_apart says: take(i, derivative) for each number i, or leave(i, why). Of a loop that moves
+  /// smoothly derivatives from two distances differ by as little as the distances are: agree(near, far).
+  void hand_out(const auto& told, auto&& agree, auto&& take, auto&& leave) const {
+    const auto& found = told.found;
     for (std::size_t i = 0; i < why_.size(); ++i)
       if (!why_[i].empty()) leave(i, why_[i]);
     for (std::size_t k = 0; k < owners_.size(); ++k) {
@@ -73,6 +106,8 @@ class Neighbourhood {
       if (!why_[i].empty()) continue;
       if (found.status != Status::converged)
         leave(i, found.why.empty() ? std::string(to_string(found.status)) : found.why);
+      else if (!told.failed[k].empty())
+        leave(i, told.failed[k]);
       else if (twice && !agree(found.by[k], found.by[k + 1]))
         leave(i, "at 0 it stands for something absent, and the loop leaps where it comes in");
       else
@@ -82,6 +117,12 @@ class Neighbourhood {
   }
 
  private:
+  template <class Derivatives>
+  struct Told {
+    Derivatives found;
+    std::vector<std::string> failed;  ///< of a pair alone
+  };
+
   std::vector<std::string> why_;
   std::vector<ParameterNeighbours> pairs_;
   std::vector<std::size_t> owners_;
@@ -115,7 +156,8 @@ std::vector<LocalSensitivity> local_sensitivities(const Loop& loop, const Cycle&
   CycleDerivativeOptions options;
   options.stop = stop;
   around.hand_out(
-      cycle_derivatives(loop, cycle, around.pairs(), options),
+      around.derive_apart(
+          [&](std::span<const ParameterNeighbours> pairs) { return cycle_derivatives(loop, cycle, pairs, options); }),
       [](const CycleDerivative& near, const CycleDerivative& far) {
         return close(near.period, far.period, near.period_error + far.period_error) &&
                close(near.amplitude, far.amplitude, near.amplitude_error + far.amplitude_error);
@@ -140,14 +182,17 @@ std::vector<PredictedOscillation> predicted_sensitivities(const Loop& loop, cons
   options.stop = stop;
   std::vector<PredictedOscillation> all;
   for (const Root& root : roots) {
-    PredictedOscillation one{prediction_derivatives(loop, root.amplitude, root.frequency, around.pairs(), options), {}};
+    const auto told = around.derive_apart([&](std::span<const ParameterNeighbours> pairs) {
+      return prediction_derivatives(loop, root.amplitude, root.frequency, pairs, options);
+    });
+    PredictedOscillation one{told.found, {}};
     if (one.found.status == Status::undefined) {
       notes.push_back("derivatives of describing functions: " + one.found.why);
       return all;
     }
     for (const auto& number : numbers) one.numbers.push_back({number.path, number.unit, number.value, {}, {}});
     around.hand_out(
-        one.found,
+        told,
         [](const PredictionDerivative& near, const PredictionDerivative& far) {
           return close(near.amplitude, far.amplitude, near.amplitude_error + far.amplitude_error) &&
                  close(near.frequency, far.frequency, near.frequency_error + far.frequency_error);
@@ -179,7 +224,9 @@ std::vector<ThresholdNumber> threshold_sensitivities(const Loop& loop, const Mar
   CycleDerivativeOptions options;
   options.stop = stop;
   around.hand_out(
-      threshold_derivatives(loop, *side.cycle, *side.event, *pair, around.pairs(), options),
+      around.derive_apart([&](std::span<const ParameterNeighbours> pairs) {
+        return threshold_derivatives(loop, *side.cycle, *side.event, *pair, pairs, options);
+      }),
       [](const ThresholdDerivative& near, const ThresholdDerivative& far) {
         return close(near.value, far.value, near.error + far.error);
       },
