@@ -27,6 +27,9 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
 /// What a reader must know: notes of the study, and numbers without a derivative.
 std::vector<std::string> sensitivity_notes(const SensitivityReport& report);
 
+/// Per cent of a quantity for each per cent of a number; 0 where the derivative is all error.
+std::string per_cent(double derivative, double error, double value, double quantity);
+
 Table derivative_table(const SensitivityReport& report, const Units& units);
 /// First harmonic and offset.
 Table harmonic_table(const SensitivityReport& report, const Units& units);

@@ -37,7 +37,11 @@ Json local_json(const LocalSensitivity& one, const Cycle& cycle) {
             {"period", number(elasticity_of(one, one.period, cycle.period))},
             {"first_harmonic", number(elasticity_of(one, one.first_harmonic, cycle.first_harmonic))}}},
           {"error", number(one.error)},
-          {"errors", {{"first_harmonic", number(one.first_harmonic_error)}, {"offset", number(one.offset_error)}}},
+          {"errors",
+           {{"amplitude", number(one.amplitude_error)},
+            {"period", number(one.period_error)},
+            {"first_harmonic", number(one.first_harmonic_error)},
+            {"offset", number(one.offset_error)}}},
           {"why", one.why}};
 }
 

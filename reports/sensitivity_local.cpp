@@ -10,13 +10,6 @@ namespace {
 
 std::string without_loop(const std::string& path) { return path.starts_with("loop.") ? path.substr(5) : path; }
 
-/// Per cent of a quantity for each per cent of a number; 0 where that is all error.
-std::string per_cent(double derivative, double error, double value, double quantity) {
-  if (quantity == 0.0) return "-";
-  const double scale = value / quantity;
-  return std::abs(derivative) <= error ? "0" : with_digits(derivative * scale, 4);
-}
-
 std::string complex_text(std::complex<double> z, double error) {
   const double imaginary = std::abs(z.imag()) <= error ? 0.0 : z.imag();
   return fmt::format("{} {} {}j", with_absolute_error(z.real(), error), imaginary < 0.0 ? "-" : "+",
@@ -24,6 +17,12 @@ std::string complex_text(std::complex<double> z, double error) {
 }
 
 }  // namespace
+
+std::string per_cent(double derivative, double error, double value, double quantity) {
+  if (quantity == 0.0) return "-";
+  const double scale = value / quantity;
+  return std::abs(derivative) <= error ? "0" : with_digits(derivative * scale, 4);
+}
 
 Table harmonic_table(const SensitivityReport& report, const Units& units) {
   Table table{{{"number", "", Align::left},

@@ -87,10 +87,11 @@ Table derivative_table(const SensitivityReport& report, const Units& units) {
   if (!report.cycle) return table;
   for (const auto& one : report.local) {
     if (!one.why.empty()) continue;
-    table.rows.push_back({name_of(one.path), with_digits(one.value, 6), with_error(one.amplitude, one.error),
-                          with_error(one.period, one.error),
-                          with_digits(per_cent_a_per_cent(one, one.amplitude, report.cycle->amplitude), 4),
-                          with_digits(per_cent_a_per_cent(one, one.period, report.cycle->period), 4)});
+    table.rows.push_back({name_of(one.path), with_digits(one.value, 6),
+                          with_absolute_error(one.amplitude, one.amplitude_error),
+                          with_absolute_error(one.period, one.period_error),
+                          per_cent(one.amplitude, one.amplitude_error, one.value, report.cycle->amplitude),
+                          per_cent(one.period, one.period_error, one.value, report.cycle->period)});
   }
   return table;
 }

@@ -141,6 +141,8 @@ void take(LocalSensitivity& into, const CycleDerivative& by) {
   into.first_harmonic_error = by.first_harmonic_error;
   into.offset = by.offset;
   into.offset_error = by.offset_error;
+  into.amplitude_error = by.amplitude_error;
+  into.period_error = by.period_error;
 }
 
 }  // namespace
@@ -151,7 +153,8 @@ std::vector<LocalSensitivity> local_sensitivities(const Loop& loop, const Cycle&
   std::vector<LocalSensitivity> all;
   constexpr double none = unknown_derivative;
   for (const auto& number : numbers)
-    all.push_back({number.path, number.unit, number.value, none, none, {}, none, {}, none, none, none, none});
+    all.push_back(
+        {number.path, number.unit, number.value, none, none, {}, none, {}, none, none, none, none, none, none});
   const Neighbourhood around(loop, numbers);
   CycleDerivativeOptions options;
   options.stop = stop;

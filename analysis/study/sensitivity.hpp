@@ -27,6 +27,7 @@ struct LocalSensitivity {
   std::string why;                            ///< why they are unknown; else empty
   double first_harmonic = 0.0, offset = 0.0;  ///< derivatives; NaN if unknown
   double first_harmonic_error = 0.0, offset_error = 0.0;  ///< absolute
+  double amplitude_error = 0.0, period_error = 0.0;       ///< absolute; `error` is the larger of the two relative ones
 };
 
 /// How an oscillation that the describing function predicts moves with one number of the case.

@@ -16,9 +16,10 @@ SensitivityReport sample_sensitivity() {
   cycle.first_harmonic = 2.5;
   cycle.period = 4.0;
   report.cycle = cycle;
-  LocalSensitivity known{"loop.element.level", "N", 0.5, 4.0, 1.0, {}, 1e-8, {}, 5.0, 1e-12, 1e-9, 1e-9};
+  LocalSensitivity known{"loop.element.level", "N", 0.5, 4.0, 1.0, {}, 1e-8, {}, 5.0, 1e-12, 1e-9, 1e-9, 1e-9, 2.0};
   const double none = std::numeric_limits<double>::quiet_NaN();
-  LocalSensitivity unknown{"loop.controller.lag", "s", 0.0, none, none, {}, none, "no value", none, none, none, none};
+  LocalSensitivity unknown{
+      "loop.controller.lag", "s", 0.0, none, none, {}, none, "no value", none, none, none, none, none, none};
   report.local = {known, unknown};
 
   PredictedOscillation predicted;
@@ -43,6 +44,9 @@ SensitivityReport sample_sensitivity() {
 TEST_CASE("sensitivity reports: tables of harmonics, predictions and thresholds") {
   const auto report = sample_sensitivity();
   const Units units;
+  const Table derivatives = derivative_table(report, units);
+  REQUIRE(derivatives.rows.size() == 1);  // that of the period is all error
+  CHECK(derivatives.rows[0] == std::vector<std::string>{"element.level", "0.500000", "4.000000000", "0", "1.000", "0"});
   const Table harmonics = harmonic_table(report, units);
   REQUIRE(harmonics.rows.size() == 1);
   CHECK(harmonics.rows[0] == std::vector<std::string>{"element.level", "5.000000000", "0", "1.000"});

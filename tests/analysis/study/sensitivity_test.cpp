@@ -197,3 +197,20 @@ TEST_CASE("sensitivity of a threshold that a margin found") {
   for (const auto& one : threshold_sensitivities(build_loop(there), elsewhere, relay_numbers(there), 1))
     CHECK_FALSE(one.why.empty());
 }
+
+TEST_CASE("local sensitivity: a dead zone that is not there spoils only its own derivative") {
+  // As soon as it is there the relay switches twice as often.
+  LoopParts parts = relay_chain();
+  std::get<Relay<double>>(*parts.element).dead_zone = 0.0;
+  const Loop loop = build_loop(parts);
+  const Cycle cycle = test::the_cycle(loop, 1.0);
+  const auto local = local_sensitivities(loop, cycle, relay_numbers(parts));
+  REQUIRE(local.size() == 3);
+  CHECK(local[0].why.empty());
+  CHECK(local[0].amplitude == Approx(cycle.amplitude).epsilon(1e-7));  // as the level
+  CHECK(std::abs(local[0].period) <= local[0].period_error);
+  CHECK_FALSE(local[1].why.empty());
+  CHECK(std::isnan(local[1].amplitude));
+  CHECK(local[2].why.empty());
+  CHECK(local[2].period > 1.0);
+}
