@@ -168,6 +168,27 @@ Json robustness_json(const SensitivityReport& report) {
           {"matters_most", most ? Json(report.spread.parameters[*most].path) : Json(nullptr)}};
 }
 
+/// Rows of predictions and thresholds.
+std::string derivative_rows(const SensitivityReport& report) {
+  std::string out;
+  const auto row = [&](const char* kind, const std::string& name, const std::string& output, double value) {
+    out += csv_line({kind, name, output, shortest(value), "", "", "", "derivative"});
+  };
+  for (std::size_t k = 0; k < report.predicted.size(); ++k)
+    for (const auto& one : report.predicted[k].numbers) {
+      if (!one.why.empty() || report.predicted[k].found.status != Status::converged) continue;
+      const std::string of = " of prediction " + std::to_string(k);
+      row("predicted", one.path, "amplitude" + of, one.by.amplitude);
+      row("predicted", one.path, "frequency" + of, one.by.frequency);
+      row("predicted", one.path, "real gain" + of, one.by.gain.gain.real());
+      row("predicted", one.path, "imaginary gain" + of, one.by.gain.gain.imag());
+    }
+  for (const auto& threshold : report.thresholds)
+    for (const auto& one : threshold.numbers)
+      if (one.why.empty()) row("threshold", one.path, threshold.path, one.by.value);
+  return out;
+}
+
 }  // namespace
 
 std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report) {
@@ -226,18 +247,7 @@ std::string sensitivity_csv(const SensitivityReport& report) {
     row("local", one.path, "first_harmonic", one.first_harmonic, nullptr, "", "derivative");
     row("local", one.path, "offset", one.offset, nullptr, "", "derivative");
   }
-  for (std::size_t k = 0; k < report.predicted.size(); ++k)
-    for (const auto& one : report.predicted[k].numbers) {
-      if (!one.why.empty() || report.predicted[k].found.status != Status::converged) continue;
-      const std::string of = " of prediction " + std::to_string(k);
-      row("predicted", one.path, "amplitude" + of, one.by.amplitude, nullptr, "", "derivative");
-      row("predicted", one.path, "frequency" + of, one.by.frequency, nullptr, "", "derivative");
-      row("predicted", one.path, "real gain" + of, one.by.gain.gain.real(), nullptr, "", "derivative");
-      row("predicted", one.path, "imaginary gain" + of, one.by.gain.gain.imag(), nullptr, "", "derivative");
-    }
-  for (const auto& threshold : report.thresholds)
-    for (const auto& one : threshold.numbers)
-      if (one.why.empty()) row("threshold", one.path, threshold.path, one.by.value, nullptr, "", "derivative");
+  out += derivative_rows(report);
   for (const auto& change : report.one_at_a_time) {
     row("one-at-a-time", change.path, "amplitude", change.found.amplitude, nullptr, shortest(change.factor),
         change.found.in_words());

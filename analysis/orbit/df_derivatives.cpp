@@ -246,6 +246,19 @@ GainDerivative judged(Gain tight, Gain rough, Gain of, double step) {
   return {tight, stated_of_gain * std::abs(tight - rough) + 1e-9 * std::abs(tight) + 1e-14 * std::abs(of) / step};
 }
 
+DfDerivatives joined(const DrivenPeriod::Row& tight, const DrivenPeriod::Row& rough, const ParameterRates& rates) {
+  DfDerivatives result;
+  result.gain = tight.gain;
+  result.gain_error = stated_of_gain * std::abs(tight.gain - rough.gain) + 1e-12 * std::abs(tight.gain);
+  for (std::size_t k = 0; k < tight.by.size(); ++k)
+    result.by.push_back(judged(tight.by[k], rough.by[k], tight.gain, rates.step(static_cast<Index>(k))));
+  result.amplitude = result.by[by_amplitude];
+  result.frequency = result.by[by_frequency];
+  result.bias = result.by[by_bias];
+  result.by.erase(result.by.begin(), result.by.begin() + drive_count);
+  return result;
+}
+
 }  // namespace
 
 DfDerivatives df_derivatives(const Element<double>& element, double amplitude, double frequency, double bias,
@@ -275,20 +288,10 @@ DfDerivatives df_derivatives(const Element<double>& element, double amplitude, d
   if (!why) why = period.derive(looser_period * options.rtol, rates, rough);
   if (options.stop && options.stop()) return none(Status::interrupted, "it was stopped");
   if (why) return none(why->starts_with("the periodic state") ? Status::undefined : Status::stalled, std::move(*why));
-  result.gain = tight.gain;
-  result.gain_error = stated_of_gain * std::abs(tight.gain - rough.gain) + 1e-12 * std::abs(tight.gain);
-  for (std::size_t k = 0; k < tight.by.size(); ++k) {
-    const GainDerivative one = judged(tight.by[k], rough.by[k], tight.gain, rates.step(static_cast<Index>(k)));
+  result = joined(tight, rough, rates);
+  if (half) result.bias = {};  // half a period knows no bias; N is even in it
+  for (const auto& one : result.by)
     if (!std::isfinite(std::abs(one.gain))) return none(Status::not_finite, "the derivative is not finite");
-    if (k >= drive_count) result.by.push_back(one);
-  }
-  const auto at = [&](Drive k) {
-    const auto i = static_cast<std::size_t>(k);
-    return judged(tight.by[i], rough.by[i], tight.gain, rates.step(k));
-  };
-  result.amplitude = at(by_amplitude);
-  result.frequency = at(by_frequency);
-  result.bias = half ? GainDerivative{} : at(by_bias);  // half a period knows no bias; N is even in it
   return result;
 }
 

@@ -51,9 +51,10 @@ struct DfDerivativeOptions {
 /// is unique where the full period keeps what an elastic range holds. By the bias N is even then.
 ///
 /// Status: undefined (a law that needs the applied force or keeps its return points, a periodic state that is not
-/// unique), stalled (a switch is grazed), max_iterations. Throws std::invalid_argument for values that are not finite,
-/// an amplitude or a frequency that is not positive, and neighbours that do not fit. Cost: about ten marches of a
-/// period, two with a linear system of 3n and n + q columns a step.
+/// unique), stalled (a switch is grazed, or the motion could not be followed), interrupted. Throws
+/// std::invalid_argument for values that are not finite, an amplitude or a frequency that is not positive, and
+/// neighbours that do not fit. Cost: about ten marches of a period, two with a linear system of 3n and n + q columns a
+/// step.
 DfDerivatives df_derivatives(const Element<double>& element, double amplitude, double frequency, double bias,
                              std::span<const ElementNeighbours> neighbours, const DfDerivativeOptions& options = {});
 
