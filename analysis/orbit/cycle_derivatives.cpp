@@ -167,7 +167,7 @@ CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
   const auto mirror = common_mirror(loop, cycle, neighbours);
   CycleDerivatives result = derive(loop, cycle, mirror, rates, options.rtol, options);
   if (result.status != Status::converged) return result;
-  const CycleDerivatives rough = derive(loop, cycle, mirror, rates, looser * options.rtol, options);
+  CycleDerivatives rough = derive(loop, cycle, mirror, rates, looser * options.rtol, options);
   if (rough.status != Status::converged) return rough;
   compare(rough, cycle, rates, result);
   return result;
