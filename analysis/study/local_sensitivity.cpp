@@ -67,6 +67,7 @@ class Neighbourhood {
     if (told.found.status != Status::stalled) return told;
     const auto ask = [&](const std::vector<std::size_t>& which) {
       std::vector<ParameterNeighbours> some;
+      some.reserve(which.size());
       for (const std::size_t k : which) some.push_back(pairs_[k]);
       return derive(some);
     };
@@ -151,6 +152,7 @@ std::vector<LocalSensitivity> local_sensitivities(const Loop& loop, const Cycle&
                                                   const std::vector<LoopNumber>& numbers,
                                                   const std::function<bool()>& stop) {
   std::vector<LocalSensitivity> all;
+  all.reserve(numbers.size());
   constexpr double none = unknown_derivative;
   for (const auto& number : numbers)
     all.push_back(
@@ -214,6 +216,7 @@ std::vector<ThresholdNumber> threshold_sensitivities(const Loop& loop, const Mar
   std::vector<LoopNumber> others = numbers;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(own));
   std::vector<ThresholdNumber> all;
+  all.reserve(others.size());
   for (const auto& number : others) all.push_back({number.path, number.unit, number.value, {}, {}});
   const auto without = [&](const std::string& why) {
     for (auto& one : all) one.why = why;
