@@ -14,6 +14,7 @@
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/sweep.hpp"
+#include "limcycle/cli/threshold.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/models/assemble.hpp"
 #include "limcycle/reports/number.hpp"
@@ -31,15 +32,9 @@ struct SensitivityFlags : SweepFlags {
   bool second_order = false;
   std::vector<double> factors{0.5, 2.0};  ///< --factors
   bool local_only = false;                ///< --local
+  std::vector<std::string> thresholds;    ///< --threshold, repeatable
   std::string html;                       ///< --html
 };
-
-/// The numbers that a user would vary: written or with a default, finite.
-std::vector<CaseNumber> own_numbers(const Case& from) {
-  std::vector<CaseNumber> numbers = numbers_of(from);
-  std::erase_if(numbers, [](const CaseNumber& number) { return !std::isfinite(number.value) || number.follows; });
-  return numbers;
-}
 
 ParameterSpread default_spread(const Case& from) {
   ParameterSpread spread;
@@ -95,12 +90,12 @@ void change_each(const Case& from, const std::vector<double>& factors, const Pre
 }
 
 void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& flags, SensitivityReport& report) {
-  if (report.cycle && loop.delay == 0.0) {
-    std::vector<LoopNumber> numbers;
-    for (const auto& number : own_numbers(from))
-      numbers.push_back({number.path, number.unit, number.value, LoopVariation(from, "--set", number.path)});
-    report.local = local_sensitivities(loop, *report.cycle, numbers, interrupted);
-  }
+  const auto numbers = loop_numbers(from);
+  if (report.cycle && loop.delay == 0.0) report.local = local_sensitivities(loop, *report.cycle, numbers, interrupted);
+  report.predicted = predicted_sensitivities(loop, from.predict.search.value_or(default_search_box(loop)), numbers,
+                                             report.notes, interrupted);
+  for (const auto& number : threshold_numbers(from, flags.thresholds))
+    if (!interrupted()) report.thresholds.push_back(threshold_of(from, loop, number));
   PredictOptions options = from.predict;
   options.methods = {false, false, false};
   options.accuracy = std::max(from.predict.accuracy, 1e-6);
@@ -181,6 +176,7 @@ std::string flags_text(const SensitivityFlags& flags) {
   if (flags.trajectories > 0) text += fmt::format(" --trajectories {}", flags.trajectories);
   if (flags.second_order) text += " --second-order";
   if (flags.local_only) text += " --local";
+  for (const auto& path : flags.thresholds) text += " --threshold " + path;
   if (flags.factors != std::vector{0.5, 2.0}) text += fmt::format(" --factors {}", fmt::join(flags.factors, ","));
   if (flags.seed != 0) text += fmt::format(" --seed {}", flags.seed);
   return text.empty() ? text : text.substr(1);
@@ -212,6 +208,7 @@ int run(SensitivityFlags flags) {
   for (const double factor : flags.factors)
     if (!std::isfinite(factor) || factor == 0.0) throw std::invalid_argument("--factors must be finite and not 0");
   const Case from = load_case(flags);
+  threshold_numbers(from, flags.thresholds);  // what is wrong there is told before anything is computed
   const Units units = units_of(need_loop(from));
   const Loop loop = build_loop(need_loop(from));
   Output output(flags);
@@ -252,6 +249,9 @@ void add_sensitivity(CLI::App& program, Action& action) {
       ->delimiter(',')
       ->capture_default_str();
   command->add_flag("--local", flags->local_only, "Derivatives and one at a time only");
+  command->add_option("--threshold", flags->thresholds, "Where hunting ends or begins in this number; repeatable")
+      ->type_name("PATH")
+      ->allow_extra_args(false);
   add_sweep_flags(*command, *flags);
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");

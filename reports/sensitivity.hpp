@@ -17,7 +17,8 @@ std::string sensitivity_text(const std::string& title, const SensitivityReport& 
 /// JSON document of `sensitivity`.
 std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report);
 
-/// One row a number, told apart by the first column `kind`: local, one-at-a-time, morris, sobol, interaction.
+/// One row a number, told apart by the first column `kind`: local, predicted, threshold, one-at-a-time, morris, sobol,
+/// interaction.
 std::string sensitivity_csv(const SensitivityReport& report);
 
 std::string sensitivity_page(const SensitivityReport& report, const Provenance& provenance,
@@ -26,13 +27,31 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
 /// What a reader must know: notes of the study, and numbers without a derivative.
 std::vector<std::string> sensitivity_notes(const SensitivityReport& report);
 
+/// Per cent of a quantity for each per cent of a number; 0 where the derivative is all error.
+std::string per_cent(double derivative, double error, double value, double quantity);
+
 Table derivative_table(const SensitivityReport& report, const Units& units);
+/// First harmonic and offset.
+Table harmonic_table(const SensitivityReport& report, const Units& units);
+/// Amplitude and frequency of an oscillation that the describing function predicts.
+Table predicted_table(const PredictedOscillation& predicted, const Units& units);
+/// The gain there, with amplitude and frequency standing still.
+Table gain_table(const PredictedOscillation& predicted, const Units& units);
+/// "What the describing function predicts", with its number if there are several.
+std::string predicted_heading(const SensitivityReport& report, std::size_t index);
+Table threshold_table(const ThresholdSensitivity& threshold);
+/// One sentence: where, and what happens there.
+std::string threshold_sentence(const ThresholdSensitivity& threshold);
+/// One sentence: amplitude, frequency and gain.
+std::string predicted_sentence(const PredictedOscillation& predicted, const Units& units);
 Table change_table(const SensitivityReport& report, const Units& units);
 Table morris_table(const SensitivityReport& report, const OutputSensitivity& output);
 Table sobol_table(const SensitivityReport& report, const OutputSensitivity& output);
 
 /// Elasticities of amplitude and period, the largest on top.
 std::string tornado_picture(const SensitivityReport& report);
+/// Elasticities of a threshold, the largest on top.
+std::string threshold_picture(const ThresholdSensitivity& threshold);
 /// First and total indices of an output with their intervals, and how they settled with the number of samples.
 std::string indices_picture(const SensitivityReport& report, const OutputSensitivity& output);
 /// First indices and those of pairs, as a matrix; empty without second order.

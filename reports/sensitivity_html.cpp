@@ -38,6 +38,23 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
     body += "<h2>The cycle</h2>\n" +
             figure_of(tornado_picture(report), "How much amplitude and period change for each per cent of a number.");
     body += html_table(derivative_table(report, units), "Exact derivatives of amplitude and period");
+    body += html_table(harmonic_table(report, units), "Exact derivatives of first harmonic and offset");
+  }
+  for (std::size_t k = 0; k < report.predicted.size(); ++k) {
+    const auto& predicted = report.predicted[k];
+    body += "<h2>" + html_escaped(predicted_heading(report, k)) + "</h2>\n" +
+            html_tag("p", predicted_sentence(predicted, units));
+    if (const Table table = predicted_table(predicted, units); !table.rows.empty())
+      body += html_table(table, "Exact derivatives of the predicted oscillation");
+    if (const Table table = gain_table(predicted, units); !table.rows.empty())
+      body += html_table(table, "Exact derivatives of the describing function, at this amplitude and frequency");
+  }
+  for (const auto& threshold : report.thresholds) {
+    body += "<h2>" + html_escaped("Threshold of " + threshold.path) + "</h2>\n" +
+            html_tag("p", threshold_sentence(threshold));
+    body += figure_of(threshold_picture(threshold), "How far the threshold moves for each per cent of a number.");
+    if (const Table table = threshold_table(threshold); !table.rows.empty())
+      body += html_table(table, "Exact derivatives of the threshold");
   }
   if (!report.one_at_a_time.empty())
     body +=

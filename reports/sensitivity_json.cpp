@@ -27,12 +27,82 @@ Json local_json(const LocalSensitivity& one, const Cycle& cycle) {
           {"unit", one.unit},
           {"value", number(one.value)},
           {"derivative",
-           {{"amplitude", number(one.amplitude)}, {"period", number(one.period)}, {"multipliers", multipliers}}},
+           {{"amplitude", number(one.amplitude)},
+            {"period", number(one.period)},
+            {"first_harmonic", number(one.first_harmonic)},
+            {"offset", number(one.offset)},
+            {"multipliers", multipliers}}},
           {"elasticity",
            {{"amplitude", number(elasticity_of(one, one.amplitude, cycle.amplitude))},
-            {"period", number(elasticity_of(one, one.period, cycle.period))}}},
+            {"period", number(elasticity_of(one, one.period, cycle.period))},
+            {"first_harmonic", number(elasticity_of(one, one.first_harmonic, cycle.first_harmonic))}}},
           {"error", number(one.error)},
+          {"errors",
+           {{"amplitude", number(one.amplitude_error)},
+            {"period", number(one.period_error)},
+            {"first_harmonic", number(one.first_harmonic_error)},
+            {"offset", number(one.offset_error)}}},
           {"why", one.why}};
+}
+
+Json pair_json(std::complex<double> z) { return Json::array({number(z.real()), number(z.imag())}); }
+
+Json predicted_json(const PredictedOscillation& predicted) {
+  const PredictionDerivatives& found = predicted.found;
+  if (found.status != Status::converged) return {{"why", found.why}, {"parameters", Json::array()}};
+  Json parameters = Json::array();
+  for (const auto& one : predicted.numbers) {
+    Json row = {{"name", one.path}, {"unit", one.unit}, {"value", number(one.value)}, {"why", one.why}};
+    const bool known = one.why.empty();
+    const auto told = [known](double value) { return known ? number(value) : Json(nullptr); };
+    row["derivative"] = {{"gain", known ? pair_json(one.by.gain.gain) : Json(nullptr)},
+                         {"amplitude", told(one.by.amplitude)},
+                         {"frequency", told(one.by.frequency)}};
+    row["elasticity"] = {{"amplitude", told(one.by.amplitude * one.value / found.amplitude)},
+                         {"frequency", told(one.by.frequency * one.value / found.frequency)}};
+    row["errors"] = {{"gain", told(one.by.gain.error)},
+                     {"amplitude", told(one.by.amplitude_error)},
+                     {"frequency", told(one.by.frequency_error)}};
+    parameters.push_back(std::move(row));
+  }
+  return {{"amplitude", number(found.amplitude)},
+          {"frequency", number(found.frequency)},
+          {"input_amplitude", number(found.input_amplitude)},
+          {"gain", pair_json(found.gain)},
+          {"gain_by_amplitude", pair_json(found.by_amplitude.gain)},
+          {"gain_by_frequency", pair_json(found.by_frequency.gain)},
+          {"errors",
+           {{"gain", number(found.gain_error)},
+            {"gain_by_amplitude", number(found.by_amplitude.error)},
+            {"gain_by_frequency", number(found.by_frequency.error)}}},
+          {"why", ""},
+          {"parameters", parameters}};
+}
+
+Json threshold_json(const ThresholdSensitivity& threshold) {
+  Json parameters = Json::array();
+  for (const auto& one : threshold.numbers) {
+    const bool known = one.why.empty();
+    const auto told = [known](double value) { return known ? number(value) : Json(nullptr); };
+    parameters.push_back({{"name", one.path},
+                          {"unit", one.unit},
+                          {"value", number(one.value)},
+                          {"derivative", told(one.by.value)},
+                          {"elasticity", told(threshold.at != 0.0 ? one.by.value * one.value / threshold.at : NAN)},
+                          {"error", told(one.by.error)},
+                          {"why", one.why}});
+  }
+  const bool known = threshold.known;
+  return {{"name", threshold.path},
+          {"unit", threshold.unit},
+          {"value", number(threshold.value)},
+          {"what", !known             ? "none"
+                   : threshold.begins ? "begins"
+                                      : "ends"},
+          {"at", known ? number(threshold.at) : Json(nullptr)},
+          {"error", known ? number(threshold.error) : Json(nullptr)},
+          {"why", threshold.why},
+          {"parameters", parameters}};
 }
 
 Json change_json(const ParameterChange& change) {
@@ -98,6 +168,27 @@ Json robustness_json(const SensitivityReport& report) {
           {"matters_most", most ? Json(report.spread.parameters[*most].path) : Json(nullptr)}};
 }
 
+/// Rows of predictions and thresholds.
+std::string derivative_rows(const SensitivityReport& report) {
+  std::string out;
+  const auto row = [&](const char* kind, const std::string& name, const std::string& output, double value) {
+    out += csv_line({kind, name, output, shortest(value), "", "", "", "derivative"});
+  };
+  for (std::size_t k = 0; k < report.predicted.size(); ++k)
+    for (const auto& one : report.predicted[k].numbers) {
+      if (!one.why.empty() || report.predicted[k].found.status != Status::converged) continue;
+      const std::string of = " of prediction " + std::to_string(k);
+      row("predicted", one.path, "amplitude" + of, one.by.amplitude);
+      row("predicted", one.path, "frequency" + of, one.by.frequency);
+      row("predicted", one.path, "real gain" + of, one.by.gain.gain.real());
+      row("predicted", one.path, "imaginary gain" + of, one.by.gain.gain.imag());
+    }
+  for (const auto& threshold : report.thresholds)
+    for (const auto& one : threshold.numbers)
+      if (one.why.empty()) row("threshold", one.path, threshold.path, one.by.value);
+  return out;
+}
+
 }  // namespace
 
 std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report) {
@@ -113,12 +204,19 @@ std::string sensitivity_json(const Provenance& provenance, const SensitivityRepo
       without[output.output] = number(output.share_without_answer);
       if (output.output == HuntingAnswer::names[1]) share = output.share_without_answer;
     }
+  Json predicted = Json::array(), thresholds = Json::array();
+  for (const auto& one : report.predicted) predicted.push_back(predicted_json(one));
+  for (const auto& one : report.thresholds) thresholds.push_back(threshold_json(one));
   const Json body = {{"answer", sensitivity_answer(report)},
                      {"cycle", report.cycle ? Json{{"amplitude", number(report.cycle->amplitude)},
                                                    {"period", number(report.cycle->period)},
+                                                   {"first_harmonic", number(report.cycle->first_harmonic)},
+                                                   {"offset", number(report.cycle->offset)},
                                                    {"error", number(report.cycle->error)}}
                                             : Json(nullptr)},
                      {"parameters", parameters},
+                     {"predicted", predicted},
+                     {"thresholds", thresholds},
                      {"one_at_a_time", changes},
                      {"morris", morris},
                      {"sobol", sobol},
@@ -146,7 +244,10 @@ std::string sensitivity_csv(const SensitivityReport& report) {
   for (const auto& one : report.local) {
     row("local", one.path, "amplitude", one.amplitude, nullptr, "", "derivative");
     row("local", one.path, "period", one.period, nullptr, "", "derivative");
+    row("local", one.path, "first_harmonic", one.first_harmonic, nullptr, "", "derivative");
+    row("local", one.path, "offset", one.offset, nullptr, "", "derivative");
   }
+  out += derivative_rows(report);
   for (const auto& change : report.one_at_a_time) {
     row("one-at-a-time", change.path, "amplitude", change.found.amplitude, nullptr, shortest(change.factor),
         change.found.in_words());

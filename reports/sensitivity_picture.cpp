@@ -117,6 +117,29 @@ std::string tornado_picture(const SensitivityReport& report) {
              "Elasticities of the cycle: per cent for each per cent of a number", body);
 }
 
+std::string threshold_picture(const ThresholdSensitivity& threshold) {
+  std::vector<std::pair<std::string, double>> bars;
+  double longest = 0.0;
+  for (const auto& one : threshold.numbers) {
+    const double bar = threshold.at != 0.0 ? one.by.value * one.value / threshold.at : 0.0;
+    if (!one.why.empty() || std::abs(one.by.value) <= one.by.error || std::abs(bar) < 1e-9) continue;
+    longest = std::max(longest, std::abs(bar));
+    bars.emplace_back(short_path(one.path), bar);
+  }
+  if (bars.empty()) return "";
+  std::ranges::stable_sort(bars, std::ranges::greater(), [](const auto& bar) { return std::abs(bar.second); });
+  const double top = 62.0;
+  std::string body;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    body += words_at(label_width - 8.0, top + bar_pitch * static_cast<double>(i) + 10.0, "end", bars[i].first);
+    values.push_back(bars[i].second);
+  }
+  body += tornado_panel(label_width, chart_width - label_width - 10.0, top, "% per %", values, longest);
+  return svg(top + bar_pitch * static_cast<double>(bars.size()) + 12.0, threshold_sentence(threshold),
+             "Elasticities of the threshold of " + short_path(threshold.path), body);
+}
+
 std::string indices_picture(const SensitivityReport& report, const OutputSensitivity& output) {
   const auto& parameters = report.spread.parameters;
   const double top = 56.0, left = label_width, width = 300.0, height = 26.0 * static_cast<double>(parameters.size()),

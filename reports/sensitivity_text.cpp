@@ -87,10 +87,11 @@ Table derivative_table(const SensitivityReport& report, const Units& units) {
   if (!report.cycle) return table;
   for (const auto& one : report.local) {
     if (!one.why.empty()) continue;
-    table.rows.push_back({name_of(one.path), with_digits(one.value, 6), with_error(one.amplitude, one.error),
-                          with_error(one.period, one.error),
-                          with_digits(per_cent_a_per_cent(one, one.amplitude, report.cycle->amplitude), 4),
-                          with_digits(per_cent_a_per_cent(one, one.period, report.cycle->period), 4)});
+    table.rows.push_back({name_of(one.path), with_digits(one.value, 6),
+                          with_absolute_error(one.amplitude, one.amplitude_error),
+                          with_absolute_error(one.period, one.period_error),
+                          per_cent(one.amplitude, one.amplitude_error, one.value, report.cycle->amplitude),
+                          per_cent(one.period, one.period_error, one.value, report.cycle->period)});
   }
   return table;
 }
@@ -144,6 +145,21 @@ std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
   std::vector<std::string> notes = report.notes;
   for (const auto& one : report.local)
     if (!one.why.empty()) notes.push_back("no derivative by " + name_of(one.path) + ": " + one.why);
+  for (const auto& threshold : report.thresholds) {
+    const std::string what = "the threshold of " + name_of(threshold.path);
+    const auto same = [&](const ThresholdNumber& one) { return one.why == threshold.numbers.front().why; };
+    if (threshold.numbers.empty()) continue;
+    if (std::ranges::all_of(threshold.numbers, same)) {  // a reason that all share is told once
+      if (!threshold.numbers.front().why.empty())
+        notes.push_back("no derivatives of " + what + ": " + threshold.numbers.front().why);
+      continue;
+    }
+    for (const auto& one : threshold.numbers) {
+      const auto told = [&](const LocalSensitivity& other) { return other.path == one.path && other.why == one.why; };
+      if (!one.why.empty() && std::ranges::none_of(report.local, told))
+        notes.push_back("no derivative of " + what + " by " + name_of(one.path) + ": " + one.why);
+    }
+  }
   return notes;
 }
 
@@ -151,6 +167,19 @@ std::string sensitivity_text(const std::string& title, const SensitivityReport& 
   std::string out = title + "\n\n" + wrapped(sensitivity_answer(report));
   if (report.cycle && !report.local.empty())
     out += "\nDerivatives of the cycle (exact, at the values of the case)\n" + derivative_table(report, units).text();
+  if (report.cycle && !report.local.empty())
+    out += "\nFirst harmonic and offset of the cycle\n" + harmonic_table(report, units).text();
+  for (std::size_t k = 0; k < report.predicted.size(); ++k) {
+    const auto& predicted = report.predicted[k];
+    out += "\n" + predicted_heading(report, k) + "\n" + wrapped(predicted_sentence(predicted, units));
+    if (const Table table = predicted_table(predicted, units); !table.rows.empty()) out += table.text();
+    if (const Table table = gain_table(predicted, units); !table.rows.empty())
+      out += "Its gain N, at this amplitude and frequency\n" + table.text();
+  }
+  for (const auto& threshold : report.thresholds) {
+    out += "\nThreshold\n" + wrapped(threshold_sentence(threshold));
+    if (const Table table = threshold_table(threshold); !table.rows.empty()) out += table.text();
+  }
   if (!report.one_at_a_time.empty()) out += "\nOne at a time\n" + change_table(report, units).text();
   if (report.global)
     for (const auto& output : report.global->outputs) {

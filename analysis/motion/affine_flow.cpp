@@ -58,6 +58,13 @@ const MatrixXd& AffineFlow::over_power(int k) {
   return mode.powers.emplace(k, exponential(mode.generator * std::ldexp(1.0, k))).first->second;
 }
 
+MatrixXd AffineFlow::over_step(double h) {
+  constexpr double of_times = 1e-11;
+  const double power = std::log2(h), nearest = std::round(power);
+  if (std::isfinite(nearest) && std::abs(power - nearest) < of_times) return over_power(static_cast<int>(nearest));
+  return over(h);
+}
+
 void AffineFlow::apply(const MatrixXd& exponential, const State& x, State& out) {
   const auto n = static_cast<Index>(x.size());
   const Eigen::VectorXd moved = exponential.topLeftCorner(n, n) * Eigen::Map<const Eigen::VectorXd>(x.data(), n) +

@@ -21,6 +21,8 @@ class AffineFlow {
   Eigen::MatrixXd over(double h);
   /// exp(M 2^k s), kept for the next time.
   const Eigen::MatrixXd& over_power(int k);
+  /// exp(M h), from what is kept where h is a power of two but for the rounding of the times that it is between.
+  Eigen::MatrixXd over_step(double h);
 
   /// The motion from x by a matrix of the above.
   static void apply(const Eigen::MatrixXd& exponential, const State& x, State& out);

@@ -14,13 +14,6 @@ using Eigen::VectorXd;
 
 Eigen::Map<const VectorXd> as_vector(const State& x) { return {x.data(), std::ssize(x)}; }
 
-/// exp(M h), from what is kept where h is a power of two.
-MatrixXd affine_step(AffineFlow& flow, double h) {
-  int exponent = 0;
-  if (std::frexp(h, &exponent) == 0.5) return flow.over_power(exponent - 1);
-  return flow.over(h);
-}
-
 }  // namespace
 
 ParameterRates::ParameterRates(const Loop& loop, std::span<const ParameterNeighbours> neighbours)
@@ -82,7 +75,7 @@ MatrixXd ParameterRates::over(const LoopField& field, const State& x, double h) 
   State end;
   const auto arrive = [&](Side& side) {
     side.field.modes() = field.modes();
-    AffineFlow::apply(affine_step(side.flow, h), x, end);
+    AffineFlow::apply(side.flow.over_step(h), x, end);
     return VectorXd(as_vector(end));
   };
   for (Index k = 0; k < count(); ++k) {
@@ -141,7 +134,7 @@ MatrixXd ParameterRates::transition_beside(Index k, bool above, const std::vecto
   if (velocity_there) meet(side, *velocity_there, step.x1, step.t1);
   side.field.rate(step.x0, step.dx0, step.t0);
   side.field.rate(step.x1, step.dx1, step.t1);
-  if (affine_) return affine_step(side.flow, step.t1 - step.t0).topLeftCorner(n, n);
+  if (affine_) return side.flow.over_step(step.t1 - step.t0).topLeftCorner(n, n);
   return transition(side.field, step);
 }
 

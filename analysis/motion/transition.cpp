@@ -34,7 +34,14 @@ const RadauStages& radau_stages() {
 
 Eigen::MatrixXd transition(LoopField& field, const Step& step) { return transition(field, step, 0, {}); }
 
-Eigen::MatrixXd transition(LoopField& field, const Step& step, Index count, const Forcing& forcing) {
+double StageReadings::node(Index stage) { return radau_stages().c[static_cast<std::size_t>(stage)]; }
+double StageReadings::weight(Index stage) { return radau_stages().a[2][static_cast<std::size_t>(stage)]; }
+
+MatrixXd transition(LoopField& field, const Step& step, Index count, const Forcing& forcing) {
+  return transition(field, step, count, forcing, nullptr);
+}
+
+MatrixXd transition(LoopField& field, const Step& step, Index count, const Forcing& forcing, StageReadings* readings) {
   const auto& [c, a] = radau_stages();
   const auto n = static_cast<Index>(field.size());
   const double h = step.t1 - step.t0;
@@ -74,6 +81,14 @@ Eigen::MatrixXd transition(LoopField& field, const Step& step, Index count, cons
     return MatrixXd::Constant(n, right, NAN);
   for (Index row = 0; row < n; ++row)
     for (Index column = 0; column < right; ++column) result(row, column) = at(3 * row + 2, m + column);
+  if (readings == nullptr) return result;
+  readings->at = MatrixXd::Zero(StageReadings::count, right);
+  for (Index row = 0; row < n; ++row) {
+    if (readings->row(row) == 0.0) continue;
+    for (Index i = 0; i < StageReadings::count; ++i)
+      for (Index column = 0; column < right; ++column)
+        readings->at(i, column) += readings->row(row) * at(3 * row + i, m + column);
+  }
   return result;
 }
 

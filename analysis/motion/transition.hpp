@@ -22,4 +22,17 @@ using Forcing = std::function<void(const State& x, const Eigen::MatrixXd& J, dou
 /// ds/dt = J(x(t)) s + b(t): by the same step of the same method.
 Eigen::MatrixXd transition(LoopField& field, const Step& step, Eigen::Index count, const Forcing& forcing);
 
+/// What a row reads of the deviations within the step: at the stages of the method, which are the nodes of a quadrature
+/// of order 5 over the step, a row each.
+struct StageReadings {
+  static constexpr Eigen::Index count = 3;
+  static double node(Eigen::Index stage);  ///< share of the step
+  static double weight(Eigen::Index stage);
+  Eigen::RowVectorXd row;  ///< over all states; to be set
+  Eigen::MatrixXd at;      ///< its products with the columns that transition() returns, at the stages
+};
+/// The same, and the readings on the way.
+Eigen::MatrixXd transition(LoopField& field, const Step& step, Eigen::Index count, const Forcing& forcing,
+                           StageReadings* readings);
+
 }  // namespace limcycle

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/orbit/cycle_equations.hpp"
 #include "limcycle/analysis/orbit/cycle_pieces.hpp"
 #include "limcycle/analysis/orbit/multiplier_derivatives.hpp"
+#include "limcycle/analysis/orbit/output_derivatives.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -40,6 +42,18 @@ struct Carried {
   Extreme low{infinite, {}, {}}, high{-infinite, {}, {}};
 };
 
+/// Over half a period: the extremes of the other half are those of this one, reflected.
+void reflect_extreme(const Loop& loop, const ParameterRates& rates, const CycleMirror& mirror, Carried& carried) {
+  const Index linear = loop.states();
+  const double middle = loop.C_y.dot(mirror.centre.head(linear));
+  const State at(mirror.centre.begin(), mirror.centre.end());
+  const RowVectorXd moves = loop.C_y * mirror.moved.topRows(linear) + rates.output(at);
+  const bool upper = carried.high.y - middle > middle - carried.low.y;
+  const Extreme& here = upper ? carried.high : carried.low;
+  Extreme& there = upper ? carried.low : carried.high;
+  there = {2.0 * middle - here.y, -here.by_start, 2.0 * moves - here.by_parameters};
+}
+
 Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& cut) {
   const Index n = cut.sizes.size(), linear = loop.states();
   Carried carried{MatrixXd::Identity(n, n), MatrixXd::Zero(n, rates.count())};
@@ -62,39 +76,32 @@ Carried carry(const Loop& loop, const ParameterRates& rates, const CyclePieces& 
     carried.whole = (piece.event->saltation * carried.whole).eval();
     carried.columns = (piece.event->saltation * carried.columns + piece.event->jump).eval();
   }
+  if (cut.mirror) reflect_extreme(loop, rates, *cut.mirror, carried);
+  PeriodMap map{std::move(carried.whole), std::move(carried.columns)};
+  reflect(cut, map);
+  carried.whole = std::move(map.whole);
+  carried.columns = std::move(map.columns);
   return carried;
 }
 
 /// dx0/dp, with dT/dp in the last row: a column for each parameter; not finite where there is none (a fold).
 MatrixXd solve_cycle(const CyclePieces& cut, const Carried& carried) {
   const Index n = cut.sizes.size();
-  const VectorXd f = as_column(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes), along = f / f.norm();
-  MatrixXd matrix(n + 1, n + 1);
-  matrix.topLeftCorner(n, n) = MatrixXd::Identity(n, n);
-  matrix.topLeftCorner(n, n) -= cut.sizes.cwiseInverse().asDiagonal() * carried.whole * cut.sizes.asDiagonal();
-  matrix.topRightCorner(n, 1) = -along;  // the period in units of 1/|f|
-  matrix.bottomLeftCorner(1, n) = along.transpose();
-  matrix(n, n) = 0.0;
+  const MatrixXd matrix = cycle_matrix(cut, carried.whole);
   MatrixXd right = MatrixXd::Zero(n + 1, carried.columns.cols());
   right.topRows(n) = cut.sizes.cwiseInverse().asDiagonal() * carried.columns;
   MatrixXd solution = solve_columns_fully_pivoted(matrix, right);
   if (!((matrix * solution - right).norm() <= 1e-6 * right.norm())) solution.setConstant(infinite);
   solution.topRows(n) = (cut.sizes.asDiagonal() * solution.topRows(n)).eval();
-  solution.row(n) /= f.norm();
+  solution.row(n) /= as_column(cut.pieces.front().step.dx0).cwiseQuotient(cut.sizes).norm();
   return solution;
-}
-
-/// Does the march come back to its start, in the modes of the start?
-bool closes(const CyclePieces& cut, const LoopState& start) {
-  if (cut.last.modes != start.modes) return false;
-  return (as_column(cut.last.x) - as_column(start.x)).cwiseQuotient(cut.sizes).cwiseAbs().maxCoeff() < 1e-4;
 }
 
 CycleDerivatives without(Status status, std::string why) { return {status, std::move(why), {}}; }
 
-CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& rates, double rtol,
-                        const CycleDerivativeOptions& options) {
-  const CyclePieces cut = cut_cycle(loop, cycle.start, cycle.period, rates, {rtol, options.max_steps, options.stop});
+CycleDerivatives derive(const Loop& loop, const Cycle& cycle, const std::optional<CycleMirror>& mirror,
+                        ParameterRates& rates, double rtol, const CycleDerivativeOptions& options) {
+  const CyclePieces cut = cut_period(loop, cycle, mirror, rates, {rtol, options.max_steps, options.stop, true, {}});
   if (cut.status == Status::stalled)
     return without(cut.status, "a switch is grazed, or comes in another order beside the cycle");
   if (cut.status != Status::converged) return without(cut.status, "the cycle could not be followed");
@@ -106,11 +113,14 @@ CycleDerivatives derive(const Loop& loop, const Cycle& cycle, ParameterRates& ra
   const RowVectorXd by_start = 0.5 * (carried.high.by_start - carried.low.by_start);
   const RowVectorXd amplitude =
       0.5 * (carried.high.by_parameters - carried.low.by_parameters) + by_start * solution.topRows(n);
+  const OutputDerivatives output = output_derivatives(loop, cut, rates, solution);
   CycleDerivatives result;
   for (Index k = 0; k < rates.count(); ++k) {
     CycleDerivative& one = result.by.emplace_back();
-    one.period = solution(n, k);
+    one.period = (mirror ? 2.0 : 1.0) * solution(n, k);
     one.amplitude = amplitude(k);
+    one.first_harmonic = output.by_first_harmonic(k);
+    one.offset = output.by_mean(k);
   }
   if (!options.multipliers) return result;
   const auto moved = multiplier_derivatives(cut, cycle.multipliers, solution, rates);
@@ -132,6 +142,8 @@ void compare(const CycleDerivatives& rough, const Cycle& cycle, const ParameterR
     };
     one.period_error = error(one.period, other.period, cycle.period);
     one.amplitude_error = error(one.amplitude, other.amplitude, cycle.amplitude);
+    one.first_harmonic_error = error(one.first_harmonic, other.first_harmonic, cycle.first_harmonic);
+    one.offset_error = error(one.offset, other.offset, cycle.amplitude + std::abs(cycle.offset));
     for (std::size_t m = 0; m < one.multipliers.size(); ++m) {
       auto& value = one.multipliers[m];
       const auto& rough_value = other.multipliers[m];
@@ -152,9 +164,10 @@ CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
   ParameterRates rates(loop, neighbours);
   if (cycle.remembered > 0)
     return without(Status::undefined, "the cycle keeps something of what was before: another history, another cycle");
-  CycleDerivatives result = derive(loop, cycle, rates, options.rtol, options);
+  const auto mirror = common_mirror(loop, cycle, neighbours);
+  CycleDerivatives result = derive(loop, cycle, mirror, rates, options.rtol, options);
   if (result.status != Status::converged) return result;
-  CycleDerivatives rough = derive(loop, cycle, rates, looser * options.rtol, options);
+  CycleDerivatives rough = derive(loop, cycle, mirror, rates, looser * options.rtol, options);
   if (rough.status != Status::converged) return rough;
   compare(rough, cycle, rates, result);
   return result;

@@ -15,8 +15,10 @@ namespace limcycle {
 
 /// How a cycle moves with one parameter p, each per unit of p, with an estimate of its absolute error.
 struct CycleDerivative {
-  double period = 0.0, period_error = 0.0;        ///< s
-  double amplitude = 0.0, amplitude_error = 0.0;  ///< of half the peak-to-peak of y
+  double period = 0.0, period_error = 0.0;                  ///< s
+  double amplitude = 0.0, amplitude_error = 0.0;            ///< of half the peak-to-peak of y
+  double first_harmonic = 0.0, first_harmonic_error = 0.0;  ///< of the amplitude of y's first harmonic
+  double offset = 0.0, offset_error = 0.0;                  ///< of y's mean
   /// In the order of Cycle::multipliers. Empty where the multiplier is not simple or is zero to rounding, so that it
   /// has no derivative, or none that double precision can tell.
   std::vector<std::optional<std::complex<double>>> multipliers;
@@ -36,22 +38,26 @@ struct CycleDerivativeOptions {
   std::function<bool()> stop;
 };
 
-/// Derivatives of period, amplitude and Floquet multipliers of a cycle with respect to parameters, each given by a pair
-/// of neighbours of the loop.
+/// Derivatives of period, amplitude, first harmonic, offset and Floquet multipliers of a cycle with respect to
+/// parameters, each given by a pair of neighbours of the loop.
 ///
 /// With P the state after the period T from x0, the cycle is P(x0, T, p) = x0, so that by the implicit function theorem
 ///   (I - dP/dx0) dx0/dp - f dT/dp = dP/dp,   f . dx0/dp = 0 (the phase, which nothing else fixes).
 /// dP/dx0 and dP/dp are those of the variational equations through every stick, slip and switch (cut_cycle). The
-/// amplitude follows from the deviations where y turns, or switches at a corner. A multiplier m, simple, with
-/// eigenvectors w and v of the product of the step derivatives F_k, moves by  sum_k w' F_K..F_k+1 (dF_k/dp) F_k-1..F_1
-/// v/(w' v);  dF_k/dp is the difference between the derivatives over the same step in the neighbours, beginning and
-/// ending on their cycles, which the solution above tells: no cycle but the given one is computed, and no motion is
-/// differenced.
+/// amplitude follows from the deviations where y turns, or switches at a corner, harmonic and offset from those all
+/// along (output_derivatives). A multiplier m, simple, with eigenvectors w and v of the product of the step derivatives
+/// F_k, moves by  sum_k w' F_K..F_k+1 (dF_k/dp) F_k-1..F_1 v/(w' v);  dF_k/dp is the difference between the derivatives
+/// over the same step in the neighbours, beginning and ending on their cycles, which the solution above tells: no cycle
+/// but the given one is computed, and no motion is differenced.
+///
+/// A half-wave symmetric cycle whose neighbours are symmetric too is gone over by half: its end, reflected, is its
+/// start; a multiplier is the square of one of the half period.
 ///
 /// The cycle must be as good as shooting makes it (residual 1e-9 or less) and begin off its switches. Where a switch is
 /// grazed there is no derivative: Status stalled. Nor is there one of a cycle that keeps something of what was before
 /// (Cycle::remembered): Status undefined. Cost: a march of the period with a linear system of 3n and n + q
-/// columns a step, and for multipliers 2 q such systems more.
+/// columns a step, and for multipliers 2 q such systems more: for a servo with bristles and ten
+/// parameters as much as finding the cycle without multipliers, five times as much with them.
 CycleDerivatives cycle_derivatives(const Loop& loop, const Cycle& cycle,
                                    std::span<const ParameterNeighbours> neighbours,
                                    const CycleDerivativeOptions& options = {});

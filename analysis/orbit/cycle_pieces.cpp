@@ -14,6 +14,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double longest_panel = 1.0 / 32.0;  ///< of a quadrature, in periods
+
 /// Marches and cuts.
 class Cutter {
  public:
@@ -22,14 +24,17 @@ class Cutter {
         field_(loop),
         flow_(field_),
         exact_(choose_stepper(loop, options.rtol) == StepperKind::exact),
-        march_(field_, exact_ ? StepperKind::exact : StepperKind::rodas5p, loop_weights(loop, options.rtol)),
+        typical_(options.typical ? *options.typical : typical_sizes(loop)),
+        march_(field_, exact_ ? StepperKind::exact : StepperKind::rodas5p, loop_weights(loop, options.rtol, typical_)),
         options_(options) {
-    const State typical = typical_sizes(loop);
-    result_.sizes = 1e-6 * Eigen::Map<const VectorXd>(typical.data(), std::ssize(typical));
+    output_ = Eigen::RowVectorXd::Zero(std::ssize(typical_));
+    output_.head(loop.states()) = loop.C_y;
+    result_.sizes = 1e-6 * Eigen::Map<const VectorXd>(typical_.data(), std::ssize(typical_));
   }
 
   CyclePieces operator()(const LoopState& start, double period) {
     field_.modes() = start.modes;
+    period_ = period;
     march_.begin(start.x, 0.0);
     include(start.x);
     while (march_.t() < period && result_.status == Status::converged) {
@@ -69,20 +74,70 @@ class Cutter {
 
   void append(const Step& step, const std::vector<Mode>& modes) {
     const Index n = std::ssize(step.x0), count = rates_.count();
-    CyclePiece piece{step, modes, {}, {}, {}, {}, {}};
-    const double h = step.t1 - step.t0;
+    CyclePiece piece{step, modes, {}, {}, {}, {}, {}, {}};
     if (exact_) {
-      piece.factor = flow_.over(h).topLeftCorner(n, n);
-      piece.columns = rates_.over(field_, step.x0, h);
+      go_exactly(piece);
     } else {
-      const MatrixXd both =
-          transition(field_, step, count, [this](const State& x, const MatrixXd& J, double t, MatrixXd& columns) {
+      StageReadings readings;
+      if (options_.read_output) readings.row = output_;
+      const MatrixXd both = transition(
+          field_, step, count,
+          [this](const State& x, const MatrixXd& J, double t, MatrixXd& columns) {
             rates_.rates(field_, x, J, t, columns);
-          });
+          },
+          options_.read_output ? &readings : nullptr);
       piece.factor = both.leftCols(n);
       piece.columns = both.rightCols(count);
+      if (options_.read_output) read(piece, readings);
     }
     result_.pieces.push_back(std::move(piece));
+  }
+
+  /// Over a piece by the exact flow.
+  void go_exactly(CyclePiece& piece) {
+    const Index n = std::ssize(piece.step.x0);
+    const double h = piece.step.t1 - piece.step.t0;
+    piece.factor = flow_.over_step(h).topLeftCorner(n, n);
+    piece.columns = rates_.over(field_, piece.step.x0, h);
+    if (options_.read_output) read_exactly(piece);
+  }
+
+  /// The readings of such a piece, by Boole's rule over panels that are short beside the period, however straight the
+  /// motion is: what they are for has its phase.
+  void read_exactly(CyclePiece& piece) {
+    constexpr std::array<double, 4> boole{14.0 / 90.0, 32.0 / 90.0, 12.0 / 90.0, 32.0 / 90.0};
+    const Index n = std::ssize(piece.step.x0);
+    const double length = piece.step.t1 - piece.step.t0;
+    int parts = 4;
+    while (length > 0.25 * parts * longest_panel * period_) parts *= 2;
+    const double h = length / parts;
+    const MatrixXd part = flow_.over_step(h);
+    MatrixXd factor = MatrixXd::Identity(n, n), columns = MatrixXd::Zero(n, rates_.count());
+    State x = piece.step.x0, next;
+    for (int i = 0; i <= parts; ++i) {
+      const double weight = (i == 0 || i == parts ? 0.5 : 1.0) * boole[static_cast<std::size_t>(i % 4)] * 4.0 * h;
+      piece.readings.push_back(
+          {piece.step.t0 + i * h, weight, field_.y(x), output_ * factor, output_ * columns + rates_.output(x)});
+      if (i == parts) return;
+      columns = (part.topLeftCorner(n, n) * columns + rates_.over(field_, x, h)).eval();
+      factor = (part.topLeftCorner(n, n) * factor).eval();
+      AffineFlow::apply(part, x, next);
+      std::swap(x, next);
+    }
+  }
+
+  /// The readings at the stages of a step.
+  void read(CyclePiece& piece, const StageReadings& readings) {
+    const Index n = std::ssize(piece.step.x0);
+    const double length = piece.step.t1 - piece.step.t0;
+    State x;
+    for (Index i = 0; i < StageReadings::count; ++i) {
+      const double share = StageReadings::node(i);
+      piece.step.interpolate(share, x);
+      piece.readings.push_back({piece.step.t0 + share * length, StageReadings::weight(i) * length, field_.y(x),
+                                readings.at.row(i).head(n),
+                                readings.at.row(i).tail(rates_.count()) + rates_.output(x)});
+    }
   }
 
   /// Where, in shares of the last step, y turns or what rubs reverses; in order.
@@ -179,8 +234,11 @@ class Cutter {
   LoopField field_;
   AffineFlow flow_;
   bool exact_;
+  double period_ = 0.0;
+  State typical_;
   March march_;
   const CutOptions& options_;
+  Eigen::RowVectorXd output_;  ///< y of the states
   CyclePieces result_;
 };
 

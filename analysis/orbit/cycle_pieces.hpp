@@ -29,20 +29,36 @@ struct CyclePiece {
     Eigen::MatrixXd saltation, jump;  ///< what it does to deviations, and what it adds by parameters
   };
   std::optional<Switch> event;
+  /// y at a node of a quadrature over the piece, and its deviation given that of the start of the piece.
+  struct Reading {
+    double t, weight, y;
+    Eigen::RowVectorXd by_start, by_parameters;
+  };
+  std::vector<Reading> readings;  ///< if CutOptions ask for them
 };
 
-/// One period of a cycle in pieces.
+/// The reflection x -> c + S (x - c) under which a cycle is half-wave symmetric, S diagonal.
+struct CycleMirror {
+  Eigen::VectorXd signs;   ///< S
+  Eigen::VectorXd centre;  ///< c
+  Eigen::MatrixXd moved;   ///< dc/dp, a column for each parameter
+};
+
+/// One period of a cycle in pieces, or half of one.
 struct CyclePieces {
   Status status = Status::converged;
   std::vector<CyclePiece> pieces;
-  LoopState last;         ///< after the period
-  Eigen::VectorXd sizes;  ///< largest |state| met, at least 1e-6 of the typical one
+  std::optional<CycleMirror> mirror;  ///< half a period was gone over: reflecting its end gives the start
+  LoopState last;                     ///< after the period, or reflected after half of it
+  Eigen::VectorXd sizes;              ///< largest |state| met, at least 1e-6 of the typical one
 };
 
 struct CutOptions {
   double rtol = 1e-10;
   long max_steps = 200000;
   std::function<bool()> stop;
+  bool read_output = false;
+  std::optional<State> typical = {};  ///< sizes of the states, if they are not to be found from the linear part
 };
 
 /// Marches from `start` for the time `period` and finds what small deviations do: variational equations along every

@@ -20,16 +20,17 @@ using Complex = std::complex<double>;
 /// Right and left eigenvector of a simple multiplier, w' v = 1; nothing if it is not simple.
 struct Eigenpair {
   VectorXcd v, w;
+  double defect = 0.0;  ///< how far the multiplier is from being one
 };
-std::optional<Eigenpair> eigenpair(const MatrixXd& scaled, Complex multiplier) {
+std::optional<Eigenpair> eigenpair(const MatrixXd& scaled, Complex multiplier, double least) {
   const Index n = scaled.rows();
   const double size = scaled.norm();
-  if (!(std::abs(multiplier) > 1e-9 * size)) return std::nullopt;
+  if (!(std::abs(multiplier) > least * size)) return std::nullopt;
   const MatrixXcd shifted = scaled.cast<Complex>() - multiplier * MatrixXcd::Identity(n, n);
   const Eigen::JacobiSVD<MatrixXcd> svd(shifted, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const auto& singular = svd.singularValues();
   if (n > 1 && !(singular(n - 1) < 1e-3 * singular(n - 2))) return std::nullopt;
-  Eigenpair pair{svd.matrixV().col(n - 1), svd.matrixU().col(n - 1)};
+  Eigenpair pair{svd.matrixV().col(n - 1), svd.matrixU().col(n - 1), singular(n - 1)};
   const Complex product = pair.w.dot(pair.v);
   if (!(std::abs(product) > 1e-9)) return std::nullopt;
   pair.w /= std::conj(product);
@@ -219,10 +220,21 @@ std::vector<std::vector<std::optional<Complex>>> multiplier_derivatives(const Cy
   const auto factors = factors_of(cut, nodes);
   MatrixXd whole = cut.sizes.asDiagonal();
   for (const MatrixXd* factor : factors) whole = (*factor * whole).eval();
+  if (cut.mirror) whole = (cut.mirror->signs.asDiagonal() * whole).eval();
   whole = (cut.sizes.cwiseInverse().asDiagonal() * whole).eval();
+  constexpr double least = 1e-9;  // of the largest: below are roundings
   std::vector<std::optional<CarriedPair>> pairs;
   for (const Complex multiplier : multipliers) {
-    const auto pair = eigenpair(whole, multiplier);
+    auto pair =
+        eigenpair(whole, cut.mirror ? std::sqrt(multiplier) : multiplier, cut.mirror ? std::sqrt(least) : least);
+    if (cut.mirror) {  // one of the two roots is a multiplier of the half period
+      const auto other = eigenpair(whole, -std::sqrt(multiplier), std::sqrt(least));
+      const bool take_other = other && (!pair || other->defect < pair->defect);
+      if (take_other) pair = other;
+      // d(m^2) = 2 m dm; and the reflection is a last factor.
+      const Complex root = take_other ? -std::sqrt(multiplier) : std::sqrt(multiplier);
+      if (pair) pair->w = (2.0 * std::conj(root) * pair->w).cwiseProduct(cut.mirror->signs.cast<Complex>());
+    }
     pairs.push_back(pair ? std::optional(carry_pair(factors, cut.sizes, *pair)) : std::nullopt);
   }
   std::vector<Changes> result;

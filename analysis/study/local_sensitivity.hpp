@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/study/margin.hpp"
 #include "limcycle/analysis/study/sensitivity.hpp"
 #include "limcycle/models/loop.hpp"
 
@@ -23,5 +24,18 @@ struct LoopNumber {
 std::vector<LocalSensitivity> local_sensitivities(const Loop& loop, const Cycle& cycle,
                                                   const std::vector<LoopNumber>& numbers,
                                                   const std::function<bool()>& stop = {});
+
+/// How the oscillations that the describing function predicts in a box move with each number (see
+/// prediction_derivatives). None where it does not apply, or predicts none: `notes` say which.
+std::vector<PredictedOscillation> predicted_sensitivities(const Loop& loop, const SearchBox& box,
+                                                          const std::vector<LoopNumber>& numbers,
+                                                          std::vector<std::string>& notes,
+                                                          const std::function<bool()>& stop = {});
+
+/// How the threshold of one of the numbers moves with the others (see threshold_derivatives). `side` is what margin()
+/// found, `loop` and `numbers` are those at side.value, and `own` is the index of the number whose threshold it is.
+std::vector<ThresholdNumber> threshold_sensitivities(const Loop& loop, const MarginSide& side,
+                                                     const std::vector<LoopNumber>& numbers, std::size_t own,
+                                                     const std::function<bool()>& stop = {});
 
 }  // namespace limcycle

@@ -30,6 +30,9 @@ struct MarginSide {
   double value = 0.0;  ///< of the parameter, if hunting ends or begins
   double error = 0.0;  ///< of it, relative; NaN if only known as the last or first one that was seen
   std::string why;     ///< one sentence
+  /// What happens to the branch of cycles there, and the cycle; if it was followed to a fold or a change of stability.
+  std::optional<BranchEvent::Type> event = {};
+  std::optional<Cycle> cycle = {};
   bool found() const { return what == What::ends || what == What::begins; }
 };
 std::string_view to_string(MarginSide::What what);

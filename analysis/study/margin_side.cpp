@@ -45,11 +45,19 @@ SideSearch::Lost SideSearch::follow(const Cycle& cycle, double p, double limit) 
   const BranchEvent& event = branch.events.back();
   const bool reached = event.type == BranchEvent::Type::end && event.parameter == limit;
   const bool cut = branch.status == Status::max_iterations || branch.status == Status::interrupted;
-  return {event.parameter, event.error, event.why,
+  return {event.parameter,
+          event.error,
+          event.why,
           reached ? Lost::Kind::border
           : cut   ? Lost::Kind::failed
                   : Lost::Kind::lost,
-          std::move(last)};
+          std::move(last),
+          event.type == BranchEvent::Type::end ? std::nullopt : std::optional(event.type),
+          event.type == BranchEvent::Type::end ? std::nullopt : std::optional(branch.points.at(event.point).cycle)};
+}
+
+MarginSide SideSearch::found(MarginSide::What what, const Lost& lost, std::string why) {
+  return {what, lost.value, lost.error, std::move(why), lost.event, lost.cycle};
 }
 
 std::optional<Cycle> SideSearch::cycle_at(double p, const LoopState* from, Outcome& outcome) {
@@ -94,7 +102,7 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
     const double step = limit_ > p ? beyond : -beyond;
     const double next = lost.value * (1.0 + (parameter_.value > 0.0 ? step : -step));
     const bool past = std::abs(std::log(next / parameter_.value)) >= std::abs(std::log(limit_ / parameter_.value));
-    if (past || !parameter_.family(next)) return {What::ends, lost.value, lost.error, lost.why};
+    if (past || !parameter_.family(next)) return found(What::ends, lost, lost.why);
     Outcome outcome{};
     auto other = cycle_at(next, &lost.last, outcome);
     if (stopped()) break;
@@ -103,9 +111,9 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
         const std::string after = outcome == Outcome::divergence
                                       ? "; beyond it the motion diverges"
                                       : "; beyond it the motion ends in " + std::string(to_string(outcome));
-        return {What::ends, lost.value, lost.error, lost.why + after};
+        return found(What::ends, lost, lost.why + after);
       }
-      return {What::ends, lost.value, lost.error, lost.why + "; what the motion does just beyond was not decided"};
+      return found(What::ends, lost, lost.why + "; what the motion does just beyond was not decided");
     }
     cycle = std::move(*other);
     p = next;
@@ -131,7 +139,7 @@ MarginSide SideSearch::where_hunting_begins() {
               "none up to " + short_number(last, 5) + "; at " + short_number(p, 5) + " the motion diverges"};
     if (cycle) {
       const Lost lost = follow(*cycle, p, parameter_.value);
-      if (lost.kind == Lost::Kind::lost) return {What::begins, lost.value, lost.error, lost.why};
+      if (lost.kind == Lost::Kind::lost) return found(What::begins, lost, lost.why);
       if (lost.kind == Lost::Kind::border)
         return {What::begins, parameter_.value, 0.0,
                 "the cycle found at " + short_number(p, 5) +

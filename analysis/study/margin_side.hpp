@@ -23,9 +23,12 @@ class SideSearch {
     std::string why;
     enum class Kind { lost, border, failed } kind;
     LoopState last;  ///< on the last stable cycle before it
+    std::optional<BranchEvent::Type> event = {};
+    std::optional<Cycle> cycle = {};  ///< there
   };
   /// Follows a stable cycle from p towards `limit` until it is lost.
   Lost follow(const Cycle& cycle, double p, double limit);
+  static MarginSide found(MarginSide::What what, const Lost& lost, std::string why);
   /// A stable cycle at p, reached from a state or from rest displaced; `outcome`: what was reached.
   std::optional<Cycle> cycle_at(double p, const LoopState* from, Outcome& outcome);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/analysis/orbit/threshold_derivatives.hpp"
 #include "limcycle/analysis/study/global/morris.hpp"
 #include "limcycle/analysis/study/global/share_of.hpp"
 #include "limcycle/analysis/study/global/sobol.hpp"
 #include "limcycle/analysis/study/hunting_answers.hpp"
 #include "limcycle/analysis/study/hunting_map.hpp"
 #include "limcycle/analysis/study/parameter_spread.hpp"
+#include "limcycle/analysis/study/prediction_derivatives.hpp"
 
 namespace limcycle {
 
@@ -21,8 +23,44 @@ struct LocalSensitivity {
   double value = 0.0;
   double amplitude = 0.0, period = 0.0;           ///< derivatives; NaN if unknown
   std::vector<std::complex<double>> multipliers;  ///< derivatives, in the order of the cycle's
-  double error = 0.0;  ///< estimated, of the derivatives relative to themselves; NaN if unknown
-  std::string why;     ///< why they are unknown; else empty
+  double error = 0.0;                         ///< estimated, of the derivatives relative to themselves; NaN if unknown
+  std::string why;                            ///< why they are unknown; else empty
+  double first_harmonic = 0.0, offset = 0.0;  ///< derivatives; NaN if unknown
+  double first_harmonic_error = 0.0, offset_error = 0.0;  ///< absolute
+  double amplitude_error = 0.0, period_error = 0.0;       ///< absolute; `error` is the larger of the two relative ones
+};
+
+/// How an oscillation that the describing function predicts moves with one number of the case.
+struct PredictedSensitivity {
+  std::string path, unit;
+  double value = 0.0;
+  PredictionDerivative by;
+  std::string why;  ///< why it is unknown; else empty
+};
+
+/// One that it predicts.
+struct PredictedOscillation {
+  PredictionDerivatives found;  ///< its `by` is in `numbers`
+  std::vector<PredictedSensitivity> numbers;
+};
+
+/// How a threshold moves with one number of the case.
+struct ThresholdNumber {
+  std::string path, unit;
+  double value = 0.0;
+  ThresholdDerivative by;
+  std::string why;  ///< why it is unknown; else empty
+};
+
+/// The value of one number at which hunting ends or begins, on the nearer side, and how that moves with all others.
+struct ThresholdSensitivity {
+  std::string path, unit;
+  double value = 0.0;            ///< own, of the case
+  bool known = false;            ///< there is a threshold
+  bool begins = false;           ///< hunting begins there; else it ends
+  double at = 0.0, error = 0.0;  ///< the threshold; relative error, NaN if unknown
+  std::string why;               ///< what happens there, or why there is no threshold
+  std::vector<ThresholdNumber> numbers;
 };
 
 /// What happens with one number changed and all others as they are.
@@ -75,6 +113,8 @@ GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std
 struct SensitivityReport {
   std::optional<Cycle> cycle;  ///< the stable one that swings most, which the derivatives are of
   std::vector<LocalSensitivity> local;
+  std::vector<PredictedOscillation> predicted;
+  std::vector<ThresholdSensitivity> thresholds;
   std::vector<ParameterChange> one_at_a_time;
   ParameterSpread spread;
   bool spread_is_default = false;

@@ -93,3 +93,60 @@ TEST_CASE("sensitivity: without a cycle there is nothing to differentiate, and t
   CHECK(document["answer"].get<std::string>().find("no stable limit cycle") != std::string::npos);
   CHECK(run({"sensitivity", lugre_case, "--factors", "0,2"}).code == 2);
 }
+
+TEST_CASE("sensitivity: harmonics, predictions and thresholds") {
+  const Scratch scratch;
+  const std::string relay_case = LIMCYCLE_SOURCE_DIR "/cases/relay-third-order.toml";
+  const Ran ran = run({"sensitivity", relay_case, "--set", "loop.element.dead_zone=0.05", "--local", "--factors", "1.1",
+                       "--threshold", "loop.element.dead_zone", "--threshold", "loop.element.level", "--json", "-",
+                       "--quiet", "--html", scratch.file("s.html"), "--csv", scratch.file("s.csv")});
+  REQUIRE(ran.code == 0);
+  const json document = json::parse(ran.out);
+  // For small constants the relay is a gain k: y = k/(1 + k) r + 1/(1 + k) load.
+  const auto of = [](const json& one) { return one["derivative"]["offset"].get<double>(); };
+  CHECK(of(parameter(document, "loop.reference")) + of(parameter(document, "loop.load")) == Approx(1.0).epsilon(1e-6));
+  CHECK(parameter(document, "loop.element.level")["elasticity"]["first_harmonic"].get<double>() > 1.0);
+
+  REQUIRE(document["predicted"].size() == 2);
+  CHECK(document["predicted"][0]["gain"][0].get<double>() == Approx(8.0).epsilon(1e-6));
+  const json by_level = parameter(document["predicted"][0], "loop.element.level");
+  REQUIRE_FALSE(by_level.is_null());
+  CHECK(by_level["derivative"]["gain"][0].get<double>() == Approx(8.0).epsilon(1e-6));
+
+  REQUIRE(document["thresholds"].size() == 2);
+  const json& zone = document["thresholds"][0];
+  CHECK(zone["what"] == "ends");
+  CHECK(zone["at"].get<double>() == Approx(0.08187508).epsilon(1e-6));
+  bool by_the_level = false;
+  for (const auto& one : zone["parameters"]) {
+    CHECK(one["name"] != "loop.element.dead_zone");
+    if (one["name"] != "loop.element.level") continue;
+    by_the_level = true;  // only the ratio of both counts
+    CHECK(one["elasticity"].get<double>() == Approx(1.0).epsilon(1e-5));
+  }
+  CHECK(by_the_level);
+  CHECK(scratch.get("s.html").find("Elasticities of the threshold of element.dead_zone") != std::string::npos);
+  CHECK(scratch.get("s.html").find("nan") == std::string::npos);
+  CHECK(scratch.get("s.csv").find("threshold,loop.element.level,loop.element.dead_zone,0.0818") != std::string::npos);
+  CHECK(scratch.get("s.csv").find("predicted,loop.element.level,amplitude of prediction 0,") != std::string::npos);
+
+  CHECK(run({"sensitivity", relay_case, "--local", "--threshold", "loop.element.dead_zone"}).code == 2);  // it is 0
+  CHECK(run({"sensitivity", relay_case, "--local", "--threshold", "loop.element.nothing"}).code == 2);
+}
+
+TEST_CASE("sensitivity: without a cycle, where hunting begins") {
+  const std::string relay_case = LIMCYCLE_SOURCE_DIR "/cases/relay-third-order.toml";
+  const Ran ran = run({"sensitivity", relay_case, "--set", "loop.element.dead_zone=0.1", "--local", "--factors", "1.1",
+                       "--threshold", "loop.element.level", "--json", "-", "--quiet"});
+  REQUIRE(ran.code == 0);
+  const json document = json::parse(ran.out);
+  CHECK(document["cycle"].is_null());
+  REQUIRE(document["thresholds"].size() == 1);
+  const json& level = document["thresholds"][0];
+  CHECK(level["what"] == "begins");
+  CHECK(level["at"].get<double>() == Approx(0.1 / 0.08187508).epsilon(1e-6));
+  for (const auto& one : level["parameters"]) {
+    if (one["name"] == "loop.element.dead_zone")
+      CHECK(one["derivative"].get<double>() == Approx(1.0 / 0.08187508).epsilon(1e-5));
+  }
+}

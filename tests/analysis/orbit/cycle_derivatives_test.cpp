@@ -198,3 +198,47 @@ TEST_CASE("derivatives of a cycle: what cannot be derived is told") {
   pairs[0] = {build_loop(servo_parts(coulomb(1.5, 1.0))), loop, 1e-5, 1.0};
   CHECK_THROWS_AS(cycle_derivatives(loop, cycle, pairs), std::invalid_argument);
 }
+
+TEST_CASE("derivatives over half a period of a symmetric cycle are those over the whole") {
+  const auto parts = servo_parts(lugre());
+  const Loop loop = build_loop(parts);
+  const Cycle cycle = the_cycle(loop, 1.0);
+  REQUIRE(cycle.half_wave_symmetric);
+  const auto knobs = lugre_knobs();
+  auto pairs = neighbours(parts, knobs);
+  // The set-point moves the middle, and with the integral action nothing else.
+  const auto lifted = [&](double to) {
+    LoopParts moved = parts;
+    moved.reference = to;
+    return build_loop(moved);
+  };
+  pairs.push_back({lifted(-1e-6), lifted(1e-6), 1e-6, 0.0});
+  const auto half = cycle_derivatives(loop, cycle, pairs);
+  REQUIRE(half.status == Status::converged);
+  CHECK(half.by.back().offset == Approx(1.0).epsilon(1e-8));
+  CHECK(std::abs(half.by.back().amplitude) <= half.by.back().amplitude_error);
+  CHECK(std::abs(half.by.back().period) <= half.by.back().period_error);
+
+  // A level of one direction breaks the symmetry, and so the whole period is gone over.
+  const auto one_sided = [](double Fc) {
+    auto law = lugre();
+    law.Fc_minus = Fc;
+    return servo(law);
+  };
+  pairs.push_back({one_sided(1.0 - 1e-6), one_sided(1.0 + 1e-6), 1e-6, 1.0});
+  const auto whole = cycle_derivatives(loop, cycle, pairs);
+  REQUIRE(whole.status == Status::converged);
+  for (std::size_t k = 0; k < half.by.size(); ++k) {
+    CAPTURE(k);
+    const auto &a = half.by[k], &b = whole.by[k];
+    CHECK(std::abs(a.period - b.period) <= a.period_error + b.period_error);
+    CHECK(std::abs(a.amplitude - b.amplitude) <= a.amplitude_error + b.amplitude_error);
+    CHECK(std::abs(a.first_harmonic - b.first_harmonic) <= a.first_harmonic_error + b.first_harmonic_error);
+    CHECK(std::abs(a.offset - b.offset) <= a.offset_error + b.offset_error);
+    REQUIRE(a.multipliers.at(0).has_value());
+    CHECK(std::abs(*a.multipliers[0] - *b.multipliers[0]) <= a.multiplier_error + b.multiplier_error);
+  }
+  // Of both levels together it is that of Fc, by halves.
+  CHECK(whole.by.back().period == Approx(0.5 * whole.by[5].period).epsilon(1e-5));
+  CHECK(whole.by.back().amplitude == Approx(0.5 * whole.by[5].amplitude).epsilon(1e-5));
+}

@@ -110,9 +110,107 @@ TEST_CASE("local sensitivity: damping beside viscous friction, borders, and numb
   CHECK(local[1].period == Approx(local[0].period).epsilon(1e-6));
   CHECK(local[1].amplitude == Approx(local[0].amplitude).epsilon(1e-6));
   CHECK(local[0].error < 1e-5);
+  CHECK(local[1].first_harmonic == Approx(local[0].first_harmonic).epsilon(1e-6));
+  CHECK(std::abs(local[0].first_harmonic) > 1e-3);
+  CHECK(std::abs(local[0].offset) <= local[0].offset_error);
   // At 0 these two stand for something absent.
   CHECK(!local[2].why.empty());
   CHECK(std::isnan(local[2].period));
+  CHECK(std::isnan(local[2].offset));
   CHECK(!local[3].why.empty());
   CHECK(std::isnan(local[3].amplitude));
+}
+
+namespace {
+
+/// Relay before 1/(s + 1)^3, its dead zone 0.05.
+LoopParts relay_chain() {
+  LoopParts parts;
+  parts.plant = TransferFunction{{1.0}, {1.0, 3.0, 3.0, 1.0}, 0.0};
+  parts.element = test::relay(1.0, 0.0, 0.05);
+  return parts;
+}
+std::vector<LoopNumber> relay_numbers(const LoopParts& parts) {
+  return {number_of(parts, test::of_relay("level", &Relay<double>::level)),
+          number_of(parts, test::of_relay("dead_zone", &Relay<double>::dead_zone)),
+          number_of(parts, test::of_relay("hysteresis", &Relay<double>::hysteresis))};
+}
+
+}  // namespace
+
+TEST_CASE("sensitivity of what the describing function predicts: both oscillations of a relay with dead zone") {
+  // N = 4 M/(pi A) sqrt(1 - (d/A)^2) = 8 at w = sqrt(3); A is as M where d/M is kept.
+  const LoopParts parts = relay_chain();
+  const Loop loop = build_loop(parts);
+  std::vector<std::string> notes;
+  const auto found = predicted_sensitivities(loop, default_search_box(loop), relay_numbers(parts), notes);
+  REQUIRE(found.size() == 2);
+  CHECK(notes.empty());
+  for (const auto& one : found) {
+    REQUIRE(one.found.status == Status::converged);
+    CHECK(one.found.gain.real() == Approx(8.0).epsilon(1e-8));
+    CHECK(one.found.frequency == Approx(std::sqrt(3.0)).epsilon(1e-8));
+    REQUIRE(one.numbers.size() == 3);
+    const double A = one.found.amplitude, by_level = one.numbers[0].by.amplitude, by_zone = one.numbers[1].by.amplitude;
+    CHECK(by_level + 0.05 * by_zone == Approx(A).epsilon(1e-7));
+    // pi/4 N A^2 = M sqrt(A^2 - d^2): (2 pi/4 N A sqrt(A^2 - d^2) - M A) dA = -M d dd.
+    const double root = std::sqrt(A * A - 0.0025);
+    CHECK(by_zone == Approx(-0.05 / (4.0 * std::acos(-1.0) * A * root - A)).epsilon(1e-6));
+    CHECK(std::abs(one.numbers[2].by.frequency) > 1.0);  // of no hysteresis at all
+  }
+
+  // A loop of several elements, or one that predicts nothing, says so.
+  notes.clear();
+  const Loop servo = test::servo(test::lugre());
+  CHECK(predicted_sensitivities(servo, default_search_box(servo), {}, notes).empty());
+  CHECK(notes.size() == 1);
+}
+
+TEST_CASE("sensitivity of a threshold that a margin found") {
+  const LoopParts parts = relay_chain();
+  const auto numbers = relay_numbers(parts);
+  const auto report = margin(build_loop(parts), {{"dead_zone", "1", 0.05, false, numbers[1].loop_at}}, {});
+  REQUIRE(report.parameters.size() == 1);
+  const MarginSide& side = report.parameters[0].up;
+  REQUIRE(side.what == MarginSide::What::ends);
+  REQUIRE(side.event == BranchEvent::Type::fold);
+  REQUIRE(side.cycle);
+  CHECK_FALSE(report.parameters[0].down.cycle);
+  LoopParts there = parts;
+  std::get<Relay<double>>(*there.element).dead_zone = side.value;
+  const auto moved = threshold_sensitivities(build_loop(there), side, relay_numbers(there), 1);
+  REQUIRE(moved.size() == 2);
+  CHECK(moved[0].path == "level");
+  CHECK(moved[0].why.empty());
+  CHECK(moved[0].by.value == Approx(side.value).epsilon(1e-5));
+  CHECK(std::abs(moved[0].by.value - side.value) <= moved[0].by.error + 1e-6 * side.value);
+  // The hysteresis can only grow, so its neighbours are on one side.
+  CHECK(moved[1].why.empty());
+  LoopParts more = parts;
+  std::get<Relay<double>>(*more.element).hysteresis = 2e-4;
+  const auto beyond = margin(build_loop(more), {{"dead_zone", "1", 0.05, false, relay_numbers(more)[1].loop_at}}, {});
+  const double slope = (beyond.parameters[0].up.value - side.value) / 2e-4;
+  CHECK(moved[1].by.value == Approx(slope).epsilon(0.01));
+
+  MarginSide elsewhere = side;
+  elsewhere.cycle.reset();
+  for (const auto& one : threshold_sensitivities(build_loop(there), elsewhere, relay_numbers(there), 1))
+    CHECK_FALSE(one.why.empty());
+}
+
+TEST_CASE("local sensitivity: a dead zone that is not there spoils only its own derivative") {
+  // As soon as it is there the relay switches twice as often.
+  LoopParts parts = relay_chain();
+  std::get<Relay<double>>(*parts.element).dead_zone = 0.0;
+  const Loop loop = build_loop(parts);
+  const Cycle cycle = test::the_cycle(loop, 1.0);
+  const auto local = local_sensitivities(loop, cycle, relay_numbers(parts));
+  REQUIRE(local.size() == 3);
+  CHECK(local[0].why.empty());
+  CHECK(local[0].amplitude == Approx(cycle.amplitude).epsilon(1e-7));  // as the level
+  CHECK(std::abs(local[0].period) <= local[0].period_error);
+  CHECK_FALSE(local[1].why.empty());
+  CHECK(std::isnan(local[1].amplitude));
+  CHECK(local[2].why.empty());
+  CHECK(local[2].period > 1.0);
 }
