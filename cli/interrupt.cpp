@@ -22,6 +22,8 @@ void catch_interrupts() {
     if (std::signal(signal, ask) == SIG_IGN) std::signal(signal, SIG_IGN);  // started in the background: stays deaf
 }
 
+void interrupt() { asked.store(true, std::memory_order_relaxed); }
+
 bool interrupted() { return asked.load(std::memory_order_relaxed); }
 
 }  // namespace limcycle

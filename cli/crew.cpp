@@ -1,0 +1,114 @@
+#include "limcycle/cli/crew.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace limcycle {
+namespace {
+
+constexpr double part_seconds = 0.2;
+
+}  // namespace
+
+Crew::Crew(const SweepTask& task, std::size_t threads) : task_(task) {
+  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+}
+
+Crew::~Crew() { stop(); }
+
+void Crew::give(std::vector<std::size_t> points) {
+  const std::lock_guard lock(mutex_);
+  waiting_.push_back(std::move(points));
+  given_.notify_one();
+}
+
+std::vector<FinishedPoints> Crew::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(done_, {});
+}
+
+void Crew::wait(std::chrono::microseconds patience) {
+  std::unique_lock lock(mutex_);
+  finished_.wait_for(lock, patience, [this] { return !done_.empty() || failure_ != nullptr; });
+}
+
+void Crew::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    waiting_.clear();
+  }
+  given_.notify_all();
+  threads_.clear();
+}
+
+void Crew::check() const {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void Crew::work() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    given_.wait(lock, [this] { return stopped_ || !waiting_.empty(); });
+    if (stopped_) return;
+    const auto points = std::move(waiting_.front());
+    waiting_.pop_front();
+    lock.unlock();
+    std::exception_ptr failure;
+    try {
+      compute_all(points);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    lock.lock();
+    if (!failure) continue;
+    if (!failure_) failure_ = failure;
+    stopped_ = true;
+    finished_.notify_one();
+  }
+}
+
+void Crew::compute_all(std::span<const std::size_t> points) {
+  std::vector<double> rows;
+  FinishedPoints part;
+  auto begin = std::chrono::steady_clock::now();
+  while (!points.empty()) {
+    const auto some = points.first(std::min(task_.block, points.size()));
+    // A number that compute forgets is missing.
+    rows.assign(some.size() * task_.columns, std::numeric_limits<double>::quiet_NaN());
+    std::size_t count = 0;
+    try {
+      count = std::min(task_.compute(some, rows), some.size());
+    } catch (...) {
+      deliver(std::move(part));  // what came before is right
+      throw;
+    }
+    part.points.insert(part.points.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+    part.rows.insert(part.rows.end(), rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count * task_.columns));
+    points = points.subspan(some.size());
+    part.all = points.empty();
+    part.stopped = count < some.size();
+    const auto now = std::chrono::steady_clock::now();
+    part.seconds = std::chrono::duration<double>(now - begin).count();
+    const bool end = part.stopped || stopped();
+    if (!end && !part.all && part.seconds < part_seconds) continue;
+    deliver(std::exchange(part, {}));
+    begin = now;
+    if (end) return;
+  }
+}
+
+void Crew::deliver(FinishedPoints&& part) {
+  const std::lock_guard lock(mutex_);
+  done_.push_back(std::move(part));
+  finished_.notify_one();
+}
+
+bool Crew::stopped() const {
+  const std::lock_guard lock(mutex_);
+  return stopped_;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,338 @@
+#include "limcycle/cli/rank_sweep.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "limcycle/cli/crew.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/ranks.hpp"
+
+namespace limcycle {
+namespace {
+
+using RankClock = std::chrono::steady_clock;
+using std::chrono::microseconds;
+
+constexpr double piece_seconds = 0.05;   // of computing between two messages of a thread, at least
+constexpr double writer_seconds = 1e-4;  // more for each thread of the job: the writer needs some of them a message
+constexpr auto last_rows = microseconds(400'000);  // how long the writer waits for them when it was told to stop
+constexpr auto silence = microseconds(1'000'000);  // after which a rank that should end is given up
+constexpr auto longest_pause = microseconds(1000);
+
+/// What is said. Each rank but 0 says `last` once, with its Ending, and nothing after it.
+enum RankWord : int { word_ready = 1, word_points, word_rows, word_last, word_end };
+
+/// Numbers in a message, one after another.
+template <class Number>
+void pack(std::string& into, const Number* numbers, std::size_t count) {
+  into.append(reinterpret_cast<const char*>(numbers), count * sizeof(Number));
+}
+
+class Unpacking {
+ public:
+  explicit Unpacking(const std::string& from) : from_(from) {}
+
+  template <class Number>
+  std::vector<Number> numbers(std::size_t count) {
+    if (from_.size() - at_ < count * sizeof(Number)) throw std::logic_error("ranks: a message is too short");
+    std::vector<Number> all(count);
+    if (count > 0) std::memcpy(all.data(), from_.data() + at_, count * sizeof(Number));
+    at_ += count * sizeof(Number);
+    return all;
+  }
+
+  template <class Number>
+  Number number() {
+    return numbers<Number>(1).front();
+  }
+
+  std::string rest() { return from_.substr(std::exchange(at_, from_.size())); }
+
+ private:
+  const std::string& from_;
+  std::size_t at_ = 0;
+};
+
+std::string packed(const FinishedPoints& finished) {
+  std::string content;
+  const std::uint64_t head[] = {finished.points.size(), finished.all ? 1U : 0U, finished.stopped ? 1U : 0U};
+  pack(content, head, 3);
+  pack(content, &finished.seconds, 1);
+  pack(content, finished.points.data(), finished.points.size());
+  pack(content, finished.rows.data(), finished.rows.size());
+  return content;
+}
+
+FinishedPoints unpacked(const std::string& content, std::size_t columns) {
+  Unpacking from(content);
+  FinishedPoints finished;
+  const auto count = static_cast<std::size_t>(from.number<std::uint64_t>());
+  finished.all = from.number<std::uint64_t>() != 0;
+  finished.stopped = from.number<std::uint64_t>() != 0;
+  finished.seconds = from.number<double>();
+  finished.points = from.numbers<std::size_t>(count);
+  finished.rows = from.numbers<double>(count * columns);
+  return finished;
+}
+
+/// Where the job stands for this process.
+struct JobState {
+  bool shared = false;     // rank 0: the one sweep that is
+  bool end_said = false;   // by rank 0, or heard from it
+  std::vector<bool> left;  // rank 0: who said its last word
+};
+
+JobState& job() {
+  static JobState state{false, false, std::vector<bool>(static_cast<std::size_t>(rank_count()), false)};
+  return state;
+}
+
+bool all_left() { return std::count(job().left.begin(), job().left.end(), true) >= rank_count() - 1; }
+
+void say_end() {
+  if (std::exchange(job().end_said, true)) return;
+  for (int other = 1; other < rank_count(); ++other) send_to_rank({other, word_end, {}});
+}
+
+/// The last word of another rank; empty message: it had nothing to complain of.
+Ending hear_last(const RankMessage& message) {
+  job().left[static_cast<std::size_t>(message.other)] = true;
+  Unpacking from(message.content);
+  const int code = from.number<int>();
+  return {code, from.rest()};
+}
+
+/// Short at first, longer while nothing happens: latency where there is work, no core burnt where there is none.
+class Pause {
+ public:
+  microseconds next() { return std::exchange(length_, std::min(2 * length_, longest_pause)); }
+  void reset() { length_ = shortest; }
+
+ private:
+  static constexpr auto shortest = microseconds(30);
+  microseconds length_ = shortest;
+};
+
+/// Rank 0 during the sweep.
+class SweepWriter {
+ public:
+  SweepWriter(const SweepTask& task, const std::vector<bool>& known, const SweepSink& sink, const SweepOptions& options,
+              const std::string& identity)
+      : task_(task),
+        sink_(sink),
+        options_(options),
+        identity_(identity),
+        blocks_(task.points, task.block, known),
+        left_(blocks_.blocks()),
+        ranks_(static_cast<std::size_t>(rank_count())) {
+    ranks_[0].threads = static_cast<std::size_t>(std::max(1, options.threads));
+    total_threads_ = ranks_[0].threads;
+  }
+
+  Status run() {
+    done_ = task_.points - blocks_.missing();
+    if (options_.progress) options_.progress(done_, task_.points);
+    Crew crew(task_, ranks_[0].threads);
+    crew_ = &crew;
+    try {
+      while (done_ < task_.points && !stopped_) {
+        listen();
+        stopped_ = stopped_ || (options_.stop && options_.stop());
+      }
+    } catch (...) {
+      interrupt();  // what others compute is for nobody
+      say_end();
+      throw;
+    }
+    say_end();
+    if (stopped_) gather();
+    return done_ == task_.points ? Status::converged : Status::interrupted;
+  }
+
+ private:
+  struct OneRank {
+    std::size_t threads = 0;  // 0: not ready yet
+    std::size_t pieces = 0;   // that it has
+  };
+
+  /// Takes what is there and gives what can be given; waits a little if nothing happened.
+  void listen() {
+    bool heard = false;
+    while (const auto message = message_from_ranks()) {
+      heard = true;
+      hear(*message);
+    }
+    for (auto& finished : crew_->take()) {
+      heard = true;
+      take(0, finished);
+    }
+    crew_->check();
+    hand_out(0);
+    if (heard)
+      pause_.reset();
+    else
+      crew_->wait(pause_.next());
+  }
+
+  void hear(const RankMessage& message) {
+    auto& from = ranks_[static_cast<std::size_t>(message.other)];
+    if (message.kind == word_ready) {
+      Unpacking said(message.content);
+      from.threads = said.number<std::size_t>();
+      total_threads_ += from.threads;
+      if (said.rest() != identity_)
+        throw RankFailure("rank " + std::to_string(message.other) +
+                              " would compute another sweep: its case file, command or program is another one",
+                          2);
+    }
+    if (message.kind == word_rows)
+      take(static_cast<std::size_t>(message.other), unpacked(message.content, task_.columns));
+    if (message.kind == word_last) {
+      const Ending ending = hear_last(message);
+      if (!ending.message.empty()) throw RankFailure(ending.message, ending.code);
+      stopped_ = true;  // it left before the end: somebody told it to
+    }
+    hand_out(static_cast<std::size_t>(message.other));
+  }
+
+  void take(std::size_t rank, const FinishedPoints& finished) {
+    if (finished.all) --ranks_[rank].pieces;
+    const auto blocks = static_cast<double>((finished.points.size() + task_.block - 1) / task_.block);
+    if (blocks > 0) pace_ += (finished.seconds / blocks - pace_) * (pace_ > 0.0 ? 0.1 : 1.0);
+    stopped_ = stopped_ || finished.stopped;
+    if (finished.points.empty()) return;
+    sink_(finished.points, finished.rows);
+    done_ += finished.points.size();
+    if (options_.progress) options_.progress(done_, task_.points);
+  }
+
+  void hand_out(std::size_t rank) {
+    auto& to = ranks_[rank];
+    while (!stopped_ && left_ > 0 && to.pieces < to.threads * (left_ > total_threads_ ? 2 : 1)) {
+      const std::size_t blocks = piece();
+      const auto points = blocks_.next(blocks);
+      left_ -= std::min(blocks, left_);
+      ++to.pieces;
+      if (rank == 0) {
+        crew_->give({points.begin(), points.end()});
+        continue;
+      }
+      std::string content;
+      pack(content, points.data(), points.size());
+      send_to_rank({static_cast<int>(rank), word_points, std::move(content)});
+    }
+  }
+
+  /// Blocks of a piece. Never more than a quarter of an even share of what is left, so that all end together.
+  std::size_t piece() const {
+    if (pace_ <= 0.0) return 1;
+    const double wanted = (piece_seconds + writer_seconds * static_cast<double>(total_threads_)) / pace_;
+    const std::size_t most = std::max<std::size_t>(1, left_ / (4 * total_threads_));
+    return wanted >= static_cast<double>(most) ? most : std::max<std::size_t>(1, static_cast<std::size_t>(wanted));
+  }
+
+  /// What was finished until all were told to stop.
+  void gather() {
+    interrupt();
+    const auto until = RankClock::now() + last_rows;
+    while (!all_left() && RankClock::now() < until) listen();
+    crew_->stop();
+    for (auto& finished : crew_->take()) take(0, finished);
+    crew_->check();
+  }
+
+  const SweepTask& task_;
+  const SweepSink& sink_;
+  const SweepOptions& options_;
+  const std::string& identity_;
+  SweepBlocks blocks_;
+  std::size_t left_;  // blocks not handed out
+  std::vector<OneRank> ranks_;
+  std::size_t total_threads_;
+  Crew* crew_ = nullptr;
+  Pause pause_;
+  double pace_ = 0.0;  // s a block, lately; 0: unknown
+  std::size_t done_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+Status run_on_ranks(const SweepTask& task, const std::vector<bool>& known, const SweepSink& sink,
+                    const SweepOptions& options, const std::string& identity) {
+  if (std::exchange(job().shared, true)) return run_sweep(task, known, sink, options);
+  return SweepWriter(task, known, sink, options, identity).run();
+}
+
+void serve_ranks(const SweepTask& task, int threads, const std::string& identity) {
+  const auto count = static_cast<std::size_t>(std::max(1, threads));
+  std::string ready;
+  pack(ready, &count, 1);
+  send_to_rank({0, word_ready, ready + identity});
+  Crew crew(task, count);
+  const auto hand_in = [&crew] {
+    const auto all = crew.take();
+    for (const auto& finished : all) send_to_rank({0, word_rows, packed(finished)});
+    return !all.empty();
+  };
+  Pause pause;
+  while (!job().end_said && !interrupted()) {
+    bool heard = false;
+    while (const auto message = message_from_ranks()) {
+      heard = true;
+      if (message->kind == word_end) job().end_said = true;
+      if (message->kind == word_points)
+        crew.give(Unpacking(message->content).numbers<std::size_t>(message->content.size() / sizeof(std::size_t)));
+    }
+    heard = hand_in() || heard;
+    crew.check();
+    if (heard)
+      pause.reset();
+    else
+      crew.wait(pause.next());
+  }
+  interrupt();
+  crew.stop();
+  hand_in();
+  crew.check();
+  throw ShareDone{};
+}
+
+Ending end_ranks(const Ending& ending) {
+  if (rank_count() == 1) {
+    leave_ranks();
+    return {};
+  }
+  const bool writer = rank() == 0;
+  if (writer) {
+    say_end();
+  } else {
+    std::string content;
+    pack(content, &ending.code, 1);
+    if (!ending.message.empty()) content += rank_name() + ": " + ending.message;
+    send_to_rank({0, word_last, std::move(content)});
+  }
+  Ending of_others;
+  std::optional<RankClock::time_point> until;
+  while (writer ? !all_left() : !job().end_said) {
+    while (const auto message = message_from_ranks()) {
+      if (message->kind == word_end) job().end_said = true;
+      if (message->kind != word_last) continue;
+      if (const Ending other = hear_last(*message); of_others.message.empty()) of_others = other;
+    }
+    // Who failed or was told to stop does not wait for long. All others end when the last one does.
+    if (!until && (interrupted() || (writer && !ending.message.empty())))
+      until = RankClock::now() + (writer ? silence : 10 * silence);
+    if (until && RankClock::now() > *until) abort_ranks(ending.code);
+    std::this_thread::sleep_for(5 * longest_pause);
+  }
+  leave_ranks();
+  return of_others;
+}
+
+}  // namespace limcycle
