@@ -9,6 +9,7 @@
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
+#include "limcycle/cli/rank_job.hpp"
 #include "limcycle/cli/rank_sweep.hpp"
 #include "limcycle/cli/ranks.hpp"
 #include "limcycle/reports/store.hpp"

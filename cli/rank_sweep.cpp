@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstring>
-#include <optional>
-#include <thread>
 #include <utility>
 
 #include "limcycle/cli/crew.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/rank_job.hpp"
+#include "limcycle/cli/rank_words.hpp"
 #include "limcycle/cli/ranks.hpp"
 
 namespace limcycle {
@@ -21,42 +20,7 @@ using std::chrono::microseconds;
 constexpr double piece_seconds = 0.05;   // of computing between two messages of a thread, at least
 constexpr double writer_seconds = 1e-4;  // more for each thread of the job: the writer needs some of them a message
 constexpr auto last_rows = microseconds(400'000);  // how long the writer waits for them when it was told to stop
-constexpr auto silence = microseconds(1'000'000);  // after which a rank that should end is given up
 constexpr auto longest_pause = microseconds(1000);
-
-/// What is said. Each rank but 0 says `last` once, with its Ending, and nothing after it.
-enum RankWord : int { word_ready = 1, word_points, word_rows, word_last, word_end };
-
-/// Numbers in a message, one after another.
-template <class Number>
-void pack(std::string& into, const Number* numbers, std::size_t count) {
-  into.append(reinterpret_cast<const char*>(numbers), count * sizeof(Number));
-}
-
-class Unpacking {
- public:
-  explicit Unpacking(const std::string& from) : from_(from) {}
-
-  template <class Number>
-  std::vector<Number> numbers(std::size_t count) {
-    if (from_.size() - at_ < count * sizeof(Number)) throw std::logic_error("ranks: a message is too short");
-    std::vector<Number> all(count);
-    if (count > 0) std::memcpy(all.data(), from_.data() + at_, count * sizeof(Number));
-    at_ += count * sizeof(Number);
-    return all;
-  }
-
-  template <class Number>
-  Number number() {
-    return numbers<Number>(1).front();
-  }
-
-  std::string rest() { return from_.substr(std::exchange(at_, from_.size())); }
-
- private:
-  const std::string& from_;
-  std::size_t at_ = 0;
-};
 
 std::string packed(const FinishedPoints& finished) {
   std::string content;
@@ -78,33 +42,6 @@ FinishedPoints unpacked(const std::string& content, std::size_t columns) {
   finished.points = from.numbers<std::size_t>(count);
   finished.rows = from.numbers<double>(count * columns);
   return finished;
-}
-
-/// Where the job stands for this process.
-struct JobState {
-  bool shared = false;     // rank 0: the one sweep that is
-  bool end_said = false;   // by rank 0, or heard from it
-  std::vector<bool> left;  // rank 0: who said its last word
-};
-
-JobState& job() {
-  static JobState state{false, false, std::vector<bool>(static_cast<std::size_t>(rank_count()), false)};
-  return state;
-}
-
-bool all_left() { return std::count(job().left.begin(), job().left.end(), true) >= rank_count() - 1; }
-
-void say_end() {
-  if (std::exchange(job().end_said, true)) return;
-  for (int other = 1; other < rank_count(); ++other) send_to_rank({other, word_end, {}});
-}
-
-/// The last word of another rank; empty message: it had nothing to complain of.
-Ending hear_last(const RankMessage& message) {
-  job().left[static_cast<std::size_t>(message.other)] = true;
-  Unpacking from(message.content);
-  const int code = from.number<int>();
-  return {code, from.rest()};
 }
 
 /// Short at first, longer while nothing happens: latency where there is work, no core burnt where there is none.
@@ -240,7 +177,7 @@ class SweepWriter {
   void gather() {
     interrupt();
     const auto until = RankClock::now() + last_rows;
-    while (!all_left() && RankClock::now() < until) listen();
+    while (!all_others_left() && RankClock::now() < until) listen();
     crew_->stop();
     for (auto& finished : crew_->take()) take(0, finished);
     crew_->check();
@@ -265,7 +202,8 @@ class SweepWriter {
 
 Status run_on_ranks(const SweepTask& task, const std::vector<bool>& known, const SweepSink& sink,
                     const SweepOptions& options, const std::string& identity) {
-  if (std::exchange(job().shared, true)) return run_sweep(task, known, sink, options);
+  static bool shared = false;
+  if (std::exchange(shared, true)) return run_sweep(task, known, sink, options);
   return SweepWriter(task, known, sink, options, identity).run();
 }
 
@@ -281,11 +219,11 @@ void serve_ranks(const SweepTask& task, int threads, const std::string& identity
     return !all.empty();
   };
   Pause pause;
-  while (!job().end_said && !interrupted()) {
+  while (!rank_job().end_said && !interrupted()) {
     bool heard = false;
     while (const auto message = message_from_ranks()) {
       heard = true;
-      if (message->kind == word_end) job().end_said = true;
+      if (message->kind == word_end) rank_job().end_said = true;
       if (message->kind == word_points)
         crew.give(Unpacking(message->content).numbers<std::size_t>(message->content.size() / sizeof(std::size_t)));
     }
@@ -301,38 +239,6 @@ void serve_ranks(const SweepTask& task, int threads, const std::string& identity
   hand_in();
   crew.check();
   throw ShareDone{};
-}
-
-Ending end_ranks(const Ending& ending) {
-  if (rank_count() == 1) {
-    leave_ranks();
-    return {};
-  }
-  const bool writer = rank() == 0;
-  if (writer) {
-    say_end();
-  } else {
-    std::string content;
-    pack(content, &ending.code, 1);
-    if (!ending.message.empty()) content += rank_name() + ": " + ending.message;
-    send_to_rank({0, word_last, std::move(content)});
-  }
-  Ending of_others;
-  std::optional<RankClock::time_point> until;
-  while (writer ? !all_left() : !job().end_said) {
-    while (const auto message = message_from_ranks()) {
-      if (message->kind == word_end) job().end_said = true;
-      if (message->kind != word_last) continue;
-      if (const Ending other = hear_last(*message); of_others.message.empty()) of_others = other;
-    }
-    // Who failed or was told to stop does not wait for long. All others end when the last one does.
-    if (!until && (interrupted() || (writer && !ending.message.empty())))
-      until = RankClock::now() + (writer ? silence : 10 * silence);
-    if (until && RankClock::now() > *until) abort_ranks(ending.code);
-    std::this_thread::sleep_for(5 * longest_pause);
-  }
-  leave_ranks();
-  return of_others;
 }
 
 }  // namespace limcycle

@@ -15,12 +15,6 @@
 
 namespace limcycle {
 
-/// How this process ends, and what it has to say for it (nothing: all is well).
-struct Ending {
-  int code = 0;
-  std::string message;
-};
-
 /// Another rank could not go on. The message says which.
 class RankFailure : public std::runtime_error {
  public:
@@ -44,9 +38,5 @@ Status run_on_ranks(const SweepTask& task, const std::vector<bool>& known, const
 
 /// The share of every other rank. Throws ShareDone, or what compute threw.
 [[noreturn]] void serve_ranks(const SweepTask& task, int threads, const std::string& identity);
-
-/// The end of the job, called by every process as its last act: waits for the others. Returns what another rank
-/// complained of, on rank 0, which is the one that says it.
-Ending end_ranks(const Ending& ending);
 
 }  // namespace limcycle

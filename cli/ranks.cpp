@@ -1,7 +1,7 @@
 #include "limcycle/cli/ranks.hpp"
 
-#include <algorithm>
 #include <cstdlib>
+#include <initializer_list>
 #include <list>
 
 #include "limcycle/cli/command.hpp"
@@ -32,16 +32,16 @@ int launcher_number(std::initializer_list<const char*> names, int otherwise) {
   return otherwise;
 }
 
-/// How many processes the launcher started: 1 without one, 0 if it does not say.
-int launched_processes() {
-  const int unknown = std::getenv("PMIX_RANK") != nullptr ? 0 : 1;
-  return launcher_number({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}, unknown);
-}
+/// How many processes the launcher started (0 if it does not say), and which of them this is. One without a launcher.
+struct Launched {
+  int count = launcher_number({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"},
+                              std::getenv("PMIX_RANK") != nullptr ? 0 : 1);
+  int rank = launcher_number({"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"}, 0);
+};
 
-[[noreturn]] void refuse_launcher(int processes, const std::string& why, const std::string& suggestion) {
-  // All are refused, one says so.
-  rank_state().rank = launcher_number({"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"}, 0);
-  throw refusal({}, "started as " + std::to_string(processes) + " processes, but " + why, suggestion);
+[[noreturn]] void refuse_launcher(const Launched& launched, const std::string& why, const std::string& suggestion) {
+  rank_state().rank = launched.rank;  // all are refused, the first says so
+  throw refusal({}, "started as " + std::to_string(launched.count) + " processes, but " + why, suggestion);
 }
 
 #ifdef LIMCYCLE_MPI
@@ -79,15 +79,15 @@ Isa isa_of_ranks() { return rank_state().isa; }
 bool built_for_ranks() { return true; }
 
 void join_ranks() {
-  const int launched = launched_processes();
-  if (launched == 1) return;
+  const Launched launched;  // asked first: MPI sets such variables too
+  if (launched.count == 1) return;
   RankState& state = rank_state();
   int level = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &level);
   state.joined = true;
   MPI_Comm_rank(MPI_COMM_WORLD, &state.rank);
   MPI_Comm_size(MPI_COMM_WORLD, &state.count);
-  if (state.count == 1 && launched > 1)
+  if (state.count == 1 && launched.count > 1)
     refuse_launcher(
         launched, "they cannot find each other",
         "start them with the mpirun of the MPI that this program was built with, or with 'srun --mpi=pmix'");
@@ -142,8 +142,8 @@ std::optional<RankMessage> message_from_ranks() {
 bool built_for_ranks() { return false; }
 
 void join_ranks() {
-  if (const int launched = launched_processes(); launched != 1)
-    refuse_launcher(std::max(launched, 2), "this program was built without MPI",
+  if (const Launched launched; launched.count > 1)
+    refuse_launcher(launched, "this program was built without MPI",
                     "start one, or build it where Open MPI is installed (tools/install build)");
 }
 
