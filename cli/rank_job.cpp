@@ -39,7 +39,7 @@ Ending hear_last(const RankMessage& message) {
 
 Ending end_ranks(const Ending& ending) {
   if (rank_count() == 1) {
-    leave_ranks();
+    leave_ranks(ending.code);
     return {};
   }
   const bool writer = rank() == 0;
@@ -65,7 +65,7 @@ Ending end_ranks(const Ending& ending) {
     if (until && std::chrono::steady_clock::now() > *until) abort_ranks(ending.code);
     std::this_thread::sleep_for(microseconds(5000));
   }
-  leave_ranks();
+  leave_ranks(writer ? ending.code : 0);
   return of_others;
 }
 

@@ -1,10 +1,13 @@
 #include "limcycle/cli/ranks.hpp"
 
+#include <chrono>
 #include <cstdlib>
 #include <initializer_list>
 #include <list>
+#include <thread>
 
 #include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
 #ifdef LIMCYCLE_MPI
 #define OMPI_SKIP_MPICXX 1  // the C++ interface, which MPI 3 took out
 #define MPICH_SKIP_MPICXX 1
@@ -96,8 +99,13 @@ void join_ranks() {
   state.isa = static_cast<Isa>(common);
 }
 
-void leave_ranks() {
+void leave_ranks(int code) {
   if (!rank_state().joined) return;
+  if (interrupted_by_signal())
+    std::thread([code] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      std::_Exit(code);
+    }).detach();
   for (auto& one : sendings()) MPI_Wait(&one.request, MPI_STATUS_IGNORE);
   sendings().clear();
   MPI_Finalize();
@@ -147,7 +155,7 @@ void join_ranks() {
                     "start one, or build it where Open MPI is installed (tools/install build)");
 }
 
-void leave_ranks() {}
+void leave_ranks(int) {}
 void abort_ranks(int code) { std::_Exit(code); }
 std::string rank_name() { return "rank " + std::to_string(rank()); }
 void send_to_rank(RankMessage) {}

@@ -15,8 +15,9 @@ namespace limcycle {
 /// write the same files.
 void join_ranks();
 
-/// Ends what join_ranks() began. Waits for the other ranks to do the same.
-void leave_ranks();
+/// Ends what join_ranks() began. Waits for the other ranks to do the same; but where a signal told this one to stop, it
+/// ends the process with `code` half a second later: a launcher that stops the job may not answer any more.
+void leave_ranks(int code);
 
 /// Ends all ranks of the job at once, also those that do not answer.
 [[noreturn]] void abort_ranks(int code);
