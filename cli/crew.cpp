@@ -5,11 +5,6 @@
 #include <utility>
 
 namespace limcycle {
-namespace {
-
-constexpr double part_seconds = 0.2;
-
-}  // namespace
 
 Crew::Crew(const SweepTask& task, std::size_t threads) : task_(task) {
   for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
@@ -17,9 +12,9 @@ Crew::Crew(const SweepTask& task, std::size_t threads) : task_(task) {
 
 Crew::~Crew() { stop(); }
 
-void Crew::give(std::vector<std::size_t> points) {
+void Crew::give(std::vector<std::size_t> points, double seconds) {
   const std::lock_guard lock(mutex_);
-  waiting_.push_back(std::move(points));
+  waiting_.push_back({std::move(points), seconds});
   given_.notify_one();
 }
 
@@ -53,12 +48,12 @@ void Crew::work() {
   while (true) {
     given_.wait(lock, [this] { return stopped_ || !waiting_.empty(); });
     if (stopped_) return;
-    const auto points = std::move(waiting_.front());
+    const Piece piece = std::move(waiting_.front());
     waiting_.pop_front();
     lock.unlock();
     std::exception_ptr failure;
     try {
-      compute_all(points);
+      compute(piece);
     } catch (...) {
       failure = std::current_exception();
     }
@@ -70,39 +65,36 @@ void Crew::work() {
   }
 }
 
-void Crew::compute_all(std::span<const std::size_t> points) {
+void Crew::compute(const Piece& piece) {
+  const auto begin = std::chrono::steady_clock::now();
+  FinishedPoints finished;
+  std::span<const std::size_t> left = piece.points;
   std::vector<double> rows;
-  FinishedPoints part;
-  auto begin = std::chrono::steady_clock::now();
-  while (!points.empty()) {
-    const auto some = points.first(std::min(task_.block, points.size()));
+  while (!left.empty() && !finished.stopped && finished.seconds <= piece.seconds && !stopped()) {
+    const auto some = left.first(std::min(task_.block, left.size()));
     // A number that compute forgets is missing.
     rows.assign(some.size() * task_.columns, std::numeric_limits<double>::quiet_NaN());
     std::size_t count = 0;
     try {
       count = std::min(task_.compute(some, rows), some.size());
     } catch (...) {
-      deliver(std::move(part));  // what came before is right
+      deliver(std::move(finished));  // what came before is right
       throw;
     }
-    part.points.insert(part.points.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
-    part.rows.insert(part.rows.end(), rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count * task_.columns));
-    points = points.subspan(some.size());
-    part.all = points.empty();
-    part.stopped = count < some.size();
-    const auto now = std::chrono::steady_clock::now();
-    part.seconds = std::chrono::duration<double>(now - begin).count();
-    const bool end = part.stopped || stopped();
-    if (!end && !part.all && part.seconds < part_seconds) continue;
-    deliver(std::exchange(part, {}));
-    begin = now;
-    if (end) return;
+    finished.points.insert(finished.points.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+    finished.rows.insert(finished.rows.end(), rows.begin(),
+                         rows.begin() + static_cast<std::ptrdiff_t>(count * task_.columns));
+    finished.stopped = count < some.size();
+    finished.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    left = left.subspan(count);
   }
+  finished.rest.assign(left.begin(), left.end());
+  deliver(std::move(finished));
 }
 
-void Crew::deliver(FinishedPoints&& part) {
+void Crew::deliver(FinishedPoints&& finished) {
   const std::lock_guard lock(mutex_);
-  done_.push_back(std::move(part));
+  done_.push_back(std::move(finished));
   finished_.notify_one();
 }
 

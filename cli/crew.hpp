@@ -12,13 +12,13 @@
 
 namespace limcycle {
 
-/// Some of the points that a crew was given, and their rows.
+/// Points that a crew was given at once, as far as it came.
 struct FinishedPoints {
   std::vector<std::size_t> points;
   std::vector<double> rows;
-  double seconds = 0.0;  ///< that it took
-  bool all = false;      ///< those of one call of give() are complete with these
-  bool stopped = false;  ///< compute was told to stop: the others of that call do not come
+  std::vector<std::size_t> rest;  ///< what the time did not suffice for
+  double seconds = 0.0;           ///< that it took
+  bool stopped = false;           ///< compute was told to stop
 };
 
 /// Threads that compute the points of a sweep which one other thread gives them, one after another: on each rank of a
@@ -30,10 +30,11 @@ class Crew {
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  void give(std::vector<std::size_t> points);
+  /// `seconds`: no block is begun after that time, so that nobody waits for a piece with more long points than most,
+  /// and little is lost when the machine stops.
+  void give(std::vector<std::size_t> points, double seconds);
 
-  /// What was finished since the last call. Points of one give() come together, or in parts if they take longer than a
-  /// fifth of a second, so that little is lost when the machine stops.
+  /// What was finished since the last call.
   std::vector<FinishedPoints> take();
 
   /// Waits until there is something to take, no longer than so.
@@ -47,14 +48,18 @@ class Crew {
 
  private:
   void work();
-  void compute_all(std::span<const std::size_t> points);
-  void deliver(FinishedPoints&& part);
+  struct Piece {
+    std::vector<std::size_t> points;
+    double seconds = 0.0;
+  };
+  void compute(const Piece& piece);
+  void deliver(FinishedPoints&& finished);
   bool stopped() const;
 
   const SweepTask& task_;
   mutable std::mutex mutex_;  ///< of all that follows
   std::condition_variable given_, finished_;
-  std::deque<std::vector<std::size_t>> waiting_;
+  std::deque<Piece> waiting_;
   std::vector<FinishedPoints> done_;
   std::exception_ptr failure_;
   bool stopped_ = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <utility>
 
 #include "limcycle/cli/crew.hpp"
@@ -19,15 +20,17 @@ using std::chrono::microseconds;
 
 constexpr double piece_seconds = 0.05;   // of computing between two messages of a thread, at least
 constexpr double writer_seconds = 1e-4;  // more for each thread of the job: the writer needs some of them a message
+constexpr double patience = 1.5;         // times the time meant, after which the rest of a piece comes back
 constexpr auto last_rows = microseconds(400'000);  // how long the writer waits for them when it was told to stop
 constexpr auto longest_pause = microseconds(1000);
 
 std::string packed(const FinishedPoints& finished) {
   std::string content;
-  const std::uint64_t head[] = {finished.points.size(), finished.all ? 1U : 0U, finished.stopped ? 1U : 0U};
+  const std::uint64_t head[] = {finished.points.size(), finished.rest.size(), finished.stopped ? 1U : 0U};
   pack(content, head, 3);
   pack(content, &finished.seconds, 1);
   pack(content, finished.points.data(), finished.points.size());
+  pack(content, finished.rest.data(), finished.rest.size());
   pack(content, finished.rows.data(), finished.rows.size());
   return content;
 }
@@ -36,10 +39,11 @@ FinishedPoints unpacked(const std::string& content, std::size_t columns) {
   Unpacking from(content);
   FinishedPoints finished;
   const auto count = static_cast<std::size_t>(from.number<std::uint64_t>());
-  finished.all = from.number<std::uint64_t>() != 0;
+  const auto rest = static_cast<std::size_t>(from.number<std::uint64_t>());
   finished.stopped = from.number<std::uint64_t>() != 0;
   finished.seconds = from.number<double>();
   finished.points = from.numbers<std::size_t>(count);
+  finished.rest = from.numbers<std::size_t>(rest);
   finished.rows = from.numbers<double>(count * columns);
   return finished;
 }
@@ -100,7 +104,9 @@ class SweepWriter {
   /// Takes what is there and gives what can be given; waits a little if nothing happened.
   void listen() {
     bool heard = false;
-    while (const auto message = message_from_ranks()) {
+    for (int count = 0; count < 100; ++count) {  // then the rest of this process wants to be looked after
+      const auto message = message_from_ranks();
+      if (!message) break;
       heard = true;
       hear(*message);
     }
@@ -127,8 +133,10 @@ class SweepWriter {
                               " would compute another sweep: its case file, command or program is another one",
                           2);
     }
-    if (message.kind == word_rows)
-      take(static_cast<std::size_t>(message.other), unpacked(message.content, task_.columns));
+    if (message.kind == word_rows) {
+      FinishedPoints finished = unpacked(message.content, task_.columns);
+      take(static_cast<std::size_t>(message.other), finished);
+    }
     if (message.kind == word_last) {
       const Ending ending = hear_last(message);
       if (!ending.message.empty()) throw RankFailure(ending.message, ending.code);
@@ -137,41 +145,60 @@ class SweepWriter {
     hand_out(static_cast<std::size_t>(message.other));
   }
 
-  void take(std::size_t rank, const FinishedPoints& finished) {
-    if (finished.all) --ranks_[rank].pieces;
-    const auto blocks = static_cast<double>((finished.points.size() + task_.block - 1) / task_.block);
-    if (blocks > 0) pace_ += (finished.seconds / blocks - pace_) * (pace_ > 0.0 ? 0.1 : 1.0);
+  void take(std::size_t rank, FinishedPoints& finished) {
+    --ranks_[rank].pieces;
+    if (const std::size_t blocks = blocks_of(finished.points.size()); blocks > 0)
+      pace_ += (finished.seconds / static_cast<double>(blocks) - pace_) * (pace_ > 0.0 ? 0.1 : 1.0);
     stopped_ = stopped_ || finished.stopped;
-    if (finished.points.empty()) return;
-    sink_(finished.points, finished.rows);
-    done_ += finished.points.size();
-    if (options_.progress) options_.progress(done_, task_.points);
+    if (!finished.points.empty()) {
+      sink_(finished.points, finished.rows);
+      done_ += finished.points.size();
+      if (options_.progress) options_.progress(done_, task_.points);
+    }
+    if (finished.rest.empty()) return;
+    left_ += blocks_of(finished.rest.size());
+    returned_.push_back(std::move(finished.rest));
+    for (std::size_t other = 0; other < ranks_.size(); ++other) hand_out(other);  // some may have nothing to do
   }
 
+  /// Gives a rank what it has room for.
   void hand_out(std::size_t rank) {
     auto& to = ranks_[rank];
     while (!stopped_ && left_ > 0 && to.pieces < to.threads * (left_ > total_threads_ ? 2 : 1)) {
-      const std::size_t blocks = piece();
-      const auto points = blocks_.next(blocks);
-      left_ -= std::min(blocks, left_);
+      const double seconds = piece_seconds + writer_seconds * static_cast<double>(total_threads_);
+      std::vector<std::size_t> points = next_piece(seconds);
+      left_ -= blocks_of(points.size());
       ++to.pieces;
       if (rank == 0) {
-        crew_->give({points.begin(), points.end()});
+        crew_->give(std::move(points), patience * seconds);
         continue;
       }
       std::string content;
+      const double most = patience * seconds;
+      pack(content, &most, 1);
       pack(content, points.data(), points.size());
       send_to_rank({static_cast<int>(rank), word_points, std::move(content)});
     }
   }
 
-  /// Blocks of a piece. Never more than a quarter of an even share of what is left, so that all end together.
-  std::size_t piece() const {
-    if (pace_ <= 0.0) return 1;
-    const double wanted = (piece_seconds + writer_seconds * static_cast<double>(total_threads_)) / pace_;
-    const std::size_t most = std::max<std::size_t>(1, left_ / (4 * total_threads_));
-    return wanted >= static_cast<double>(most) ? most : std::max<std::size_t>(1, static_cast<std::size_t>(wanted));
+  /// What came back goes out again in single blocks: it takes longer than most. Otherwise as many blocks as take so
+  /// long, but no more than half an even share of what is left, so that all end together.
+  std::vector<std::size_t> next_piece(double seconds) {
+    if (!returned_.empty()) {
+      auto& from = returned_.front();
+      const auto end = from.begin() + static_cast<std::ptrdiff_t>(std::min(task_.block, from.size()));
+      std::vector<std::size_t> piece(from.begin(), end);
+      from.erase(from.begin(), end);
+      if (from.empty()) returned_.pop_front();
+      return piece;
+    }
+    const double most = std::max(1.0, static_cast<double>(left_ / (2 * total_threads_)));
+    const double wanted = pace_ > 0.0 ? std::clamp(seconds / pace_, 1.0, most) : 1.0;
+    const auto piece = blocks_.next(static_cast<std::size_t>(wanted));
+    return {piece.begin(), piece.end()};
   }
+
+  std::size_t blocks_of(std::size_t points) const { return (points + task_.block - 1) / task_.block; }
 
   /// What was finished until all were told to stop.
   void gather() {
@@ -188,6 +215,7 @@ class SweepWriter {
   const SweepOptions& options_;
   const std::string& identity_;
   SweepBlocks blocks_;
+  std::deque<std::vector<std::size_t>> returned_;
   std::size_t left_;  // blocks not handed out
   std::vector<OneRank> ranks_;
   std::size_t total_threads_;
@@ -224,8 +252,10 @@ void serve_ranks(const SweepTask& task, int threads, const std::string& identity
     while (const auto message = message_from_ranks()) {
       heard = true;
       if (message->kind == word_end) rank_job().end_said = true;
-      if (message->kind == word_points)
-        crew.give(Unpacking(message->content).numbers<std::size_t>(message->content.size() / sizeof(std::size_t)));
+      if (message->kind != word_points) continue;
+      Unpacking from(message->content);
+      const auto seconds = from.number<double>();
+      crew.give(from.numbers<std::size_t>((message->content.size() - sizeof seconds) / sizeof(std::size_t)), seconds);
     }
     heard = hand_in() || heard;
     crew.check();

@@ -12,7 +12,7 @@ namespace limcycle {
 /// after it.
 enum RankWord : int {
   word_ready = 1,  ///< to rank 0: number of threads, identity of the sweep
-  word_points,     ///< from rank 0: points to compute
+  word_points,     ///< from rank 0: seconds after which to give the rest back, points to compute
   word_rows,       ///< to rank 0: FinishedPoints
   word_last,       ///< to rank 0: exit code, complaint
   word_end         ///< from rank 0: nothing more is to be done
