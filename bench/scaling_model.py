@@ -1,12 +1,15 @@
 """A map on many ranks, simulated event by event: one writer that serves messages in order, and ranks that hold one piece in
 the making and one more. The rules are those of cli/rank_sweep.cpp."""
 import bisect
+import collections
 import heapq
 import itertools
+import math
 from dataclasses import dataclass
 
 PIECE_SECONDS = 0.05   # piece_seconds of cli/rank_sweep.cpp
 WRITER_SECONDS = 1e-4  # writer_seconds
+PATIENCE = 1.5         # patience
 
 
 @dataclass
@@ -29,50 +32,87 @@ class Map:
         self.sums = list(itertools.accumulate(seconds, initial=0.0))
         self.points = len(seconds)
 
-    def seconds(self, first, count):
-        return self.sums[first + count] - self.sums[first]
-
     def total(self):
         return self.sums[-1]
 
+    def computed(self, first, count, limit):
+        """(points, seconds): how far a rank comes with a piece of which it begins no point after `limit`."""
+        end = bisect.bisect_right(self.sums, self.sums[first] + limit, first + 1, first + count)
+        return end - first, self.sums[end] - self.sums[first]
 
-def piece_by_rule(pace, left, ranks):
-    if pace <= 0.0:
-        return 1
-    return max(1, min(int((PIECE_SECONDS + WRITER_SECONDS * ranks) / pace), left // (4 * ranks)))
+
+class Writer:
+    """Which points are handed out next. `block`: points of a piece; None: by the rule of the program."""
+
+    def __init__(self, the_map, ranks, block):
+        self.map, self.ranks, self.block = the_map, ranks, block
+        self.handed = 0
+        self.left = the_map.points
+        self.returned = collections.deque()
+        self.pace = 0.0
+        self.meant = PIECE_SECONDS + WRITER_SECONDS * ranks
+
+    def limit(self):
+        return math.inf if self.block else PATIENCE * self.meant
+
+    def next_piece(self):
+        """(first, count)"""
+        if self.returned:
+            first, count = self.returned.popleft()
+            if count > 1:
+                self.returned.appendleft((first + 1, count - 1))
+            count = 1
+        else:
+            most = max(1.0, self.left // (2 * self.ranks))
+            wanted = self.block or (min(max(self.meant / self.pace, 1.0), most) if self.pace > 0 else 1)
+            first, count = self.handed, min(int(wanted), self.map.points - self.handed)
+            self.handed += count
+        self.left -= count
+        return first, count
+
+    def take(self, rows, seconds, rest):
+        self.pace += (seconds / rows - self.pace) * (0.1 if self.pace > 0.0 else 1.0)
+        if rest[1]:
+            self.returned.append(rest)
+            self.left += rest[1]
 
 
 def simulate(the_map, ranks, costs, block=None, speed=1.0):
-    """(wall time, busy time of the writer, messages) of a map. `block`: points of a piece; None: by the rule of the program.
-    `speed`: of each rank, below 1 where ranks share cores."""
-    handed = done = messages = 0
-    writer = busy = pace = last = 0.0
+    """(wall time, busy time of the writer, messages) of a map. `speed`: of each rank, below 1 where ranks share cores."""
+    writer = Writer(the_map, ranks, block)
+    free = busy = last = 0.0  # when the writer has served all that arrived; how long it served
+    messages = done = 0
     held = [0] * ranks
     until = [0.0] * ranks  # when a rank has computed all it holds
-    events = [(0.0, rank, 0, 0.0) for rank in range(ranks)]  # arrival at the writer, of whom, rows, seconds of computing
+    idle = set()
+    events = [(0.0, rank, None) for rank in range(ranks)]  # arrival at the writer, of whom, with what
+
+    def hand_out(rank):
+        while writer.left and held[rank] < (2 if writer.left > ranks else 1):
+            first, count = writer.next_piece()
+            points, seconds = the_map.computed(first, count, writer.limit() * speed)
+            way = costs.way if rank > 0 else 0.0
+            held[rank] += 1
+            until[rank] = max(until[rank], free + way) + seconds / speed
+            heapq.heappush(events, (until[rank] + way, rank, (points, seconds / speed, (first + points, count - points))))
+        if held[rank] == 0:
+            idle.add(rank)
+
     while events:
-        at, rank, rows, seconds = heapq.heappop(events)
+        at, rank, piece = heapq.heappop(events)
         # Rank 0 tells itself without a message.
-        service = (costs.message if rank > 0 else 0.0) + costs.row * rows
-        writer = max(writer, at) + service
+        service = (costs.message if rank > 0 else 0.0) + (costs.row * piece[0] if piece else 0.0)
+        free = max(free, at) + service
         busy += service
         messages += rank > 0
-        if rows:
+        if piece:
             held[rank] -= 1
-            done += rows
-            pace += (seconds / rows - pace) * (0.1 if pace > 0.0 else 1.0)
-            last = writer
-        while handed < the_map.points:
-            left = the_map.points - handed
-            if held[rank] >= (2 if left > ranks else 1):
-                break
-            count = min(block or piece_by_rule(pace, left, ranks), left)
-            seconds = the_map.seconds(handed, count) / speed
-            handed += count
-            held[rank] += 1
-            way = costs.way if rank > 0 else 0.0
-            until[rank] = max(until[rank], writer + way) + seconds
-            heapq.heappush(events, (until[rank] + way, rank, count, seconds))
+            done += piece[0]
+            writer.take(*piece)
+            last = free
+        hand_out(rank)
+        while idle and writer.left:
+            hand_out(idle.pop())
     assert done == the_map.points
     return last, busy, messages
 
@@ -93,7 +133,3 @@ def quantiles(values, shares):
     ordered = sorted(values)
     return [ordered[min(len(ordered) - 1, int(share * len(ordered)))] for share in shares]
 
-
-def share_above(values, limit):
-    ordered = sorted(values)
-    return 1 - bisect.bisect_right(ordered, limit) / len(ordered)
