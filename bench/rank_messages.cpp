@@ -1,6 +1,7 @@
 /// @file
 /// What messages cost the writer of a map on several ranks: the calls of cli/ranks.cpp without anything else.
-///   mpirun -n 2 rank_messages      prints the round trip of one message; with more ranks, how long the writer takes for each
+///   mpirun -n 2 rank_messages      prints the round trip of one message; with more ranks, how long the writer takes
+///   for each
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>

@@ -14,8 +14,9 @@ PATIENCE = 1.5         # patience
 
 @dataclass
 class Costs:
-    message: float  # s of the writer for each message and its answer
-    row: float      # s of the writer for each row: into the store and the map
+    message: float  # s of the writer for each message and its answer, with handing its rows to the store
+    wake: float     # s of the store's thread for each message
+    row: float      # and for each row
     way: float      # s from a rank to the writer or back
 
 
@@ -78,9 +79,11 @@ class Writer:
 
 
 def simulate(the_map, ranks, costs, block=None, speed=1.0):
-    """(wall time, busy time of the writer, messages) of a map. `speed`: of each rank, below 1 where ranks share cores."""
+    """(wall time, busy time of the writer, of the store, messages) of a map. `speed`: of each rank, below 1 where ranks share
+    cores."""
     writer = Writer(the_map, ranks, block)
-    free = busy = last = 0.0  # when the writer has served all that arrived; how long it served
+    free = busy = 0.0             # when the writer has served all that arrived; how long it served
+    stored = storing = 0.0        # the same of the store, whose queue is long
     messages = done = 0
     held = [0] * ranks
     until = [0.0] * ranks  # when a rank has computed all it holds
@@ -100,8 +103,7 @@ def simulate(the_map, ranks, costs, block=None, speed=1.0):
 
     while events:
         at, rank, piece = heapq.heappop(events)
-        # Rank 0 tells itself without a message.
-        service = (costs.message if rank > 0 else 0.0) + (costs.row * piece[0] if piece else 0.0)
+        service = costs.message if rank > 0 else 0.0  # rank 0 tells itself without a message
         free = max(free, at) + service
         busy += service
         messages += rank > 0
@@ -109,12 +111,14 @@ def simulate(the_map, ranks, costs, block=None, speed=1.0):
             held[rank] -= 1
             done += piece[0]
             writer.take(*piece)
-            last = free
+            work = costs.wake + costs.row * piece[0]
+            stored = max(stored, free) + work
+            storing += work
         hand_out(rank)
         while idle and writer.left:
             hand_out(idle.pop())
     assert done == the_map.points
-    return last, busy, messages
+    return stored, busy, storing, messages
 
 
 def efficiency(the_map, ranks, costs, block=None):
