@@ -123,10 +123,15 @@ void complain(const Ending& ending) {
 
 int main(int argc, char** argv) {
   using namespace limcycle;
-  const Ending ending = outcome(argc, argv);
-  complain(ending);
-  const Ending of_others = end_ranks(ending);
-  if (ending.message.empty()) complain(of_others);
-  if (rank() > 0) return rank_count() > 1 ? exit_done : ending.code;
-  return ending.code != exit_done ? ending.code : of_others.code;
+  try {
+    const Ending ending = outcome(argc, argv);
+    complain(ending);
+    const Ending of_others = end_ranks(ending);
+    if (ending.message.empty()) complain(of_others);
+    if (rank() > 0) return rank_count() > 1 ? exit_done : ending.code;
+    return ending.code != exit_done ? ending.code : of_others.code;
+  } catch (const std::exception& error) {  // nobody can be told any more how this one ends
+    std::fprintf(stderr, "limcycle: internal error: %s\n", error.what());
+    abort_ranks(exit_no_answer);
+  }
 }
