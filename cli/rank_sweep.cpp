@@ -70,16 +70,15 @@ class SweepWriter {
         identity_(identity),
         blocks_(task.points, task.block, known),
         left_(blocks_.blocks()),
-        ranks_(static_cast<std::size_t>(rank_count())) {
-    ranks_[0].threads = static_cast<std::size_t>(std::max(1, options.threads));
-    total_threads_ = ranks_[0].threads;
+        ranks_(static_cast<std::size_t>(rank_count())),
+        total_threads_(static_cast<std::size_t>(std::max(1, options.threads))),
+        crew_(task, total_threads_) {
+    ranks_[0].threads = total_threads_;
   }
 
   Status run() {
     done_ = task_.points - blocks_.missing();
     if (options_.progress) options_.progress(done_, task_.points);
-    Crew crew(task_, ranks_[0].threads);
-    crew_ = &crew;
     try {
       while (done_ < task_.points && !stopped_) {
         listen();
@@ -110,16 +109,16 @@ class SweepWriter {
       heard = true;
       hear(*message);
     }
-    for (auto& finished : crew_->take()) {
+    for (auto& finished : crew_.take()) {
       heard = true;
       take(0, finished);
     }
-    crew_->check();
+    crew_.check();
     hand_out(0);
     if (heard)
       pause_.reset();
     else
-      crew_->wait(pause_.next());
+      crew_.wait(pause_.next());
   }
 
   void hear(const RankMessage& message) {
@@ -170,7 +169,7 @@ class SweepWriter {
       left_ -= blocks_of(points.size());
       ++to.pieces;
       if (rank == 0) {
-        crew_->give(std::move(points), patience * seconds);
+        crew_.give(std::move(points), patience * seconds);
         continue;
       }
       std::string content;
@@ -192,8 +191,8 @@ class SweepWriter {
       if (from.empty()) returned_.pop_front();
       return piece;
     }
-    const double most = std::max(1.0, static_cast<double>(left_ / (2 * total_threads_)));
-    const double wanted = pace_ > 0.0 ? std::clamp(seconds / pace_, 1.0, most) : 1.0;
+    const std::size_t most = std::max<std::size_t>(1, left_ / (2 * total_threads_));
+    const double wanted = pace_ > 0.0 ? std::clamp(seconds / pace_, 1.0, static_cast<double>(most)) : 1.0;
     const auto piece = blocks_.next(static_cast<std::size_t>(wanted));
     return {piece.begin(), piece.end()};
   }
@@ -205,9 +204,9 @@ class SweepWriter {
     interrupt();
     const auto until = RankClock::now() + last_rows;
     while (!all_others_left() && RankClock::now() < until) listen();
-    crew_->stop();
-    for (auto& finished : crew_->take()) take(0, finished);
-    crew_->check();
+    crew_.stop();
+    for (auto& finished : crew_.take()) take(0, finished);
+    crew_.check();
   }
 
   const SweepTask& task_;
@@ -219,11 +218,11 @@ class SweepWriter {
   std::size_t left_;  // blocks not handed out
   std::vector<OneRank> ranks_;
   std::size_t total_threads_;
-  Crew* crew_ = nullptr;
   Pause pause_;
   double pace_ = 0.0;  // s a block, lately; 0: unknown
   std::size_t done_ = 0;
   bool stopped_ = false;
+  Crew crew_;
 };
 
 }  // namespace
