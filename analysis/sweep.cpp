@@ -90,11 +90,11 @@ SweepBlocks::SweepBlocks(std::size_t points, std::size_t block, const std::vecto
     if (known.empty() || !known[i]) missing_.push_back(i);
 }
 
-std::span<const std::size_t> SweepBlocks::next() {
-  const std::size_t index = next_.fetch_add(1, std::memory_order_relaxed);
-  if (index >= blocks()) return {};
+std::span<const std::size_t> SweepBlocks::next(std::size_t blocks) {
+  const std::size_t index = next_.fetch_add(blocks, std::memory_order_relaxed);
+  if (index >= this->blocks()) return {};
   const std::size_t first = index * block_;
-  return {missing_.data() + first, std::min(block_, missing_.size() - first)};
+  return {missing_.data() + first, std::min(blocks * block_, missing_.size() - first)};
 }
 
 Status run_sweep(const SweepTask& task, const std::vector<bool>& known, const SweepSink& sink,

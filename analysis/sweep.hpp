@@ -51,8 +51,8 @@ class SweepBlocks {
   /// `known`: one flag a point, or empty if none is known. Throws std::invalid_argument for another size or block = 0.
   SweepBlocks(std::size_t points, std::size_t block, const std::vector<bool>& known);
 
-  /// The next block, the last one perhaps shorter; empty when all were handed out.
-  std::span<const std::size_t> next();
+  /// The next block, the last one perhaps shorter, or so many of them in one span; empty when all were handed out.
+  std::span<const std::size_t> next(std::size_t blocks = 1);
 
   std::size_t missing() const { return missing_.size(); }  ///< points that were not known
   std::size_t blocks() const { return (missing_.size() + block_ - 1) / block_; }

@@ -5,6 +5,7 @@
 
 #include "build_info.hpp"
 #include "limcycle/analysis/on_threads.hpp"
+#include "limcycle/cli/ranks.hpp"
 
 namespace limcycle {
 
@@ -44,7 +45,7 @@ CLI::App* add_command(CLI::App& program, Action& action, const std::string& name
 Case load_case(const CommonFlags& flags) { return load_case(flags.case_file, flags.set); }
 
 Isa instruction_set(const CommonFlags& flags) {
-  const Isa isa = isa_named(flags.isa).value();
+  const Isa isa = flags.isa == "auto" ? isa_of_ranks() : isa_named(flags.isa).value();
   if (!is_available(isa)) throw std::invalid_argument("--isa: this machine has no " + flags.isa);
   return isa;
 }

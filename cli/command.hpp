@@ -46,7 +46,8 @@ CLI::App* add_command(CLI::App& program, Action& action, const std::string& name
 /// The case of the command line, read and validated. Throws InputError.
 Case load_case(const CommonFlags& flags);
 
-/// The instruction set that --isa names. Throws std::invalid_argument if this machine lacks it.
+/// The instruction set that --isa names; "auto" is the widest that all ranks have. Throws std::invalid_argument if this
+/// machine lacks it.
 Isa instruction_set(const CommonFlags& flags);
 
 /// Who made a result (with the portable instruction set: a command whose kernels use another says so), with which

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -6,7 +7,11 @@
 #include "build_info.hpp"
 #include "limcycle/cases/input_error.hpp"
 #include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
+#include "limcycle/cli/rank_job.hpp"
+#include "limcycle/cli/rank_sweep.hpp"
+#include "limcycle/cli/ranks.hpp"
 #include "limcycle/reports/store.hpp"
 
 namespace limcycle {
@@ -19,7 +24,7 @@ constexpr void (*commands[])(CLI::App&, Action&) = {
 
 std::string version_text() {
   return std::string("limcycle ") + build_info::version + " (" + build_info::commit + ", " + build_info::compiler +
-         ", " + build_info::build_type + ")";
+         ", " + build_info::build_type + (built_for_ranks() ? ", MPI" : "") + ")";
 }
 
 /// A word where a command should stand, before the parser makes something else of it.
@@ -46,6 +51,12 @@ InputError unexpected(const CLI::App& program) {
   return refusal({}, command + "unknown option '" + word + "'", suggest(word.substr(0, word.find('=')), names));
 }
 
+/// Is the command one that several ranks share? Any other is for rank 0 alone.
+bool sweeps(const CLI::App& program) {
+  const auto chosen = program.get_subcommands();
+  return !chosen.empty() && chosen.front()->get_option_no_throw("--store") != nullptr;
+}
+
 int run(int argc, char** argv) {
   CLI::App program{"Limit cycles of feedback loops with friction: predicted, and checked in the time domain",
                    "limcycle"};
@@ -70,12 +81,41 @@ int run(int argc, char** argv) {
     const auto chosen = program.get_subcommands();
     throw refusal({}, (chosen.empty() ? "" : chosen.front()->get_name() + ": ") + error.what());
   }
-  return action();
+  return rank() == 0 || sweeps(program) ? action() : exit_done;
 }
 
-int complain(const std::string& message, ExitCode code) {
-  std::cerr << "limcycle: " + one_line(message, 2000) + "\n" << std::flush;
-  return code;
+/// Joins the ranks and does this one's part.
+Ending outcome(int argc, char** argv) {
+  try {
+    join_ranks();
+    if (rank() > 0) {
+      // Rank 0 speaks for all, and a signal is for all.
+      if (std::freopen("/dev/null", "w", stdout) == nullptr) throw std::runtime_error("cannot open /dev/null");
+      catch_interrupts();
+    }
+    return {run(argc, argv), {}};
+  } catch (const ShareDone&) {
+    return {exit_done, {}};
+  } catch (const InputError& error) {
+    return {exit_bad_input, error.what()};
+  } catch (const std::invalid_argument& error) {
+    return {exit_bad_input, error.what()};
+  } catch (const std::bad_alloc&) {
+    return {exit_no_answer, "out of memory"};
+  } catch (const StoreError& error) {
+    return {error.kind() == StoreError::Kind::refused ? exit_bad_input : exit_no_answer, error.what()};
+  } catch (const OutputError& error) {
+    return {exit_no_answer, error.what()};
+  } catch (const RankFailure& error) {
+    return {error.code(), error.what()};
+  } catch (const std::exception& error) {
+    return {exit_no_answer, std::string("internal error: ") + error.what()};
+  }
+}
+
+void complain(const Ending& ending) {
+  if (rank() == 0 && !ending.message.empty())
+    std::cerr << "limcycle: " + one_line(ending.message, 2000) + "\n" << std::flush;
 }
 
 }  // namespace
@@ -84,18 +124,14 @@ int complain(const std::string& message, ExitCode code) {
 int main(int argc, char** argv) {
   using namespace limcycle;
   try {
-    return run(argc, argv);
-  } catch (const InputError& error) {
-    return complain(error.what(), exit_bad_input);
-  } catch (const std::invalid_argument& error) {
-    return complain(error.what(), exit_bad_input);
-  } catch (const std::bad_alloc&) {
-    return complain("out of memory", exit_no_answer);
-  } catch (const StoreError& error) {
-    return complain(error.what(), error.kind() == StoreError::Kind::refused ? exit_bad_input : exit_no_answer);
-  } catch (const OutputError& error) {
-    return complain(error.what(), exit_no_answer);
-  } catch (const std::exception& error) {
-    return complain(std::string("internal error: ") + error.what(), exit_no_answer);
+    const Ending ending = outcome(argc, argv);
+    complain(ending);
+    const Ending of_others = end_ranks(ending);
+    if (ending.message.empty()) complain(of_others);
+    if (rank() > 0) return rank_count() > 1 ? exit_done : ending.code;
+    return ending.code != exit_done ? ending.code : of_others.code;
+  } catch (const std::exception& error) {  // nobody can be told any more how this one ends
+    std::fprintf(stderr, "limcycle: internal error: %s\n", error.what());
+    abort_ranks(exit_no_answer);
   }
 }

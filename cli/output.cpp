@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iostream>
 
+#include "limcycle/cli/ranks.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -65,7 +67,7 @@ Output::~Output() {
 }
 
 void Output::check_file(const std::string& flag, const std::string& path) {
-  if (path.empty() || path == "-") return;
+  if (path.empty() || path == "-" || rank() > 0) return;
   std::error_code failed;
   const auto status = std::filesystem::status(path, failed);
   // Devices and pipes are not opened before there is something to write.
@@ -79,7 +81,7 @@ void Output::check_file(const std::string& flag, const std::string& path) {
 }
 
 void Output::write(const std::string& path, std::string_view document) {
-  if (path.empty()) return;
+  if (path.empty() || rank() > 0) return;
   errno = 0;
   const bool written = path == "-" ? written_to(std::cout, document) : replaced(path, document);
   if (written) std::erase(created_, path);

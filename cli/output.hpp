@@ -19,7 +19,8 @@ class OutputError : public std::runtime_error {
 /// names a file for it.
 ///
 /// The constructor checks that every file can be opened, before anything is computed, without touching what stands in
-/// it; it throws InputError otherwise. Files that it had to create and that were never written are removed again.
+/// it; it throws InputError otherwise. Files that it had to create and that were never written are removed again. Of
+/// several ranks only rank 0 touches any file.
 class Output {
  public:
   explicit Output(const CommonFlags& flags);

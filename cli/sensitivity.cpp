@@ -13,6 +13,7 @@
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/ranks.hpp"
 #include "limcycle/cli/sweep.hpp"
 #include "limcycle/cli/threshold.hpp"
 #include "limcycle/cli/units_of.hpp"
@@ -188,7 +189,7 @@ SensitivityReport study(const Case& from, const Loop& loop, const SensitivityFla
   report.spread = from.sensitivity ? *from.sensitivity : default_spread(from);
   if (flags.seed != 0) report.spread.seed = flags.seed;
   catch_interrupts();
-  {
+  if (rank() == 0) {  // the others share the sweep only
     Progress progress(flags.quiet);
     progress.show(0.0, "the cycle and its neighbourhood");
     report.cycle = main_cycle(loop, from, report.notes);

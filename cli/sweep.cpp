@@ -7,6 +7,8 @@
 
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/rank_sweep.hpp"
+#include "limcycle/cli/ranks.hpp"
 
 namespace limcycle {
 namespace {
@@ -30,6 +32,16 @@ SweepIdentity identity_of(const SweepTask& task, const std::vector<std::string>&
   return identity;
 }
 
+/// What all ranks of a job must agree on.
+std::string as_text(const SweepIdentity& identity) {
+  std::string text = identity.command + '\n' + identity.case_sha256 + '\n' + identity.design + '\n' +
+                     std::to_string(identity.seed) + '\n' + std::to_string(identity.points) + '\n' + identity.version +
+                     '\n' + identity.commit + '\n' + identity.isa;
+  for (const auto* names : {&identity.overrides, &identity.columns})
+    for (const auto& name : *names) text += '\n' + name;
+  return text;
+}
+
 }  // namespace
 
 void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
@@ -42,13 +54,15 @@ void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
 
 SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& columns, const std::string& design,
                      const SweepFlags& flags, const Case& from) {
+  const std::string command = design.substr(0, design.find(' '));
+  const SweepIdentity identity = identity_of(task, columns, design, flags, from, command);
+  if (rank() > 0) serve_ranks(task, flags.threads, as_text(identity));
   SweptRows swept;
   swept.known.assign(task.points, false);
   swept.rows.assign(task.points * task.columns, std::numeric_limits<double>::quiet_NaN());
   std::optional<SweepStore> store;
   if (!flags.store.empty()) {
-    const std::string command = design.substr(0, design.find(' '));
-    store.emplace(flags.store, identity_of(task, columns, design, flags, from, command), flags.resume);
+    store.emplace(flags.store, identity, flags.resume);
     StoredSweep before = store->read_all();
     swept.known = std::move(before.known);
     swept.rows = std::move(before.rows);
@@ -69,7 +83,8 @@ SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& colu
     options.threads = flags.threads;
     options.stop = interrupted;
     options.progress = [&](std::size_t done, std::size_t total) { bar.count(done, total); };
-    swept.status = run_sweep(task, known_before, sink, options);
+    swept.status = rank_count() > 1 ? run_on_ranks(task, known_before, sink, options, as_text(identity))
+                                    : run_sweep(task, known_before, sink, options);
   }
   if (store) store->flush();
   return swept;

@@ -24,7 +24,9 @@ struct SweptRows {
 };
 
 /// Runs a sweep with a progress bar that tells the rate, into the store if --store names one, and catches Ctrl-C.
-/// `design`: what makes its points and rows what they are, but for case, seed and program. Throws StoreError.
+/// `design`: what makes its points and rows what they are, but for case, seed and program. Of several ranks all
+/// compute, and rank 0 goes on with the rows; for the others the command ends here (ShareDone). Throws StoreError,
+/// RankFailure.
 SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& columns, const std::string& design,
                      const SweepFlags& flags, const Case& from);
 

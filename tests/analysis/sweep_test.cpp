@@ -131,6 +131,17 @@ TEST_CASE("blocks are handed out once each, to whoever asks") {
   CHECK(blocks.next().empty());
 }
 
+TEST_CASE("several blocks come in one span, up to the end") {
+  std::vector<bool> known(20, false);
+  known[3] = known[19] = true;
+  SweepBlocks blocks(20, 4, known);
+  const auto values = [](std::span<const std::size_t> points) { return std::vector(points.begin(), points.end()); };
+  CHECK(values(blocks.next(2)) == std::vector<std::size_t>{0, 1, 2, 4, 5, 6, 7, 8});
+  CHECK(values(blocks.next()) == std::vector<std::size_t>{9, 10, 11, 12});
+  CHECK(values(blocks.next(7)) == std::vector<std::size_t>{13, 14, 15, 16, 17, 18});
+  CHECK(blocks.next(2).empty());
+}
+
 TEST_CASE("a sweep that is told to stop keeps what is finished, and goes on from there to the same bits") {
   const Kept expected = expected_rows(60);
   for (const int threads : {1, 3}) {
