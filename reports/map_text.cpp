@@ -43,8 +43,7 @@ std::string letters(const HuntingMap& map) {
   std::string out;
   for (int row = (map.y.points - 1) / step * step; row >= 0; row -= step) {
     out += "  ";
-    for (int column = 0; column < map.x.points; column += step)
-      out += map_letter(map.at(column, row));
+    for (int column = 0; column < map.x.points; column += step) out += map_letter(map.at(column, row));
     out.erase(out.find_last_not_of(' ') + 1);
     out += "\n";
   }

@@ -51,7 +51,8 @@ struct HuntingMap {
 
   std::size_t size() const { return static_cast<std::size_t>(x.points) * static_cast<std::size_t>(y.points); }
   const std::optional<MapPoint>& at(int column, int row) const {
-    return points[static_cast<std::size_t>(row) * static_cast<std::size_t>(x.points) + static_cast<std::size_t>(column)];
+    return points[static_cast<std::size_t>(row) * static_cast<std::size_t>(x.points) +
+                  static_cast<std::size_t>(column)];
   }
   double x_of(std::size_t k) const { return x.value(static_cast<int>(k) % x.points); }
   double y_of(std::size_t k) const { return y.value(static_cast<int>(k) / x.points); }
