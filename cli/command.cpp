@@ -1,10 +1,11 @@
 #include "limcycle/cli/command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <stdexcept>
+#include <thread>
 
 #include "build_info.hpp"
-#include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/cli/ranks.hpp"
 
 namespace limcycle {
@@ -59,7 +60,9 @@ Provenance provenance(const CommonFlags& flags, const Case* from) {
   instruction_set(flags);  // one that this machine lacks is refused by every command
   made.isa = to_string(Isa::scalar);
   made.seed = flags.seed;
-  made.threads = static_cast<int>(thread_count(flags.threads));
+  // Of the machine, also where mpirun gives this process a part of it: a result has the same bytes either way.
+  made.threads =
+      flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (from != nullptr) {
     made.title = from->title;
     made.file = from->file;
