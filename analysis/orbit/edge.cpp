@@ -35,7 +35,8 @@ Trend trend(const Loop& loop, const LoopState& from, double period, const Settle
 
 /// Neighbouring scales between which shrinking turns into growing (or back), nearest to 1 first.
 std::optional<std::pair<double, double>> bracket(const std::function<Trend(double)>& trend_at) {
-  constexpr std::array<double, 10> scales{0.1, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 3.0};
+  constexpr std::array<double, 10> scales{smallest_edge_scale, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0,
+                                          largest_edge_scale};
   std::optional<std::pair<double, double>> best;
   Trend previous = Trend::neither;
   for (std::size_t i = 0; i < scales.size(); ++i) {

@@ -5,6 +5,9 @@
 
 namespace limcycle {
 
+/// Ends of the ray on which edge_cycle() looks, times the initial states that are guessed.
+inline constexpr double smallest_edge_scale = 0.1, largest_edge_scale = 3.0;
+
 /// An unstable cycle as the border between motions that grow and motions that shrink: along a ray of initial states the
 /// last one whose swings shrink and the first whose swings grow are bisected together; the motion from there lingers at
 /// the unstable cycle that separates them, and shooting starts from it. `period` is a guess.

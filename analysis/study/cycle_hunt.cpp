@@ -45,6 +45,14 @@ std::optional<std::size_t> CycleHunt::shoot_from(const OrbitGuess& guess) {
 
 std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(double scale)>& ray, double period) {
   settle_.known = cycles_;
+  // Where small and large oscillations come to the same in the end there is no border between them.
+  const Settled small = settle(loop_, ray(smallest_edge_scale), settle_),
+                large = settle(loop_, ray(largest_edge_scale), settle_);
+  const bool same = small.outcome == large.outcome && small.outcome != Outcome::undecided && small.known == large.known;
+  if (same && !small.shot && !large.shot) return std::nullopt;
+  for (const auto& end : {small, large})
+    if (end.shot) merge(cycles_, end.shot->cycle);
+  settle_.known = cycles_;
   return keep(edge_cycle(loop_, ray, period, settle_));
 }
 
