@@ -84,7 +84,7 @@ std::optional<std::string> refusal(const Element<double>& element, const Driven&
 class DrivenPeriod {
  public:
   DrivenPeriod(const Element<double>& element, const Driven& by, bool half, const DfDerivativeOptions& options)
-      : element_(element), by_(by), half_(half), loop_(driven_loop(element, by)), options_(options) {
+      : element_(element), by_(by), half_(half), loop_(driven_loop(element, by)) {
     cut_.max_steps = options.max_steps;
     cut_.stop = options.stop;
     const double output = scales_of(element).output / by.frequency;
@@ -161,7 +161,6 @@ class DrivenPeriod {
   Driven by_;
   bool half_;
   Loop loop_;
-  const DfDerivativeOptions& options_;
   CutOptions cut_;
   std::vector<double> mirror_;
   LoopState start_;
