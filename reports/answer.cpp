@@ -93,9 +93,10 @@ std::string with_cycles(const PredictReport& report, const Units& units) {
       out += (i == 0 ? " " : i + 1 < stable.size() ? ", " : " and ") + size_of(*stable[i], units);
     out += ".";
   }
+  const bool decided = std::all_of(others.begin(), others.end(), [](auto* c) { return c->stable.has_value(); });
   if (!others.empty())
-    out += fmt::format(" {} not stable or undecided.",
-                       others.size() == 1 ? "One more is" : fmt::format("{} more are", others.size()));
+    out += fmt::format(" {} {}.", others.size() == 1 ? "One more is" : fmt::format("{} more are", others.size()),
+                       decided ? "unstable" : "not stable or undecided");
   if (count(report, Outcome::cycle) < report.outcomes.size()) out += " " + capital(fates(report)) + ".";
   return out;
 }
@@ -108,6 +109,13 @@ std::string deviation(double predicted, double truth) {
   return fmt::format("{} % too {}", with_digits(std::abs(share), 2), share > 0.0 ? "large" : "small");
 }
 
+/// What to call a cycle: of several it must be told which.
+std::string name_of(const PredictReport& report, const Cycle& cycle) {
+  if (report.cycles.size() == 1) return "it";
+  const std::string kind = cycle.stable ? (*cycle.stable ? "stable " : "unstable ") : "";
+  return fmt::format("the {}one of period {} s", kind, with_digits(cycle.period, sentence_digits));
+}
+
 std::string of_one(const PredictReport& report, const Prediction& one, const Units& units) {
   const std::string size = fmt::format("amplitude {}, frequency {} rad/s",
                                        Units::attach(with_digits(one.amplitude, sentence_digits), units.y),
@@ -116,7 +124,7 @@ std::string of_one(const PredictReport& report, const Prediction& one, const Uni
   if (one.verdict == Verdict::undecided || !one.cycle || *one.cycle >= report.cycles.size())
     return "predicts a limit cycle (" + size + ") that could be neither confirmed nor refuted";
   const Cycle& cycle = report.cycles[*one.cycle];
-  return fmt::format("predicts it{}: first harmonic {}, frequency {}",
+  return fmt::format("predicts {}{}: first harmonic {}, frequency {}", name_of(report, cycle),
                      one.verdict == Verdict::biased ? " with a bias" : "",
                      deviation(one.amplitude, cycle.first_harmonic), deviation(one.frequency, cycle.frequency()));
 }

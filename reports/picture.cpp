@@ -87,7 +87,10 @@ const Cycle* drawable(const PredictReport& report) {
 
 std::string panels(const Cycle& cycle, const Units& units) {
   const auto stuck = stuck_samples(cycle.trace, cycle.sticking_fraction);
-  const auto index = thin(cycle.trace, 500, stuck).index;
+  // A cycle that rings is drawn coarsely rather than cut: what is left of a cut one is no period.
+  Thinned kept = thin(cycle.trace, 500, stuck);
+  if (!kept.whole) kept = thin(cycle.trace, 1000, stuck, INFINITY);
+  const auto& index = kept.index;
   const Trace once = picked(cycle.trace, index);
   std::vector<bool> marks;
   marks.reserve(index.size());

@@ -1,6 +1,7 @@
 #include "limcycle/reports/picture.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <regex>
 
 #include "limcycle/tests/reports/sample_report.hpp"
@@ -32,4 +33,19 @@ TEST_CASE("the picture of a loop without a cycle is its answer in words") {
   const auto text = predict_picture(report, {});
   CHECK_THAT(text, Contains("This loop does not hunt"));
   CHECK(text.find("<path") == std::string::npos);
+}
+
+TEST_CASE("a cycle that rings many times is drawn to its end") {
+  auto report = sample::hunting();
+  Trace& trace = report.cycles[0].trace;
+  trace = {};
+  for (int i = 0; i <= 20000; ++i) {
+    const double t = 1e-3 * i, ringing = std::exp(-0.2 * t) * std::sin(20.0 * t);
+    trace.t.push_back(t);
+    trace.y.push_back(t < 10.0 ? t : 20.0 - t);
+    for (auto* column : {&trace.rate, &trace.input, &trace.velocity, &trace.output}) column->push_back(ringing);
+  }
+  const auto text = predict_picture(report, {});
+  CHECK(text.find(">0 to 40.0 s<") != std::string::npos);  // two periods
+  CHECK(text.size() < 100000);
 }

@@ -66,6 +66,19 @@ TEST_CASE("predict: predictions with their verdicts and deviations") {
   CHECK(widest(text) <= 80);
 }
 
+TEST_CASE("predict: of several cycles the one that is predicted is told") {
+  auto two = sample::relay();
+  two.predictions.resize(1);
+  two.cycles.push_back(two.cycles[0]);
+  two.cycles[0].stable = false;
+  CHECK_THAT(answer(two, {}).worth[0],
+             StartsWith("The describing function predicts the unstable one of period 6.283 s: first harmonic 2.0 %"));
+  CHECK_THAT(answer(two, {}).what_happens, Contains(". One more is unstable."));
+  two.cycles[0].stable.reset();
+  CHECK_THAT(answer(two, {}).worth[0], StartsWith("The describing function predicts the one of period 6.283 s: "));
+  CHECK_THAT(answer(two, {}).what_happens, Contains(" One more is not stable or undecided."));
+}
+
 TEST_CASE("predict: trust in the predictions, with bands that are proved, heuristic or unknown") {
   const auto text = predict_text("Relay", sample::trusted(), {});
   CHECK_THAT(text, Contains("Trust in the predictions") && Contains("a cycle within 6 % of it is proved"));
