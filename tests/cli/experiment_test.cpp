@@ -51,6 +51,18 @@ TEST_CASE("experiment: the same run gives the same bytes, whatever the threads")
   CHECK(one.out == two.out);
 }
 
+TEST_CASE("experiment: what a law has no number for is said in words") {
+  const std::vector<std::string> commands[] = {
+      {"breakaway-force", "gms"}, {"breakaway-parameters", "elasto-plastic"}, {"stick-slip-transition", "karnopp"}};
+  for (const auto& words : commands) {
+    const auto ran = run({"experiment", words[0], "--law", words[1]});
+    INFO(ran.out);
+    CHECK(ran.code == 0);
+    CHECK(ran.out.find("nan ") == std::string::npos);
+    CHECK(ran.out.find("not") != std::string::npos);
+  }
+}
+
 TEST_CASE("experiment: a claim that is refuted, or not tested, is no failure") {
   const auto ran = run({"experiment", "breakaway-rate", "--law", "coulomb"});
   CHECK(ran.code == 0);

@@ -18,7 +18,7 @@ std::string in_words(const std::string& key, double factor) {
 }
 
 std::string trend(double low, double middle, double high) {
-  if (!std::isfinite(low) || !std::isfinite(middle) || !std::isfinite(high)) return "?";
+  if (!std::isfinite(low) || !std::isfinite(middle) || !std::isfinite(high)) return "not known";
   const double least = 2e-5 * std::abs(middle);
   if (std::abs(low - middle) <= least && std::abs(high - middle) <= least) return "same";
   if (high >= middle - least && middle >= low - least) return "up";

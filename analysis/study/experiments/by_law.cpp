@@ -122,11 +122,13 @@ bool has_law(const Experiment& experiment, const std::string& law) {
 }
 
 std::string quantity(double value, const std::string& unit, int digits) {
+  if (!std::isfinite(value)) return "not known";
   return short_number(value, digits) + (unit.empty() ? "" : " " + unit);
 }
 
 std::string change(double from, double to) {
   const double percent = 100.0 * (to / from - 1.0);
+  if (!std::isfinite(percent)) return "a change that is not known";
   return std::string(percent >= 0.0 ? "+" : "") + short_number(percent, 2) + " %";
 }
 

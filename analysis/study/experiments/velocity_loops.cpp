@@ -121,9 +121,10 @@ LawPart transition(const LawSetting& setting) {
     if (std::isfinite(F)) peak = std::max(peak, std::abs(F));
   const double up = run.force_at(2e-3, true), down = run.force_at(2e-3, false);
   part.rows.push_back({"", "", {peak, jump, turn, up, down}});
-  part.finding = jump > 0.5
-                     ? "jumps by " + quantity(jump, "N") + " at a reversal"
-                     : "passes reversals continuously: the force changes sign " + quantity(turn, "m") + " after them";
+  part.finding = jump > 0.5 ? "jumps by " + quantity(jump, "N") + " at a reversal"
+                 : std::isfinite(turn)
+                     ? "passes reversals continuously: the force changes sign " + quantity(turn, "m") + " after them"
+                     : "passes reversals without a jump that is seen; where the force changes sign after them is not";
   part.finding += "; peak " + quantity(peak, "N", 4);
   const double band = band_of_applied_force(law);
   if (band > 0.0)
