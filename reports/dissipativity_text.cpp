@@ -202,9 +202,12 @@ std::string dissipativity_text(const std::string& title, const DissipativityRepo
                    fmt::format("{} after {} cycles from rest", joules(found->taken.back()), found->taken.size()));
   }
   if (report.loop) {
-    text += "\nLoop\n";
+    std::string questions;
     for (const auto& row : loop_table(report).rows)
-      if (row[1] != to_string(Decision::not_applicable)) text += item(row[1], 10, capitalised(row[0]) + " " + row[2]);
+      if (row[1] != to_string(Decision::not_applicable))
+        questions += item(row[1], 10, capitalised(row[0]) + " " + row[2]);
+    if (questions.empty()) questions = wrapped("No question applies: " + sentence(report.loop->passivity.why));
+    text += "\nLoop\n" + questions;
     text += stuck_text(report.loop->stuck) + sliding_text(report);
   }
   return text + notes_text(report.notes);

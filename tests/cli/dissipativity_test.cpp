@@ -59,6 +59,13 @@ TEST_CASE("dissipativity: laws that are passive, and one that creeps its energy 
   CHECK(gms["counterexample"]["energy_per_cycle"].get<double>() > 0.0);
 }
 
+TEST_CASE("dissipativity of a loop: where no question applies it says why") {
+  const auto ran =
+      run({"dissipativity", shipped("pid-lugre.toml"), "--set", "loop.controller.friction_compensation=0.5"});
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("No question applies: The rest of the loop is not linear"));
+}
+
 TEST_CASE("dissipativity of a loop: a proof that nothing can hunt, and none for the servo that does") {
   const std::vector<std::string> no_integral = {shipped("pid-lugre-no-stiction.toml"), "--set",
                                                 "loop.controller.ki=0.0"};
