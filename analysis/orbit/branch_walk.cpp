@@ -94,7 +94,7 @@ class Walk {
   /// One step along the tangent; h becomes the next one. False: it must be shorter.
   bool step(double& h) {
     auto next = solver_.solve(predicted(h), now_.tangent, now_.jacobian);
-    if (!next) return false;
+    if (!next || collapsed(*next)) return false;
     const double moved = (next->w - now_.w).norm();
     const double turn = next->tangent.dot(now_.tangent);
     if ((turn < sharpest_turn || moved > 1.5 * h) && h > 100.0 * options_.min_step) return false;
@@ -104,6 +104,11 @@ class Walk {
     if (iterations <= 4 && turn > 0.97) h *= 1.6;
     if (iterations >= 7 || turn < 0.9) h *= 0.7;
     return true;
+  }
+
+  /// Every state comes back to itself after no time: that solves the equations, and is no cycle.
+  bool collapsed(const BranchSpot& next) const {
+    return next.cycle.amplitude < 1e-3 * now_.cycle.amplitude && next.cycle.period < 1e-3 * now_.cycle.period;
   }
 
   bool leaves_range(double h) const {

@@ -143,3 +143,19 @@ TEST_CASE("margin: bad input ends with 2") {
   CHECK(zero.code == 2);
   CHECK_THAT(zero.err, Contains("no factor changes it"));
 }
+
+TEST_CASE("continue: a cycle that shrinks to nothing ends there, and not as points without size or period") {
+  const auto ran =
+      run({"continue", shipped("tutorial-servo.toml"), "--parameter", "loop.friction.Fs=8:12", "--json", "-"});
+  REQUIRE(ran.code == 0);
+  const auto document = Json::parse(ran.out);
+  CHECK(document["branch"].size() > 20);
+  for (const auto& point : document["branch"]) {
+    CHECK(point["amplitude"].get<double>() > 1e-9);
+    CHECK(point["period"].get<double>() > 1.0);
+  }
+  const auto& events = document["events"];
+  REQUIRE(events.size() == 2);
+  CHECK(events[0]["type"] == "end");
+  CHECK(events[0]["parameter"].get<double>() == Approx(8.0).epsilon(1e-6));  // where Fs is Fc
+}
