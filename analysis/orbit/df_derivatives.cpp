@@ -210,7 +210,7 @@ std::optional<std::string> DrivenPeriod::derive(double rtol, ParameterRates& rat
     q += passed.map.whole.block(2, of_oscillator, 2, own()) * z;
   }
   const double w = by_.frequency, A = by_.amplitude;
-  const Gain factor = std::polar((half_ ? -2.0 : 1.0) * w / (std::numbers::pi * A), -start_phase);
+  const Gain factor = (half_ ? -2.0 : 1.0) * w / (std::numbers::pi * A) * std::polar(1.0, -start_phase);
   const auto gain = [&](double q1, double q2) { return factor * Gain(-q1, q2); };
   row.gain = gain(passed.cut.last.x[2], passed.cut.last.x[3]);
   for (Index k = 0; k < q.cols(); ++k) row.by.push_back(gain(q(0, k), q(1, k)));

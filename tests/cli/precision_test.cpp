@@ -82,14 +82,13 @@ TEST_CASE("precision: a loop without cycle and without friction cannot be answer
 TEST_CASE("precision: Ctrl-C ends it soon and keeps what was computed") {
   const Scratch scratch;
   const std::string json = scratch.file("r.json");
-  const std::string command = "timeout --preserve-status -s INT 1 " + quoted(LIMCYCLE_PROGRAM) + " precision " +
+  const std::string command = "timeout --preserve-status -s INT 2 " + quoted(LIMCYCLE_PROGRAM) + " precision " +
                               quoted(shipped("pid-lugre.toml")) + " --json " + quoted(json) + " > " +
                               quoted(scratch.file("out")) + " 2> " + quoted(scratch.file("err"));
   const int status = std::system(command.c_str());
   REQUIRE(WIFEXITED(status));
   const auto document = Json::parse(scratch.get("r.json"));
-  // On a busy machine nothing may have been computed in a second.
-  CHECK(WEXITSTATUS(status) == (document["points"].empty() ? 3 : 0));
+  CHECK(WEXITSTATUS(status) == 0);
   CHECK_THAT(scratch.get("err"), Contains("interrupted"));
   CHECK(document["status"] == "interrupted");
 }
