@@ -136,7 +136,8 @@ double March::first_dt() {
     speed = std::max(speed, std::abs(step_.dx0[i]) / scale);
   }
   const double h = size > 1e-5 && speed > 1e-5 ? 0.01 * size / speed : 1e-6;
-  return std::clamp(h, 1e-12 * (1.0 + std::abs(t_)), 1.0);
+  const double least = 1e-12 * (1.0 + std::abs(t_));  // a motion at rest comes to such times
+  return std::clamp(h, least, std::max(least, 1.0));
 }
 
 /// An exact step; fails if the cubic through its ends is too far from the motion in the middle. Unless it must end at a
