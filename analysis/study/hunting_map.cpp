@@ -29,7 +29,11 @@ Worth worth_of(const std::string& method, const PredictReport& report) {
   if (verdict(Verdict::wrong)) return Worth::wrong;
   if (std::ranges::any_of(report.missed, [&](const Missed& m) { return m.method == method; })) return Worth::missed;
   if (verdict(Verdict::biased)) return Worth::biased;
-  return verdict(Verdict::undecided) ? Worth::undecided : Worth::right;
+  if (verdict(Verdict::undecided)) return Worth::undecided;
+  // Nothing predicted is right only where it is known that nothing oscillates.
+  const auto undecided = [](const OutcomeOfStart& one) { return one.outcome == Outcome::undecided; };
+  const bool known = verdict(Verdict::confirmed) || std::ranges::none_of(report.outcomes, undecided);
+  return known ? Worth::right : Worth::undecided;
 }
 
 /// The prediction nearest to the cycle that it is about.
