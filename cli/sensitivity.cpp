@@ -67,17 +67,19 @@ std::optional<Cycle> main_cycle(const Loop& loop, const Case& from, std::vector<
 }
 
 /// Every number times every factor, all others as they are.
-void change_each(const Case& from, const std::vector<double>& factors, const PredictOptions& options, int threads,
-                 std::vector<ParameterChange>& changes) {
-  for (const auto& number : own_numbers(from)) {
+void change_each(const std::vector<LoopNumber>& numbers, const std::vector<double>& factors,
+                 const PredictOptions& options, int threads, std::vector<ParameterChange>& changes) {
+  std::vector<const LoopNumber*> changed;
+  for (const auto& number : numbers) {
     if (number.value == 0.0) continue;  // times anything, it stays
-    for (const double factor : factors)
+    for (const double factor : factors) {
       changes.push_back({number.path, number.unit, factor, factor * number.value, {}});
+      changed.push_back(&number);
+    }
   }
   std::vector<char> looked_at(changes.size(), 0);
   const auto look = [&](std::size_t i) {
-    const auto changed = LoopVariation(from, "--factors", changes[i].path)(changes[i].value);
-    if (changed) changes[i].found = map_point(*changed, options);
+    if (const auto loop = changed[i]->loop_at(changes[i].value)) changes[i].found = map_point(*loop, options);
     looked_at[i] = interrupted() ? 0 : 1;
   };
   SweepOptions each;
@@ -104,7 +106,7 @@ void look_nearby(const Case& from, const Loop& loop, const SensitivityFlags& fla
   std::vector<double> factors = flags.factors;
   if (std::ranges::find(factors, 1.0) == factors.end()) factors.push_back(1.0);
   std::ranges::sort(factors);
-  change_each(from, factors, options, flags.threads, report.one_at_a_time);
+  change_each(numbers, factors, options, flags.threads, report.one_at_a_time);
 }
 
 std::string design_text(const GlobalPlan& plan, const HuntingQuestion& question) {

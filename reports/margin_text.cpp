@@ -83,8 +83,7 @@ Table margin_table(const MarginReport& report, bool friction) {
   for (const auto& one : report.parameters) {
     if (one.parameter.friction != friction) continue;
     const double own = one.parameter.value;
-    const std::string& path = one.parameter.path;  // "loop." is left out: 80 columns
-    table.rows.push_back({path.starts_with("loop.") ? path.substr(5) : path,
+    table.rows.push_back({short_path(one.parameter.path),  // 80 columns
                           Units::attach(with_digits(own, 4), unit_of(one)), cell(one.up, own), cell(one.down, own),
                           std::isfinite(one.distance()) ? as_percent(one.distance()) : "-"});
   }

@@ -8,8 +8,6 @@
 namespace limcycle {
 namespace {
 
-std::string without_loop(const std::string& path) { return path.starts_with("loop.") ? path.substr(5) : path; }
-
 std::string complex_text(std::complex<double> z, double error) {
   const double imaginary = std::abs(z.imag()) <= error ? 0.0 : z.imag();
   return fmt::format("{} {} {}j", with_absolute_error(z.real(), error), imaginary < 0.0 ? "-" : "+",
@@ -34,7 +32,7 @@ Table harmonic_table(const SensitivityReport& report, const Units& units) {
   for (const auto& one : report.local) {
     if (!one.why.empty()) continue;
     table.rows.push_back(
-        {without_loop(one.path), with_absolute_error(one.first_harmonic, one.first_harmonic_error),
+        {short_path(one.path), with_absolute_error(one.first_harmonic, one.first_harmonic_error),
          with_absolute_error(one.offset, one.offset_error),
          per_cent(one.first_harmonic, one.first_harmonic_error, one.value, report.cycle->first_harmonic)});
   }
@@ -63,7 +61,7 @@ Table predicted_table(const PredictedOscillation& predicted, const Units& units)
   for (const auto& one : predicted.numbers) {
     if (!one.why.empty()) continue;
     const PredictionDerivative& by = one.by;
-    table.rows.push_back({without_loop(one.path), with_absolute_error(by.amplitude, by.amplitude_error),
+    table.rows.push_back({short_path(one.path), with_absolute_error(by.amplitude, by.amplitude_error),
                           with_absolute_error(by.frequency, by.frequency_error),
                           per_cent(by.amplitude, by.amplitude_error, one.value, predicted.found.amplitude),
                           per_cent(by.frequency, by.frequency_error, one.value, predicted.found.frequency)});
@@ -77,7 +75,7 @@ Table gain_table(const PredictedOscillation& predicted, const Units& units) {
   if (predicted.found.status != Status::converged) return table;
   for (const auto& one : predicted.numbers)
     if (one.why.empty() && std::abs(one.by.gain.gain) > one.by.gain.error)
-      table.rows.push_back({without_loop(one.path), with_absolute_error(one.by.gain.gain.real(), one.by.gain.error),
+      table.rows.push_back({short_path(one.path), with_absolute_error(one.by.gain.gain.real(), one.by.gain.error),
                             with_absolute_error(one.by.gain.gain.imag(), one.by.gain.error)});
   return table;
 }
@@ -104,7 +102,7 @@ Table threshold_table(const ThresholdSensitivity& threshold) {
               {}};
   for (const auto& one : threshold.numbers) {
     if (!one.why.empty()) continue;
-    table.rows.push_back({without_loop(one.path), with_digits(one.value, 6),
+    table.rows.push_back({short_path(one.path), with_digits(one.value, 6),
                           with_absolute_error(one.by.value, one.by.error),
                           per_cent(one.by.value, one.by.error, one.value, threshold.at)});
   }

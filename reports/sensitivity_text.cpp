@@ -32,8 +32,6 @@ std::string same_everywhere(const OutputSensitivity& output) {
 }
 
 /// "loop." goes without saying.
-std::string name_of(const std::string& path) { return path.starts_with("loop.") ? path.substr(5) : path; }
-
 std::string estimate_text(const Estimate& estimate) {
   return estimate.known ? with_digits(estimate.value, index_digits) : "?";
 }
@@ -87,7 +85,7 @@ Table derivative_table(const SensitivityReport& report, const Units& units) {
   if (!report.cycle) return table;
   for (const auto& one : report.local) {
     if (!one.why.empty()) continue;
-    table.rows.push_back({name_of(one.path), with_digits(one.value, 6),
+    table.rows.push_back({short_path(one.path), with_digits(one.value, 6),
                           with_absolute_error(one.amplitude, one.amplitude_error),
                           with_absolute_error(one.period, one.period_error),
                           per_cent(one.amplitude, one.amplitude_error, one.value, report.cycle->amplitude),
@@ -105,7 +103,7 @@ Table change_table(const SensitivityReport& report, const Units& units) {
                {"period", "s"}},
               {}};
   for (const auto& change : report.one_at_a_time)
-    table.rows.push_back({name_of(change.path), with_digits(change.factor, 3), with_digits(change.value, 6),
+    table.rows.push_back({short_path(change.path), with_digits(change.factor, 3), with_digits(change.value, 6),
                           change.found.in_words(), with_digits(change.found.amplitude, 6),
                           with_digits(change.found.period, 6)});
   return table;
@@ -121,7 +119,7 @@ Table morris_table(const SensitivityReport& report, const OutputSensitivity& out
               {}};
   for (const std::size_t i : output.morris.by_mu_star()) {
     const MorrisEffects& effects = output.morris.parameters[i];
-    table.rows.push_back({name_of(report.spread.parameters[i].path), estimate_text(effects.mu_star),
+    table.rows.push_back({short_path(report.spread.parameters[i].path), estimate_text(effects.mu_star),
                           interval_text(effects.mu_star), estimate_text(effects.mu), estimate_text(effects.sigma),
                           std::to_string(effects.effects)});
   }
@@ -134,7 +132,7 @@ Table sobol_table(const SensitivityReport& report, const OutputSensitivity& outp
       {}};
   for (const std::size_t i : output.sobol.by_total()) {
     const SobolIndex& index = output.sobol.parameters[i];
-    table.rows.push_back({name_of(report.spread.parameters[i].path), share_text(index.first),
+    table.rows.push_back({short_path(report.spread.parameters[i].path), share_text(index.first),
                           share_interval_text(index.first), share_text(index.total), share_interval_text(index.total),
                           std::to_string(index.total_pairs)});
   }
@@ -144,9 +142,9 @@ Table sobol_table(const SensitivityReport& report, const OutputSensitivity& outp
 std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
   std::vector<std::string> notes = report.notes;
   for (const auto& one : report.local)
-    if (!one.why.empty()) notes.push_back("no derivative by " + name_of(one.path) + ": " + one.why);
+    if (!one.why.empty()) notes.push_back("no derivative by " + short_path(one.path) + ": " + one.why);
   for (const auto& threshold : report.thresholds) {
-    const std::string what = "the threshold of " + name_of(threshold.path);
+    const std::string what = "the threshold of " + short_path(threshold.path);
     const auto same = [&](const ThresholdNumber& one) { return one.why == threshold.numbers.front().why; };
     if (threshold.numbers.empty()) continue;
     if (std::ranges::all_of(threshold.numbers, same)) {  // a reason that all share is told once
@@ -157,7 +155,7 @@ std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
     for (const auto& one : threshold.numbers) {
       const auto told = [&](const LocalSensitivity& other) { return other.path == one.path && other.why == one.why; };
       if (!one.why.empty() && std::ranges::none_of(report.local, told))
-        notes.push_back("no derivative of " + what + " by " + name_of(one.path) + ": " + one.why);
+        notes.push_back("no derivative of " + what + " by " + short_path(one.path) + ": " + one.why);
     }
   }
   return notes;

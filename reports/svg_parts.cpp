@@ -38,6 +38,4 @@ std::string colour_of_share(double share) {
   return fmt::format("#{:02x}{:02x}{:02x}", channel(237, 20), channel(244, 52), channel(250, 110));
 }
 
-std::string short_path(const std::string& path) { return path.starts_with("loop.") ? path.substr(5) : path; }
-
 }  // namespace limcycle

@@ -21,7 +21,4 @@ double place(double value, double left, double width, double low, double high);
 /// The colour of a share of 0 to 1: from light to dark in 24 steps, even in lightness.
 std::string colour_of_share(double share);
 
-/// A path without its "loop.".
-std::string short_path(const std::string& path);
-
 }  // namespace limcycle

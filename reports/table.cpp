@@ -190,4 +190,6 @@ std::string Table::text(std::size_t width) const {
   return total(widths) <= width ? straight(columns, cells, header_lines, widths) : turned(*this, width);
 }
 
+std::string short_path(const std::string& path) { return path.starts_with("loop.") ? path.substr(5) : path; }
+
 }  // namespace limcycle

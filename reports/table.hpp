@@ -41,4 +41,7 @@ struct Table {
   std::string text(std::size_t width = 80) const;
 };
 
+/// A number of the case where space is short: its path without "loop.".
+std::string short_path(const std::string& path);
+
 }  // namespace limcycle

@@ -50,8 +50,8 @@ std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(d
                 large = settle(loop_, ray(largest_edge_scale), settle_);
   const bool same = small.outcome == large.outcome && small.outcome != Outcome::undecided && small.known == large.known;
   if (same && !small.shot && !large.shot) return std::nullopt;
-  for (const auto& end : {small, large})
-    if (end.shot) merge(cycles_, end.shot->cycle);
+  for (const Settled* end : {&small, &large})
+    if (end->shot) merge(cycles_, end->shot->cycle);
   settle_.known = cycles_;
   return keep(edge_cycle(loop_, ray, period, settle_));
 }

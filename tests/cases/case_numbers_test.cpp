@@ -3,29 +3,14 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "limcycle/tests/cases/message.hpp"
+
 using namespace limcycle;
 using Catch::Matchers::Contains;
-
-namespace {
-
-const std::string servo = R"(
-[loop.plant]
-kind = "mass"
-mass = 2.0
-[loop.controller]
-kind = "pid"
-kp = 3.0
-kd = 6.0
-[loop.friction]
-kind = "coulomb"
-Fs = 1.5
-Fc = 1.0
-)";
-
-}  // namespace
+using test::coulomb_servo;
 
 TEST_CASE("numbers of a case: written, by default, absent, and those that follow another") {
-  const Case from = read_case(servo, "servo.toml");
+  const Case from = read_case(coulomb_servo, "servo.toml");
   const auto list = numbers_of(from);
   const auto named = [&](const std::string& path) {
     const auto found = std::ranges::find(list, path, &CaseNumber::path);
@@ -44,7 +29,7 @@ TEST_CASE("numbers of a case: written, by default, absent, and those that follow
 }
 
 TEST_CASE("numbers of a case: an unknown path is refused with the nearest one") {
-  const Case from = read_case(servo, "servo.toml");
+  const Case from = read_case(coulomb_servo, "servo.toml");
   CHECK(number_at(from, "--parameter", "loop.controller.kd").value == 6.0);
   CHECK_THROWS_WITH(number_at(from, "--parameter", "loop.controller.kdd"),
                     Contains("--parameter loop.controller.kdd") && Contains("did you mean loop.controller.kd?"));

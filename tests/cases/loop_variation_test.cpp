@@ -7,25 +7,13 @@
 #include <random>
 
 #include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;
 using Catch::Matchers::Contains;
+using test::coulomb_servo;
 
 namespace {
-
-const std::string servo = R"(
-[loop.plant]
-kind = "mass"
-mass = 2.0
-[loop.controller]
-kind = "pid"
-kp = 3.0
-kd = 6.0
-[loop.friction]
-kind = "coulomb"
-Fs = 1.5
-Fc = 1.0
-)";
 
 /// What `--set` of these values makes of the loop; empty where it says that the loop is not valid, nothing at all where
 /// another section is what does not fit.
@@ -72,11 +60,11 @@ int compare(const Case& from, const std::vector<std::string>& paths, const std::
 }  // namespace
 
 TEST_CASE("a loop with other numbers is the one that --set would make", "[variation]") {
-  const Case from = read_case(servo, "servo.toml", {"loop.controller.ki=4.0"});
+  const Case from = read_case(coulomb_servo, "servo.toml", {"loop.controller.ki=4.0"});
   const LoopVariation mass(from, "--x", "loop.plant.mass");
   const auto changed = mass(4.0);
   REQUIRE(changed);
-  const Case same = read_case(servo, "servo.toml", {"loop.controller.ki=4.0", "loop.plant.mass=4.0"});
+  const Case same = read_case(coulomb_servo, "servo.toml", {"loop.controller.ki=4.0", "loop.plant.mass=4.0"});
   CHECK(changed->A == build_loop(*same.loop).A);
   CHECK_FALSE(mass(-1.0));
   CHECK_FALSE(mass(NAN));

@@ -39,6 +39,21 @@ amplitude = [1e-6, 1.0]
 frequency = [0.01, 1000.0]
 )";
 
+/// The same servo with Coulomb friction; ki, and the levels of the other direction, are not written.
+inline constexpr std::string_view coulomb_servo = R"(
+[loop.plant]
+kind = "mass"
+mass = 2.0
+[loop.controller]
+kind = "pid"
+kp = 3.0
+kd = 6.0
+[loop.friction]
+kind = "coulomb"
+Fs = 1.5
+Fc = 1.0
+)";
+
 /// The text with its first `from` replaced.
 inline std::string with(std::string_view text, std::string_view from, std::string_view to) {
   std::string changed(text);
