@@ -227,25 +227,6 @@ Complex LoopBalance::operator()(double amplitude, double frequency, double accur
   return std::isfinite(N.real()) ? 1.0 - N * loop_->element_response(frequency)(0, 0) : undefined;
 }
 
-Complex LoopBalance::response(double amplitude, double frequency, int order) const {
-  const Eigen::MatrixXcd H = loop_->element_response(order * frequency);
-  const auto m = static_cast<Index>(main_);
-  if (loop_->elements.size() == 1) return H(m, m);
-  Eigen::VectorXcd W = outputs(amplitude, frequency, 1e-9);
-  const Eigen::VectorXcd inputs = loop_->element_response(frequency) * W;
-  Eigen::VectorXcd N = Eigen::VectorXcd::Zero(W.size());  // of those that answer the harmonic that comes back to them
-  const auto answers = [&](Index k) {
-    N(k) = inputs(k) == 0.0 ? 0.0 : W(k) / inputs(k);
-    W(k) = 0.0;
-  };
-  if (other_) answers(static_cast<Index>(*other_));
-  for (const auto& [index, factor] : beside_)
-    if (pulls_back(*loop_, index)) answers(static_cast<Index>(index));
-  const Index ne = W.size();
-  const Eigen::MatrixXcd back = Eigen::MatrixXcd::Identity(ne, ne) - H * N.asDiagonal();
-  return back.fullPivLu().solve(H * W)(m) / W(m);
-}
-
 Complex LoopBalance::beside_gain(const Beside& beside, double amplitude, double frequency, double mean,
                                  double accuracy) const {
   if (!std::isfinite(mean)) return undefined;

@@ -1,4 +1,4 @@
-// The balance of two elements whose inputs are not the same: each has an amplitude of its own.
+// The balance of several elements: two whose inputs are not the same have an amplitude each.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -16,6 +16,11 @@ using Eigen::Index;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double most_wound_up = 1e5;  ///< of the amplitude at which a second element begins to bend
+
+/// Whether an element's gain on the oscillation also answers the harmonics that come back to it (gravity).
+bool gives_way(const Element<double>& element) {
+  return std::visit([]<class E>(const E&) { return PullsBack<E>; }, element);
+}
 
 }  // namespace
 
@@ -142,6 +147,25 @@ std::pair<double, double> LoopBalance::main_range(double back) const {
   const double bend = scales.displacement < infinite ? scales.displacement : comes_back;
   const double high = 10.0 * std::max(bend, comes_back);
   return {std::max(0.1 * std::min(bend, comes_back), 1e-8 * high), high};
+}
+
+Complex LoopBalance::response(double amplitude, double frequency, int order) const {
+  const Eigen::MatrixXcd H = loop_->element_response(order * frequency);
+  const auto m = static_cast<Index>(main_);
+  if (loop_->elements.size() == 1) return H(m, m);
+  Eigen::VectorXcd W = outputs(amplitude, frequency, 1e-9);
+  const Eigen::VectorXcd inputs = loop_->element_response(frequency) * W;
+  Eigen::VectorXcd N = Eigen::VectorXcd::Zero(W.size());  // of those that answer the harmonic that comes back to them
+  const auto answers = [&](Index k) {
+    N(k) = inputs(k) == 0.0 ? 0.0 : W(k) / inputs(k);
+    W(k) = 0.0;
+  };
+  if (other_) answers(static_cast<Index>(*other_));
+  for (const auto& [index, factor] : beside_)
+    if (gives_way(loop_->elements[index])) answers(static_cast<Index>(index));
+  const Index ne = W.size();
+  const Eigen::MatrixXcd back = Eigen::MatrixXcd::Identity(ne, ne) - H * N.asDiagonal();
+  return back.fullPivLu().solve(H * W)(m) / W(m);
 }
 
 }  // namespace limcycle
