@@ -12,7 +12,7 @@ namespace limcycle {
 /// not UTF-8 replaced.
 std::string html_escaped(std::string_view text);
 
-/// <name>text</name>, the text escaped.
+/// `<name>text</name>`, the text escaped.
 std::string html_tag(const std::string& name, const std::string& text);
 
 /// A table with its caption. Cells of a column "verdict" carry their text as a class too.
