@@ -189,9 +189,11 @@ std::string map_picture(const MapReport& report, const Units& units) {
 std::string map_page(const MapReport& report, const Provenance& provenance, const std::string& case_text,
                      const Units& units, const std::string& flags) {
   std::string body =
-      "<h2>The map</h2>\n<figure class=\"scroll\">\n" + map_picture(report, units) +
-      "<figcaption>What motions from several starts come to; amplitude and period of the stable cycle that "
-      "swings most; and what each method was worth.</figcaption>\n</figure>\n";
+      "<h2>The map</h2>\n" +
+      html_picture(
+          map_picture(report, units),
+          "What motions from several starts come to; amplitude and period of the stable cycle that swings most; "
+          "and what each method was worth.");
   body += "<h2>What happens</h2>\n" + html_table(happens_table(report), "Points of the map by what happens there");
   if (!report.map.methods.empty())
     body += "<h2>What methods are worth</h2>\n" + html_table(worth_table(report), "Shares of the map, by method");

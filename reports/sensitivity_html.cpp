@@ -7,20 +7,15 @@
 namespace limcycle {
 namespace {
 
-std::string figure_of(const std::string& picture, const std::string& caption) {
-  if (picture.empty()) return "";
-  return "<figure class=\"scroll\">\n" + picture + "<figcaption>" + html_escaped(caption) +
-         "</figcaption>\n</figure>\n";
-}
-
 std::string output_section(const SensitivityReport& report, const OutputSensitivity& output) {
   std::string out = "<h2>" + html_escaped("Global: " + output.output) + "</h2>\n";
   out += html_tag("p", fmt::format("No answer from {} of the loops.", as_percent(output.share_without_answer)));
   if (output.sobol.deviation == 0.0)
     return out + html_tag("p", "It is the same for every loop that answered: nothing to share out.");
-  out += figure_of(indices_picture(report, output),
-                   "Shares of the variance with 95 % intervals; beside them how the total indices settled.");
-  out += figure_of(interactions_picture(report, output),
+  out += html_picture(indices_picture(report, output),
+                      "Shares of the variance with 95 % intervals; beside them how the total indices settled.");
+  out +=
+      html_picture(interactions_picture(report, output),
                    "What each number does alone, and with another beyond that. Faint numbers cannot be told from 0.");
   out += html_table(sobol_table(report, output), "Sobol indices of " + output.output);
   out += html_table(morris_table(report, output), "Morris: effects on " + output.output + " of each whole range");
@@ -35,8 +30,9 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
                              const std::string& case_text, const Units& units, const std::string& flags) {
   std::string body;
   if (report.cycle && !report.local.empty()) {
-    body += "<h2>The cycle</h2>\n" +
-            figure_of(tornado_picture(report), "How much amplitude and period change for each per cent of a number.");
+    body +=
+        "<h2>The cycle</h2>\n" +
+        html_picture(tornado_picture(report), "How much amplitude and period change for each per cent of a number.");
     body += html_table(derivative_table(report, units), "Exact derivatives of amplitude and period");
     body += html_table(harmonic_table(report, units), "Exact derivatives of first harmonic and offset");
   }
@@ -52,7 +48,7 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
   for (const auto& threshold : report.thresholds) {
     body += "<h2>" + html_escaped("Threshold of " + threshold.path) + "</h2>\n" +
             html_tag("p", threshold_sentence(threshold));
-    body += figure_of(threshold_picture(threshold), "How far the threshold moves for each per cent of a number.");
+    body += html_picture(threshold_picture(threshold), "How far the threshold moves for each per cent of a number.");
     if (const Table table = threshold_table(threshold); !table.rows.empty())
       body += html_table(table, "Exact derivatives of the threshold");
   }
@@ -60,8 +56,9 @@ std::string sensitivity_page(const SensitivityReport& report, const Provenance& 
     body +=
         "<h2>One at a time</h2>\n" + html_table(change_table(report, units), "What happens with one number changed");
   if (report.global) {
-    body += "<h2>The spread</h2>\n" + figure_of(hunting_heat_picture(report), "Where in the spread the loop hunts.") +
-            figure_of(scatter_picture(report), "Every loop of the fair sample over each of the parameters.");
+    body += "<h2>The spread</h2>\n" +
+            html_picture(hunting_heat_picture(report), "Where in the spread the loop hunts.") +
+            html_picture(scatter_picture(report), "Every loop of the fair sample over each of the parameters.");
     for (const auto& output : report.global->outputs) body += output_section(report, output);
   }
   body += html_notes(sensitivity_notes(report));
