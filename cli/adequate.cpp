@@ -62,7 +62,7 @@ void spread_of_case(const Case& from, AdequateOptions& options, std::vector<std:
 }
 
 AdequateReport compute(const Case& from, const LoopParts& parts, const AdequateFlags& flags) {
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   AdequateOptions options;
   options.tolerance = flags.tolerance;
   options.spread = flags.spread;

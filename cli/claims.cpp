@@ -15,7 +15,7 @@ struct ClaimsFlags : CommonFlags {
   std::vector<std::string> words;  ///< ids, or a case file before or among them
   std::string html;                ///< --html
   int random = 20;                 ///< --random
-  bool list = false, verbose = false;
+  bool list = false;
 };
 
 bool is_case(const std::string& word) {
@@ -72,7 +72,7 @@ int list(const ClaimsFlags& flags, const std::vector<Claim>& which, const std::o
 }
 
 std::vector<TestedClaim> test_all(const std::vector<Claim>& which, const ClaimsFlags& flags) {
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   ClaimRunOptions options;
   options.seed = flags.seed;
   options.random_points = flags.random;
@@ -142,7 +142,6 @@ void add_claims(CLI::App& program, Action& action) {
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
   command->add_flag("--list", flags->list, "List the claims, test none");
-  command->add_flag("--verbose", flags->verbose, "All of each claim: formula, source, every comparison");
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
 }

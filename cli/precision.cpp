@@ -41,7 +41,7 @@ int exit_code(const PrecisionReport& report) {
 }
 
 PrecisionReport compute(const Case& from, const PrecisionFlags& flags) {
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   PrecisionOptions options;
   options.cycle.predict = from.predict;
   options.cycle.predict.stop = options.work.stop = interrupted;
@@ -54,7 +54,7 @@ PrecisionReport compute(const Case& from, const PrecisionFlags& flags) {
 StepperAtlas compute_atlas(const Case& from, const PrecisionFlags& flags) {
   if (!from.loop || !from.loop->friction)
     throw std::invalid_argument("loop.friction: precision --stability asks a loop with friction");
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   AtlasOptions options;
   options.predict = from.predict;
   options.threads = flags.threads;

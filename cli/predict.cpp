@@ -53,7 +53,7 @@ int run(PredictFlags flags) {
 
   PredictReport report;
   {
-    Progress progress(flags.quiet);
+    Progress progress(flags.quiet, flags.verbose);
     PredictOptions options = from.predict;
     options.stop = interrupted;
     options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
@@ -62,6 +62,7 @@ int run(PredictFlags flags) {
   }
   const auto made = provenance(flags, &from);
   std::string text = predict_text(from.title, report, units);
+  if (flags.verbose) text += predict_efforts(report, from.predict.methods);
   if (!flags.html.empty()) {
     output.file(flags.html, predict_page(report, made, from.text, units));
     text += "\nreport: " + flags.html + "\n";

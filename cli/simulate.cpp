@@ -26,7 +26,7 @@ struct Answered {
 };
 
 Answered compute(const Case& from, const SimulateFlags& flags) {
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   const Loop loop = build_loop(*from.loop);
   SimulateOptions options = need_simulate(from);
   const double share = flags.no_check ? 1.0 : 0.4;

@@ -78,7 +78,7 @@ SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& colu
   };
   catch_interrupts();
   {
-    Progress bar(flags.quiet);
+    Progress bar(flags.quiet, flags.verbose);
     SweepOptions options;
     options.threads = flags.threads;
     options.stop = interrupted;

@@ -43,4 +43,8 @@ Table trust_table(const PredictReport& report, const Units& units);
 /// Whether the absence of oscillations is proved, in a sentence; empty where that was not asked.
 std::string absence_in_words(const PredictReport& report);
 
+/// What each method did, for --verbose: roots and residuals, runs with their steps, return maps. The same bytes however
+/// many threads; no times. `methods`: those that were asked for.
+std::string predict_efforts(const PredictReport& report, const Methods& methods);
+
 }  // namespace limcycle

@@ -127,6 +127,7 @@ class PredictionStudy {
       composite_roots_[report_.predictions.size()] = root;
       report_.predictions.push_back(std::move(p));
     }
+    report_.efforts.push_back({std::string(composite_name), found.evaluations, "periods of mass and friction"});
     (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(composite_name);
   }
 
@@ -224,10 +225,14 @@ class PredictionStudy {
                                 (ne > 1 ? ": it has no describing-function root to begin from"
                                         : ", which sticks: harmonics ripple more than pre-sliding is wide"));
     }
+    Effort effort{std::string(balance_name), 0, "evaluations of its equations"};
     for (const HarmonicGuess& guess : guesses) {
       if (stopped()) return;
-      add_balance(harmonic_balance(loop_, guess, options));
+      const HarmonicBalance found = harmonic_balance(loop_, guess, options);
+      effort.count += found.evaluations;
+      add_balance(found);
     }
+    report_.efforts.push_back(std::move(effort));
     used_.emplace_back(balance_name);
   }
 
@@ -298,6 +303,7 @@ class PredictionStudy {
     report_.cycles = hunt_->cycles();
     for (Cycle& cycle : report_.cycles) cycle.error = std::max(cycle.error, delay_error(cycle));
     report_.outcomes = hunt_->outcomes();
+    report_.efforts.push_back({"shooting", hunt_->maps(), "return maps"});
     note_memory();
     for (const auto& method : used_) {
       const auto missed = missed_by(method, report_.cycles, report_.predictions);

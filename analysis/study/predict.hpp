@@ -57,7 +57,17 @@ struct OutcomeOfStart {
   Outcome outcome = Outcome::undecided;
   std::string why;  ///< one sentence
   std::optional<std::size_t> cycle;
-  Trace trace;  ///< the run, for pictures
+  Trace trace;        ///< the run, for pictures
+  double time = 0.0;  ///< simulated, s
+  long steps = 0;     ///< of the integrator
+};
+
+/// What a method had to do, in the unit in which its work is counted. Times are not told here: results do not depend on
+/// how fast they come.
+struct Effort {
+  std::string method;
+  long count = 0;
+  std::string unit;  ///< plural: "return maps"
 };
 
 struct Missed {
@@ -92,6 +102,7 @@ struct PredictReport {
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: is that proved?
   std::vector<std::string> notes;    ///< what a user must know: methods that do not apply, searches that are incomplete
   Status status = Status::converged;
+  std::vector<Effort> efforts{};  ///< beside those of the outcomes
 };
 
 /// Every limit cycle that the methods predict in the search box, what really happens from several starts and near every
