@@ -74,6 +74,7 @@ struct Dual {
   friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
 
   friend double value_of(const Dual& a) { return a.value; }
+  friend bool is_constant(const Dual& a) { return a.d == std::array<double, static_cast<std::size_t>(N)>{}; }
   friend Dual select(bool condition, const Dual& yes, const Dual& no) { return condition ? yes : no; }
   friend Dual abs(const Dual& a) {
     return chain(std::abs(a.value), a.value > 0.0 ? 1.0 : a.value < 0.0 ? -1.0 : 0.0, a);

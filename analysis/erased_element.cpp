@@ -29,7 +29,10 @@ class FaceOf final : public ErasedElement<S>::Face {
     if constexpr (switches) return e_.start(in, z);
     return {};
   }
-  bool knows_sliding() const override { return KnowsSliding<E>; }
+  bool knows_sliding() const override {
+    if constexpr (requires { e_.knows_sliding(); }) return e_.knows_sliding();
+    return KnowsSliding<E>;
+  }
   Mode after_sliding(const Input<double>& in, std::span<double> z) const override {
     if constexpr (KnowsSliding<E>) return e_.after_sliding(in, z);
     return start(in, z);

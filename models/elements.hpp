@@ -27,6 +27,7 @@
 #include "limcycle/models/friction/lugre_spline.hpp"
 #include "limcycle/models/friction/maxwell_slip.hpp"
 #include "limcycle/models/friction/non_drift.hpp"
+#include "limcycle/models/friction/own_law.hpp"
 #include "limcycle/models/friction/quinn.hpp"
 #include "limcycle/models/friction/stribeck.hpp"
 #include "limcycle/models/friction/two_state.hpp"
@@ -70,19 +71,31 @@ using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
 /// What no case names as a kind: a loop makes them of its other parts.
 using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity>;
 
-using Elements = JoinedKinds<SeriesElements, KindList<Quantizer>, MadeElements>::List;
+/// What only a program can make, from a law of its own: no case names it, no table lists it.
+using ProgrammedLaws = KindList<OwnLaw>;
+
+using Elements = JoinedKinds<SeriesElements, KindList<Quantizer>, MadeElements, ProgrammedLaws>::List;
 
 /// Any friction law or element.
 template <class S>
 using Element = Elements::On<S>;
 
-/// Name of the kind, as in a case file.
+/// Name of the kind, as in a case file; of a user's own law the name that it has.
 inline std::string_view kind_of(const Element<double>& element) {
-  return std::visit([]<class E>(const E&) { return E::kind; }, element);
+  return std::visit(
+      []<class E>(const E& e) -> std::string_view {
+        if constexpr (ProgrammedLaws::contains<E>) return e.name();
+        return E::kind;
+      },
+      element);
 }
 
+/// Whether a type of element is a friction law, whoever wrote it.
+template <class E>
+inline constexpr bool is_friction_law = FrictionLaws::contains<E> || ProgrammedLaws::contains<E>;
+
 inline bool is_friction(const Element<double>& element) {
-  return std::visit([]<class E>(const E&) { return FrictionLaws::contains<E>; }, element);
+  return std::visit([]<class E>(const E&) { return is_friction_law<E>; }, element);
 }
 
 /// Typical sizes of what goes in and comes out.

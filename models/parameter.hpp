@@ -60,28 +60,38 @@ struct BrokenRule {
   std::string rule;  ///< what must hold, in words, with the values that break it
 };
 
+/// What is no table of parameters (a user's own law) and makes itself anew on another scalar.
+template <class Owner, class To>
+concept OffersScalar = requires(const Owner owner) {
+  owner.template on<To>();
+};
+
 /// Same object with another scalar: `recast<Dual>(LuGre<double>)`. Numbers and lists are converted, the rest copied.
 template <template <class> class Owner, class To, class From>
 Owner<To> recast(const Owner<From>& from) {
-  Owner<To> to;
-  const auto source = Owner<From>::parameters();
-  const auto target = Owner<To>::parameters();
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    std::visit(
-        [&](auto out) {
-          using Out = std::decay_t<decltype(to.*out)>;
-          if constexpr (std::is_same_v<Out, To>) {
-            to.*out = To(from.*std::get<From Owner<From>::*>(source[i].member));
-          } else if constexpr (std::is_same_v<Out, std::vector<To>>) {
-            const auto& values = from.*std::get<std::vector<From> Owner<From>::*>(source[i].member);
-            (to.*out).assign(values.begin(), values.end());
-          } else if constexpr (std::is_same_v<Out, Choice>) {
-            to.*out = from.*std::get<Choice Owner<From>::*>(source[i].member);
-          }
-        },
-        target[i].member);
+  if constexpr (OffersScalar<Owner<From>, To>) {
+    return from.template on<To>();
+  } else {
+    Owner<To> to;
+    const auto source = Owner<From>::parameters();
+    const auto target = Owner<To>::parameters();
+    for (std::size_t i = 0; i < source.size(); ++i) {
+      std::visit(
+          [&](auto out) {
+            using Out = std::decay_t<decltype(to.*out)>;
+            if constexpr (std::is_same_v<Out, To>) {
+              to.*out = To(from.*std::get<From Owner<From>::*>(source[i].member));
+            } else if constexpr (std::is_same_v<Out, std::vector<To>>) {
+              const auto& values = from.*std::get<std::vector<From> Owner<From>::*>(source[i].member);
+              (to.*out).assign(values.begin(), values.end());
+            } else if constexpr (std::is_same_v<Out, Choice>) {
+              to.*out = from.*std::get<Choice Owner<From>::*>(source[i].member);
+            }
+          },
+          target[i].member);
+    }
+    return to;
   }
-  return to;
 }
 
 }  // namespace limcycle

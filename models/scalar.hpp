@@ -6,6 +6,9 @@ namespace limcycle {
 /// Plain value of a Scalar, for sizes and checks that need no derivative; dual numbers overload it next to their type.
 inline double value_of(double value) { return value; }
 
+/// Whether a Scalar carries no derivative that is not zero; dual numbers overload it.
+inline bool is_constant(double) { return true; }
+
 /// Branch-free choice on a Scalar; packs and dual numbers overload it next to their own type.
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 

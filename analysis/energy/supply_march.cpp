@@ -33,7 +33,7 @@ DrivenBy port_of(const Element<double>& element) {
   return std::visit(
       []<class E>(const E&) {
         const bool of_rate = std::is_same_v<E, Compensation<double>> || std::is_same_v<E, OutputRate<double>>;
-        return FrictionLaws::contains<E> || of_rate ? DrivenBy::velocity : DrivenBy::input;
+        return is_friction_law<E> || of_rate ? DrivenBy::velocity : DrivenBy::input;
       },
       element);
 }

@@ -47,7 +47,7 @@ class SolverOf : public CompositeDescribingFunction::Solver {
 std::unique_ptr<CompositeDescribingFunction::Solver> solver_of(const Element<double>& friction, double mass) {
   std::visit(
       []<class E>(const E&) {
-        if constexpr (!FrictionLaws::contains<E>)
+        if constexpr (!is_friction_law<E>)
           throw std::invalid_argument("composite describing function: " + std::string(E::kind) +
                                       " is not a friction law");
       },

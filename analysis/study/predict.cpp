@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "limcycle/analysis/derivative_notes.hpp"
 #include "limcycle/analysis/frequency/harmonic_balance.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
 #include "limcycle/analysis/short_number.hpp"
@@ -305,6 +306,7 @@ class PredictionStudy {
     report_.outcomes = hunt_->outcomes();
     report_.efforts.push_back({"shooting", hunt_->maps(), "return maps"});
     note_memory();
+    std::ranges::move(derivative_notes(loop_), std::back_inserter(report_.notes));
     for (const auto& method : used_) {
       const auto missed = missed_by(method, report_.cycles, report_.predictions);
       report_.missed.insert(report_.missed.end(), missed.begin(), missed.end());
