@@ -91,7 +91,8 @@ Object.assign(draw, {
   },
 });
 
-const palette = ["#2f81c7", "#d9661f", "#2e9e5b", "#a05bc4", "#c4a000", "#d1477a", "#3aa6a6", "#8a6d3b", "#7a8a99", "#5b6ee1"];
+// Each at least three times lighter or darker than white paper and than a dark screen.
+const palette = ["#2f81c7", "#d9661f", "#278a4f", "#a05bc4", "#9c8000", "#d1477a", "#2a8f8f", "#8a6d3b", "#6f8090", "#5b6ee1"];
 
 // Marks of methods over two logarithmic axes: circles where they are right, crosses where they fail.
 function work(d) {
