@@ -7,6 +7,7 @@
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/reports/claims.hpp"
+#include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 namespace {
@@ -113,7 +114,7 @@ int run(ClaimsFlags flags) {
   const auto tested = test_all(which, flags);
   const auto made = provenance(flags, from ? &*from : nullptr);
   std::string text = claims_text(tested, flags.verbose);
-  if (from) text = from->title + "\n\n" + text;
+  if (from) text = wrapped(from->title) + "\n" + text;
   if (!flags.html.empty()) {
     output.file(flags.html, claims_page(tested, made, arguments(flags), from ? from->text : ""));
     text += "\nreport: " + flags.html + "\n";

@@ -25,8 +25,7 @@ void add_terminal_flags(CLI::App& command, CommonFlags& flags) {
   command.add_option("-o,--output", flags.output, "Write the text to FILE instead of stdout")
       ->type_name("FILE")
       ->group(common);
-  command
-      .add_option("--color", flags.color, "Colours: auto (on a terminal only, and not with NO_COLOR), always, never")
+  command.add_option("--color", flags.color, "Colours; auto: on a terminal, but not with NO_COLOR")
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->type_name("WHEN")
       ->capture_default_str()

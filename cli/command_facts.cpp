@@ -122,11 +122,15 @@ std::string spelling(const OptionFacts& option) {
          (option.value.empty() ? "" : " " + option.value);
 }
 
-std::string full_meaning(const OptionFacts& option) {
+std::string full_meaning(const OptionFacts& option, std::size_t most) {
+  std::string text = option.meaning;
+  if (!option.choices.empty() && option.choices.size() <= most)
+    text += fmt::format(": {}", fmt::join(option.choices, ", "));
   std::vector<std::string> more;
+  if (option.required && !option.argument) more.emplace_back("required");
   if (!option.rule.empty()) more.push_back(option.rule);
   if (!option.default_value.empty()) more.push_back("default " + option.default_value);
-  return option.meaning + (more.empty() ? "" : fmt::format(" ({})", fmt::join(more, "; ")));
+  return text + (more.empty() ? "" : fmt::format(" ({})", fmt::join(more, "; ")));
 }
 
 const std::vector<std::string>& exit_codes() {

@@ -40,8 +40,8 @@ std::string usage(const CommandFacts& command);
 /// "-o, --output FILE".
 std::string spelling(const OptionFacts& option);
 
-/// The meaning with what is valid and what is the default.
-std::string full_meaning(const OptionFacts& option);
+/// The meaning with what is valid and what is the default; up to `most` choices are listed.
+std::string full_meaning(const OptionFacts& option, std::size_t most);
 
 /// What the exit codes mean, first code 0.
 const std::vector<std::string>& exit_codes();

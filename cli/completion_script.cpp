@@ -63,9 +63,10 @@ std::string bash_values(const CommandFacts& command) {
   std::string text;
   for (const auto& option : command.options) {
     if (option.argument || option.value.empty()) continue;
-    const std::string key = option.common ? "*" : "'" + command.name + "'";
-    text += fmt::format("    {}' {}')", key, option.name);
-    if (!option.letter.empty()) text.insert(text.size() - 1, fmt::format("|{}' {}'", key, option.letter));
+    const auto key = [&](const std::string& name) {
+      return option.common ? "*' " + name + "'" : "'" + command.name + " " + name + "'";
+    };
+    text += "    " + key(option.name) + (option.letter.empty() ? "" : " | " + key(option.letter)) + ")";
     text += " " + bash_offer(option) + " ;;\n";
   }
   return text;

@@ -1,5 +1,6 @@
 #include "limcycle/cli/help.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "limcycle/reports/table.hpp"
@@ -26,22 +27,26 @@ std::string options_text(const CommandFacts& command, const std::string& heading
   std::string text;
   for (const auto& option : command.options) {
     if (!belongs(option)) continue;
-    std::string meaning = full_meaning(option);
-    if (option.required && !option.argument) meaning += " (required)";
-    if (!option.choices.empty() && option.choices.size() <= 4) {
-      meaning += ": ";
-      for (const auto& choice : option.choices) meaning += (&choice == &option.choices.front() ? "" : ", ") + choice;
-    }
-    text += entry(spelling(option), label_width, meaning);
+    text += entry(spelling(option), label_width, full_meaning(option, 5));
   }
   return text.empty() ? text : "\n" + heading + "\n" + text;
 }
 
-/// A command line, broken behind a word where it is too long, as a shell lets it go on.
+/// A command line, broken before an option where it is too long, as a shell lets it go on.
 std::string command_line(std::string_view line) {
-  std::string text = wrapped(line, 74, 0), out;
-  std::istringstream lines(text);
-  for (std::string part; std::getline(lines, part);) out += out.empty() ? "  " + part : " \\\n      " + part;
+  std::string out = "  ";
+  std::size_t column = 2;
+  for (std::size_t from = 0; from < line.size();) {
+    const std::size_t end = std::min(line.find(" -", from + 1), line.size());
+    const std::string_view part = line.substr(from, end - from);
+    if (column + part.size() > 78 && from > 0) {
+      out += " \\\n     ";
+      column = 5;
+    }
+    out += part;
+    column += part.size();
+    from = end;
+  }
   return out + '\n';
 }
 
@@ -81,9 +86,10 @@ std::string command_help(const CommandFacts& command) {
   const auto own = [](const OptionFacts& option) { return !option.argument && !option.common; };
   const auto common = [](const OptionFacts& option) { return option.common; };
   const auto argument = [](const OptionFacts& option) { return option.argument; };
-  return "Usage: " + usage(command) + "\n\n" + wrapped(command.summary + ".") + paragraphs(command.description.text) +
-         options_text(command, "Arguments", argument) + options_text(command, "Options", own) +
-         options_text(command, "Options of every command", common) + examples_text(command.description);
+  return item("Usage:", 5, usage(command)) + "\n" + wrapped(command.summary + ".") +
+         paragraphs(command.description.text) + options_text(command, "Arguments", argument) +
+         options_text(command, "Options", own) + options_text(command, "Options of every command", common) +
+         examples_text(command.description);
 }
 
 }  // namespace limcycle

@@ -45,10 +45,7 @@ std::string option_item(const OptionFacts& option) {
   std::string label = option.argument ? roff::italic(option.name) : roff::bold(option.name);
   if (!option.letter.empty()) label = roff::bold(option.letter) + ", " + label;
   if (!option.argument && !option.value.empty()) label += " " + roff::italic(option.value);
-  std::string text = full_meaning(option);
-  if (!option.choices.empty() && option.choices.size() <= 30)
-    text += fmt::format(": {}", fmt::join(option.choices, ", "));
-  return roff::tagged(label, text + ".");
+  return roff::tagged(label, full_meaning(option, 30) + ".");
 }
 
 std::string options_section(const CommandFacts& command, const std::string& title, auto&& belongs) {

@@ -10,6 +10,7 @@
 #include "limcycle/reports/case_format.hpp"
 #include "limcycle/reports/catalogue.hpp"
 #include "limcycle/reports/laws.hpp"
+#include "limcycle/reports/number.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/typical_values.hpp"
 
@@ -26,12 +27,30 @@ std::string commented(const std::string& text) {
   return out;
 }
 
-/// "key = value   # what it is", or what it is above it where that is too long.
+/// A comment behind a label, indented under itself, so that no line of it looks like a key.
+std::string labelled(const std::string& label, const std::string& text) {
+  constexpr std::size_t indent = 10;
+  const std::string body = wrapped(text, page_width - 2, indent);
+  std::string out;
+  std::istringstream lines(label + std::string(indent - label.size(), ' ') + body.substr(indent));
+  for (std::string line; std::getline(lines, line);) out += "# " + line + '\n';
+  return out;
+}
+
+/// "key = value   # what it is", the comment wrapped beside the value, or above a value that is too long.
 std::string assignment(const std::string& line, const std::string& comment) {
-  const std::size_t column = std::max(comment_column, display_width(line) + 2);
-  if (column + 2 + display_width(comment) <= page_width)
-    return line + std::string(column - display_width(line), ' ') + "# " + comment + '\n';
-  return commented(comment) + line + '\n';
+  const std::size_t own = display_width(line);
+  if (own + 2 > comment_column) {
+    if (own + 4 + display_width(comment) <= page_width) return line + "  # " + comment + '\n';
+    return commented(comment) + line + '\n';
+  }
+  std::string out;
+  std::istringstream lines(wrapped(comment, page_width - comment_column - 4));
+  for (std::string part; std::getline(lines, part);)
+    out += (out.empty() ? line + std::string(comment_column - own, ' ') + "# "
+                        : std::string(comment_column, ' ') + "#   ") +
+           part + '\n';
+  return out;
 }
 
 const CatalogueEntry& entry_of(const std::vector<CatalogueEntry>& all, std::initializer_list<const char*> groups,
@@ -42,38 +61,41 @@ const CatalogueEntry& entry_of(const std::vector<CatalogueEntry>& all, std::init
   throw std::invalid_argument("no " + std::string(*groups.begin()) + " '" + kind + "'");
 }
 
-/// Its default as a case would write it.
-std::string default_in_toml(const ParameterEntry& parameter) {
+/// A value for an optional key, as a case would write it: its default, or where that is none something to try.
+std::string default_in_toml(const ParameterEntry& parameter, const CatalogueEntry& entry, const std::string& group) {
   if (!parameter.default_name.empty()) return '"' + parameter.default_name + '"';
+  if (!parameter.default_from.empty())
+    return std::string(typical_value(group, entry.kind, parameter.default_from).value);
   if (parameter.type != "number") return "[]";
-  const double value = parameter.default_value.value_or(0.0);
-  if (!parameter.default_from.empty() || !std::isfinite(value)) return "...";
-  const std::string text = default_text(parameter);
+  const std::string text = shortest(parameter.default_value.value_or(0.0));
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
 std::string comment_of(const ParameterEntry& parameter, const TypicalValue& typical) {
   std::string text = parameter.unit == "1" ? parameter.meaning : parameter.unit + ", " + parameter.meaning;
   if (!parameter.choices.empty()) text += fmt::format(": {}", fmt::join(parameter.choices, ", "));
-  if (!parameter.required) text += "; default " + default_text(parameter);
-  if (!typical.usual.empty()) text += fmt::format("; usual: {}", typical.usual);
+  const bool told = parameter.meaning.find("default") != std::string::npos;
+  if (!parameter.required && !told) text += "; default " + default_text(parameter);
+  if (!typical.usual.empty())
+    text += (typical.usual.starts_with("here ") ? "; " : "; usual: ") + std::string(typical.usual);
   return text;
 }
 
-std::string parameter_line(const ParameterEntry& parameter, const TypicalValue& typical) {
-  const bool active = parameter.required || !typical.value.empty();
-  const std::string value = typical.value.empty() ? default_in_toml(parameter) : std::string(typical.value);
+std::string parameter_line(const ParameterEntry& parameter, const CatalogueEntry& entry, const std::string& group) {
+  const TypicalValue typical = typical_value(group, entry.kind, parameter.key);
+  const bool active = parameter.required || (!typical.value.empty() && !typical.only_to_try);
+  const std::string value =
+      typical.value.empty() ? default_in_toml(parameter, entry, group) : std::string(typical.value);
   return assignment(fmt::format("{}{} = {}", active ? "" : "# ", parameter.key, value), comment_of(parameter, typical));
 }
 
 /// A section of the loop. `typical_group`: where its values are found; `others`: comment on the other kinds.
 std::string section_of(const std::string& section, const CatalogueEntry& entry, const std::string& typical_group,
                        const std::string& others) {
-  std::string text = "\n[" + section + "]\n" + commented(entry.equation);
-  if (!entry.source.empty()) text += commented("Source: " + entry.source);
+  std::string text = "\n[" + section + "]\n" + labelled("equation", entry.equation);
+  if (!entry.source.empty()) text += labelled("source", entry.source);
   text += others + fmt::format("kind = \"{}\"\n", entry.kind);
-  for (const auto& parameter : entry.parameters)
-    text += parameter_line(parameter, typical_value(typical_group, entry.kind, parameter.key));
+  for (const auto& parameter : entry.parameters) text += parameter_line(parameter, entry, typical_group);
   return text;
 }
 
@@ -127,7 +149,7 @@ std::string other_kinds(const Part& part, const std::vector<CatalogueEntry>& all
   for (const auto& entry : all)
     if (entry.group == part.entry->group && entry.kind != part.entry->kind)
       kinds += (kinds.empty() ? "" : ", ") + entry.kind;
-  return kinds.empty() ? kinds : commented("Others: " + kinds + ".");
+  return kinds.empty() ? kinds : labelled("others", kinds);
 }
 
 }  // namespace
@@ -140,14 +162,15 @@ std::string new_case(const NewCase& wanted) {
     title += kind->empty() ? "" : ", " + *kind;
 
   std::string text = commented(
-      "A case of limcycle, made by `limcycle new`. It works as it is: put your own numbers in place of these. A line "
-      "that "
-      "begins with # is a comment; without the # it says what holds without it, or something to try. SI units, angles "
-      "in rad, frequencies in rad/s; a rotary drive is the same file in N m and rad. `limcycle check FILE` tells what "
-      "is wrong, `limcycle predict FILE` whether the loop hunts, `limcycle laws KIND` all about one kind.");
+      "A case of limcycle, made by `limcycle new`. It works as it is: put your own numbers in place of these. Keys "
+      "behind "
+      "a # may be left out; what stands there is their default, or something to try. SI units, angles in rad, "
+      "frequencies in rad/s; a rotary drive is the same file in N m and rad. `limcycle check FILE` tells what is "
+      "wrong, "
+      "`limcycle predict FILE` whether the loop hunts, `limcycle laws KIND` all about one kind.");
   text += fmt::format("title = \"{}\"\n", title);
   for (const CaseSection& section : case_sections())
-    if (section.name == "loop") text += optional_section(section, false, {});
+    if (section.name == "loop") text += optional_section(section, true, {});
   for (const Part& part : parts)
     text += section_of(part.section, *part.entry, part.typical_group, other_kinds(part, all));
   const std::string number = first_number(parts);

@@ -7,7 +7,7 @@ namespace limcycle {
 struct NewCase {
   std::string plant = "mass", controller = "pid";
   std::string friction = "lugre";  ///< empty: none
-  std::string element, error;      ///< empty: none
+  std::string element{}, error{};  ///< empty: none
   bool all = false;                ///< the optional sections as they are, not as comments
 };
 

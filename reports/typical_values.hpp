@@ -5,8 +5,9 @@ namespace limcycle {
 
 /// A value for a key of a new case, and what is usual for it.
 struct TypicalValue {
-  std::string_view value;  ///< in TOML; empty: there is none
-  std::string_view usual;  ///< a range in the key's unit, with the reason where it has one; empty: not told
+  std::string_view value;    ///< in TOML; empty: there is none
+  std::string_view usual;    ///< a range in the key's unit, with the reason where it has one; empty: not told
+  bool only_to_try = false;  ///< not part of the case unless the user wants it
 };
 
 /// The value of `key` for an entry of the catalogue that works in a new case: of that kind, else of any kind. Numbers
