@@ -1,0 +1,21 @@
+// Laws that own_law() cannot carry: tools/package checks that the compiler says why, in words, with each -D.
+#include "limcycle/models/friction/own_law.hpp"
+
+struct Law {
+  double output(const limcycle::Input<double>& in, limcycle::Mode, std::span<const double>) const { return in.v; }
+#ifndef NO_SCALES
+  limcycle::Scales scales() const { return {}; }
+#endif
+#ifdef HOLDS
+  static constexpr auto holds = limcycle::Held::rate;
+  limcycle::Held held(limcycle::Mode) const { return limcycle::Held::rate; }
+#endif
+#ifdef STATES_ALONE
+  int states() const { return 1; }
+#endif
+#ifdef HALF_OF_THE_MODES
+  int guards(limcycle::Mode) const { return 1; }
+#endif
+};
+
+limcycle::OwnLaw<double> law() { return limcycle::own_law(Law{}); }
