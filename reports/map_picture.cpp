@@ -189,9 +189,11 @@ std::string map_picture(const MapReport& report, const Units& units) {
 std::string map_sections(const MapReport& report, const Units& units, int level) {
   const std::string heading = "h" + std::to_string(level);
   std::string body =
-      html_tag(heading, "The map") + "<figure class=\"scroll\">\n" + map_picture(report, units) +
-      "<figcaption>What motions from several starts come to; amplitude and period of the stable cycle that "
-      "swings most; and what each method was worth.</figcaption>\n</figure>\n";
+      html_tag(heading, "The map") +
+      html_picture(
+          map_picture(report, units),
+          "What motions from several starts come to; amplitude and period of the stable cycle that swings most; "
+          "and what each method was worth.");
   body +=
       html_tag(heading, "What happens") + html_table(happens_table(report), "Points of the map by what happens there");
   if (!report.map.methods.empty())

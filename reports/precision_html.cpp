@@ -78,7 +78,7 @@ std::string chart_html(const WorkChart& chart, const std::string& heading) {
   if (chart.points.empty()) return out;
   if (chart.question == "cycle") out += html_tag("p", conditions());
   out += html_table(method_table(chart), "CPU time that each method needs for an error");
-  return out + figures_html({chart_figure(chart)}) + "<details><summary>All settings</summary>\n" +
+  return out + figures_html({chart_figure(chart)}, heading == "h2") + "<details><summary>All settings</summary>\n" +
          html_table(point_table(chart), "Every method with every setting") + "</details>\n";
 }
 

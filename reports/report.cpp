@@ -15,7 +15,6 @@
 #include "limcycle/reports/plotly.hpp"
 #include "limcycle/reports/precision.hpp"
 #include "limcycle/reports/predict_sections.hpp"
-#include "limcycle/reports/scoped_style.hpp"
 #include "limcycle/reports/sensitivity.hpp"
 #include "limcycle/reports/text.hpp"
 
@@ -81,7 +80,7 @@ ReportSection prediction_section(const LoopReport& report, const Units& units, c
   body +=
       figures.frequency.empty()
           ? html_tag("p", "The describing function was not applied, so that there is no Nyquist plot: see the notes.")
-          : figures_html(figures.frequency);
+          : figures_html(figures.frequency, figures.motion.empty());
   return {"part-predictions", "What each method predicts", body + trust_sections(report.predict, units, 3)};
 }
 
@@ -149,7 +148,7 @@ std::string report_page(const LoopReport& report, const Provenance& provenance, 
   return html_page({.provenance = provenance,
                     .answer = words.what_happens,
                     .worth = words.worth,
-                    .body = with_scoped_styles(body),
+                    .body = body,
                     .command = "report",
                     .flags = flags,
                     .case_text = case_text,
