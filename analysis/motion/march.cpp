@@ -48,6 +48,12 @@ AnyStepper make(StepperKind kind, const ErrorWeights& w, LoopField& field) {
   }
 }
 
+template <class E>
+constexpr bool holds_rate() {
+  if constexpr (CanHold<E>) return E::holds == Held::rate;
+  return false;
+}
+
 /// The field as Odeint's explicit steppers want it, and with its Jacobian as the implicit one does.
 auto right_side(LoopField& field) {
   return [&field](const State& x, State& dx, double t) { field.rate(x, dx, t); };
@@ -78,8 +84,14 @@ StepperKind choose_stepper(const Loop& loop, double rtol, bool driven) {
         },
         element);
   });
+  // A body that truly sticks waits as long as an integrator needs, many times the slowest time constant of the free
+  // motion, while the fastest poles (the filter of a derivative) keep an explicit step short.
+  const bool sticks = std::ranges::any_of(loop.elements, [](const auto& element) {
+    return std::visit([]<class E>(const E&) { return holds_rate<E>(); }, element);
+  });
   const auto moduli = pole_moduli(loop);
-  if (bristle || (!moduli.empty() && moduli.back() > 200.0 * moduli.front())) return StepperKind::rodas5p;
+  const double stiff = sticks ? 20.0 : 200.0;
+  if (bristle || (!moduli.empty() && moduli.back() > stiff * moduli.front())) return StepperKind::rodas5p;
   return explicit_stepper(rtol);
 }
 
