@@ -119,8 +119,10 @@ class Shooter {
     return Status::converged;
   }
 
-  /// Is the derivative already known, at this tolerance and close enough?
+  /// Is the derivative already known, at this tolerance and close enough? (A Jacobian that was too old is thrown away,
+  /// and at a grazed switch there is none.)
   bool is_linear_at(double rtol) const {
+    if (jacobian_.size() == 0 || linear_.status != Status::converged || linear_.derivative.size() == 0) return false;
     return std::abs(linear_rtol_ / rtol - 1.0) < 1e-9 && chart_->coordinates(linear_at_.x, state_.x).norm() < 1e-5;
   }
 

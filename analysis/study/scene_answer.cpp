@@ -136,7 +136,9 @@ class SimulationWatch {
       if (march.steps() > 200000) return unanswered("the simulation gave up after 200000 steps");
       if (options_.stop && march.steps() % 64 == 0 && options_.stop()) return unanswered("interrupted");
       if (const Status status = march.step(longest_); status != Status::converged) return ended(status);
-      if (!turning_.feed(march.t(), field.y(march.x()))) continue;
+      const double y = field.y(march.x());
+      if (std::abs(y) > 1e4 * unit * box_.amplitude_max) return ended(Status::not_finite);
+      if (!turning_.feed(march.t(), y)) continue;
       for (const std::size_t order : {2U, 4U, 6U})
         if (repeats(order)) return cycle(order);
       wait_for_slow_swings(march.t());
@@ -144,6 +146,9 @@ class SimulationWatch {
     const auto& points = turning_.points();
     const bool calm = points.empty() || points.back().t < 0.5 * march.t() ||
                       (points.size() > 2 && turning_.swing(0) < unit * box_.amplitude_min);
+    const bool grows = points.size() > 3 && turning_.swing(0) > 10.0 * displacement &&
+                       turning_.swing(0) > turning_.swing(1) && turning_.swing(1) > turning_.swing(2);
+    if (grows) return ended(Status::not_finite);
     if (!calm) return unanswered("the simulation neither came to rest nor repeated itself");
     SceneAnswer answer;
     answer.answered = true;

@@ -202,6 +202,7 @@ TEST_CASE("adequate: a plain simulation sees what every start comes to, not only
   options.search = SearchBox{1e-4, 100.0, 0.01, 100.0};
   options.starts = 3;
   const auto simulated = ask_scene("simulation", loop, options), best = ask_scene("shooting", loop, options);
+  INFO(simulated.why << "; " << best.why);
   REQUIRE((simulated.answered && best.answered));
   CHECK(simulated.verdict == "cycle/divergence");
   CHECK(best.verdict == "cycle/divergence");
