@@ -48,6 +48,8 @@ AnyStepper make(StepperKind kind, const ErrorWeights& w, LoopField& field) {
   }
 }
 
+constexpr double longest_step = 1e15;  ///< s
+
 template <class E>
 constexpr bool holds_rate() {
   if constexpr (CanHold<E>) return E::holds == Held::rate;
@@ -249,6 +251,7 @@ Status March::step(double t_end) {
     dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
     fresh_ = false;
   }
+  dt_ = std::min(dt_, longest_step);  // at rest steps grow for ever
   double dt = std::min({dt_, dt_max_, t_end - t_});
   bool shortened = dt < dt_;  // by what is asked for, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_;
