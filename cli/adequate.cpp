@@ -15,6 +15,8 @@
 namespace limcycle {
 namespace {
 
+constexpr int starts_asked = 3;  ///< the largest displacement of interest, a tenth and a thousandth of it
+
 struct AdequateFlags : CommonFlags {
   std::string html;         ///< --html
   double tolerance = 0.05;  ///< --tolerance
@@ -67,7 +69,7 @@ AdequateReport compute(const Case& from, const LoopParts& parts, const AdequateF
   options.tolerance = flags.tolerance;
   options.spread = flags.spread;
   options.predict = from.predict;
-  options.predict.starts = std::min(options.predict.starts, 2);
+  options.predict.starts = std::min(options.predict.starts, starts_asked);
   options.predict.stop = interrupted;
   options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
   std::vector<std::string> left_out;

@@ -87,16 +87,19 @@ bool same_value(const Value& a, const Value& b) {
 template <class Owner>
 bool stands_by_default(const Owner& owner, const Parameter<Owner, double>& row) {
   if (row.required) return false;
-  return std::visit(
-      [&](auto member) {
-        if (row.default_from.empty()) return same_value(owner.*member, Owner{}.*member);
-        for (const auto& other : Owner::parameters())
-          if (other.key == row.default_from)
-            if (const auto* same = std::get_if<decltype(member)>(&other.member))
-              return same_value(owner.*member, owner.*(*same));
-        return false;
-      },
-      row.member);
+  if constexpr (!std::is_default_constructible_v<Owner>)
+    return false;  // a law of the user's own: it has no table
+  else
+    return std::visit(
+        [&](auto member) {
+          if (row.default_from.empty()) return same_value(owner.*member, Owner{}.*member);
+          for (const auto& other : Owner::parameters())
+            if (other.key == row.default_from)
+              if (const auto* same = std::get_if<decltype(member)>(&other.member))
+                return same_value(owner.*member, owner.*(*same));
+          return false;
+        },
+        row.member);
 }
 
 /// Units of force and length are those of a servo; a loop that is none has times only.

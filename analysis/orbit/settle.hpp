@@ -37,7 +37,7 @@ struct Settled {
 /// stable periodic solution with the same swing: a decaying stick-slip, whose swings shrink for ever, never is. Rest is
 /// one only when every rate has decayed faster than 1/t or is noise on the mean (see RestWatch): slow hunting, which
 /// waits at rest for thousands of seconds while an integrator winds up, never is. What neither test decides within the
-/// budget is undecided.
+/// budget is undecided. Throws std::invalid_argument for a loop with a dead time: see in_time_domain().
 Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options);
 
 /// State in which y (from the rest point of the linear part, elements without history) is displaced by `displacement`.

@@ -33,6 +33,7 @@ struct MarginSide {
   /// What happens to the branch of cycles there, and the cycle; if it was followed to a fold or a change of stability.
   std::optional<BranchEvent::Type> event = {};
   std::optional<Cycle> cycle = {};
+  bool diverges = false;  ///< hunting ends there because the motion grows without bound beyond
   bool found() const { return what == What::ends || what == What::begins; }
 };
 std::string_view to_string(MarginSide::What what);

@@ -13,6 +13,11 @@
 
 namespace limcycle {
 
+/// Initial displacements of y from which a loop is tried: the largest amplitude of interest and smaller ones, one and
+/// then two decades apart, as far as they are of interest. `unit`: amplitude of y per input of the element (see
+/// output_per_input).
+std::vector<double> start_displacements(double unit, const SearchBox& box, int starts);
+
 /// Box chosen from the loop's own scales: the response to the element's output level over the band of the loop's poles.
 SearchBox default_search_box(const Loop& loop);
 
@@ -98,6 +103,7 @@ struct PredictReport {
   std::vector<Missed> missed;
   std::vector<OutcomeOfStart> outcomes;
   std::vector<std::string> unfinished{};  ///< methods whose search was interrupted: they may predict more
+  std::vector<std::string> incomplete{};  ///< methods whose search left something undecided (see the notes): likewise
   NyquistPicture nyquist;
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: is that proved?
   std::vector<std::string> notes;    ///< what a user must know: methods that do not apply, searches that are incomplete
