@@ -14,7 +14,7 @@ const chapters = [
 ];
 const short_titles = {
   'README.md': 'limcycle', 'docs/tutorial.md': 'Tutorial: ten minutes', 'docs/how-to.md': 'How to ask each question',
-  'docs/methods.md': 'Methods and their limits', 'docs/dissipativity.md': 'Energy', 'docs/sensitivity.md': 'Sensitivity and maps',
+  'docs/methods.md': 'Methods and their limits', 'docs/theory.md': 'Theory', 'docs/formats.md': 'Files and formats', 'docs/dissipativity.md': 'Energy', 'docs/sensitivity.md': 'Sensitivity and maps',
   'docs/numerical-stability.md': 'Numerical stability', 'docs/laws.md': 'Laws, elements, plants',
 };
 
@@ -144,7 +144,9 @@ function write_api() {
   const folders = new Map();
   for (const one of summaries) folders.set(posix.dirname(one.file), [...(folders.get(posix.dirname(one.file)) ?? []), one]);
   let body = `<h1>API reference</h1>\n<p>Every header, by folder. Dependence runs <code>models &lt;- analysis &lt;- {cases, reports}</code>; all names are in namespace <code>limcycle</code>.</p>\n`;
-  for (const [folder, list] of folders) {
+  const layers = ['models', 'analysis', 'cases', 'reports'];
+  const layer = (folder) => layers.indexOf(folder.split('/')[0]);
+  for (const [folder, list] of [...folders].sort(([a], [b]) => layer(a) - layer(b) || (a < b ? -1 : 1))) {
     body += `<h2 id="${folder.replaceAll('/', '-')}">${folder}</h2>\n<dl class="headers">\n`;
     for (const one of list)
       body += `<dt><a href="${relative('api/index.html', one.address)}">${posix.basename(one.file)}</a></dt><dd>${one.sentence}</dd>\n`;
