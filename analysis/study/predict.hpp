@@ -23,6 +23,7 @@ struct Methods {
   bool harmonic_balance = true;  ///< from each root of the others, and from cycles that they missed
 };
 
+/// What predict() is asked beside the loop.
 struct PredictOptions {
   Methods methods;
   std::optional<SearchBox> search;  ///< default: default_search_box
@@ -60,6 +61,7 @@ struct OutcomeOfStart {
   Trace trace;  ///< the run, for pictures
 };
 
+/// A cycle that a method overlooked.
 struct Missed {
   std::string method;
   std::size_t cycle;
@@ -78,6 +80,7 @@ struct NyquistPicture {
 /// points: when it returns true the curves end there.
 NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std::function<bool()>& stop = {});
 
+/// What predict() answers: cycles, predictions with verdicts, outcomes of simulations.
 struct PredictReport {
   SearchBox search;
   std::vector<Cycle> cycles;
