@@ -139,11 +139,26 @@ function write_file(path) {
   }
 }
 
+/// Every type and function in the order of the alphabet; of overloads the first.
+function write_names(summaries) {
+  const names = new Map();
+  for (const one of summaries)
+    for (const { name, id } of one.names) if (!names.has(name)) names.set(name, `${relative('api/names.html', one.address)}#${id}`);
+  const letters = new Map();
+  for (const [name, href] of [...names].sort(([a], [b]) => a.localeCompare(b, 'en'))) {
+    const letter = name[0].toUpperCase();
+    letters.set(letter, `${letters.get(letter) ?? ''}<li><a href="${href}"><code>${escaped(name)}</code></a></li>\n`);
+  }
+  const parts = [...letters].map(([letter, list]) => `<h2 id="${letter}">${letter}</h2>\n<ul class="names">\n${list}</ul>\n`);
+  write_page('api/names.html', 'All types and functions', `<h1>All types and functions</h1>\n${parts.join('')}`);
+}
+
 function write_api() {
   const { pages, summaries } = api_pages(xml, relative);
   const folders = new Map();
   for (const one of summaries) folders.set(posix.dirname(one.file), [...(folders.get(posix.dirname(one.file)) ?? []), one]);
-  let body = `<h1>API reference</h1>\n<p>Every header, by folder. Dependence runs <code>models &lt;- analysis &lt;- {cases, reports}</code>; all names are in namespace <code>limcycle</code>.</p>\n`;
+  write_names(summaries);
+  let body = `<h1>API reference</h1>\n<p>Every header, by folder. Dependence runs <code>models &lt;- analysis &lt;- {cases, reports}</code>; all names are in namespace <code>limcycle</code>. The same by name: <a href="names.html">all types and functions</a>.</p>\n`;
   const layers = ['models', 'analysis', 'cases', 'reports'];
   const layer = (folder) => layers.indexOf(folder.split('/')[0]);
   for (const [folder, list] of [...folders].sort(([a], [b]) => layer(a) - layer(b) || (a < b ? -1 : 1))) {

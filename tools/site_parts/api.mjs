@@ -112,7 +112,7 @@ function writer(link) {
   return { comment, entity: (node) => (node.name === 'memberdef' ? member(node) : compound(node)) };
 }
 
-/// {pages: Map of address -> {title, body}, summaries: [{file, address, sentence}]}.
+/// {pages: Map of address -> {title, body}, summaries: [{file, address, sentence, names: [{name, id}]}]}.
 export function api_pages(folder, relative) {
   const headers = read_headers(folder);
   const places = read_places(headers);
@@ -127,7 +127,10 @@ export function api_pages(folder, relative) {
     });
     const intro = about ? comment(about) : '';
     const told = intro || entities.map(({ node }) => comment(node)).find(Boolean) || '';
-    summaries.push({ file, address, sentence: told.replace(/<\/p>.*$/s, '').replace(/<[^>]*>/g, '').replace(/(\.)\s.*$/s, '$1') });
+    const name_of = (node) => short(text_of(first(node, 'compoundname') ?? first(node, 'qualifiedname') ?? first(node, 'name')));
+    const names = entities.map(({ node }) => ({ name: name_of(node), id: node.attributes.id }));
+    const sentence = told.replace(/<\/p>.*$/s, '').replace(/<[^>]*>/g, '').replace(/(\.)\s.*$/s, '$1');
+    summaries.push({ file, address, names, sentence });
     const body = entities.map(({ node }) => entity(node)).join('');
     pages.set(address, { title: file, body: `<h1>${file}</h1>\n<pre class="include">#include "limcycle/${file}"</pre>\n${intro}${body}` });
   }
