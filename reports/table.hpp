@@ -25,6 +25,7 @@ std::string yes_or_no(const std::optional<bool>& value);
 
 enum class Align { left, right };
 
+/// Heading, unit and alignment of a column.
 struct Column {
   std::string heading;
   std::string unit;  ///< printed under the heading; empty: none

@@ -14,7 +14,7 @@ const chapters = [
 ];
 const short_titles = {
   'README.md': 'limcycle', 'docs/tutorial.md': 'Tutorial: ten minutes', 'docs/how-to.md': 'How to ask each question',
-  'docs/methods.md': 'Methods and their limits', 'docs/dissipativity.md': 'Energy', 'docs/sensitivity.md': 'Sensitivity and maps',
+  'docs/methods.md': 'Methods and their limits', 'docs/theory.md': 'Theory', 'docs/formats.md': 'Files and formats', 'docs/dissipativity.md': 'Energy', 'docs/sensitivity.md': 'Sensitivity and maps',
   'docs/numerical-stability.md': 'Numerical stability', 'docs/laws.md': 'Laws, elements, plants',
 };
 
@@ -139,12 +139,29 @@ function write_file(path) {
   }
 }
 
+/// Every type and function in the order of the alphabet; of overloads the first.
+function write_names(summaries) {
+  const names = new Map();
+  for (const one of summaries)
+    for (const { name, id } of one.names) if (!names.has(name)) names.set(name, `${relative('api/names.html', one.address)}#${id}`);
+  const letters = new Map();
+  for (const [name, href] of [...names].sort(([a], [b]) => a.localeCompare(b, 'en'))) {
+    const letter = name[0].toUpperCase();
+    letters.set(letter, `${letters.get(letter) ?? ''}<li><a href="${href}"><code>${escaped(name)}</code></a></li>\n`);
+  }
+  const parts = [...letters].map(([letter, list]) => `<h2 id="${letter}">${letter}</h2>\n<ul class="names">\n${list}</ul>\n`);
+  write_page('api/names.html', 'All types and functions', `<h1>All types and functions</h1>\n${parts.join('')}`);
+}
+
 function write_api() {
   const { pages, summaries } = api_pages(xml, relative);
   const folders = new Map();
   for (const one of summaries) folders.set(posix.dirname(one.file), [...(folders.get(posix.dirname(one.file)) ?? []), one]);
-  let body = `<h1>API reference</h1>\n<p>Every header, by folder. Dependence runs <code>models &lt;- analysis &lt;- {cases, reports}</code>; all names are in namespace <code>limcycle</code>.</p>\n`;
-  for (const [folder, list] of folders) {
+  write_names(summaries);
+  let body = `<h1>API reference</h1>\n<p>Every header, by folder. Dependence runs <code>models &lt;- analysis &lt;- {cases, reports}</code>; all names are in namespace <code>limcycle</code>. The same by name: <a href="names.html">all types and functions</a>.</p>\n`;
+  const layers = ['models', 'analysis', 'cases', 'reports'];
+  const layer = (folder) => layers.indexOf(folder.split('/')[0]);
+  for (const [folder, list] of [...folders].sort(([a], [b]) => layer(a) - layer(b) || (a < b ? -1 : 1))) {
     body += `<h2 id="${folder.replaceAll('/', '-')}">${folder}</h2>\n<dl class="headers">\n`;
     for (const one of list)
       body += `<dt><a href="${relative('api/index.html', one.address)}">${posix.basename(one.file)}</a></dt><dd>${one.sentence}</dd>\n`;

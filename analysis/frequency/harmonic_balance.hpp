@@ -9,6 +9,7 @@
 
 namespace limcycle {
 
+/// How many harmonics, and when a balance is good.
 struct HarmonicBalanceOptions {
   int max_harmonics = 75;            ///< 1..400
   double accuracy = 1e-9;            ///< of the scaled equations, 1e-12..1e-3

@@ -12,6 +12,7 @@ namespace limcycle {
 enum class Outcome { rest, sliding, cycle, divergence, undecided };
 std::string_view to_string(Outcome outcome);
 
+/// How long and how accurately a motion is followed until it is clear what it comes to.
 struct SettleOptions {
   double rtol = 1e-7;              ///< of the simulation; looser ones may break stiction early
   double amplitude_floor = 1e-9;   ///< swings of y below this have died out

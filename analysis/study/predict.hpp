@@ -28,6 +28,7 @@ struct Methods {
   bool harmonic_balance = true;  ///< from each root of the others, and from cycles that they missed
 };
 
+/// What predict() is asked beside the loop.
 struct PredictOptions {
   Methods methods;
   std::optional<SearchBox> search;  ///< default: default_search_box
@@ -75,6 +76,7 @@ struct Effort {
   std::string unit;  ///< plural: "return maps"
 };
 
+/// A cycle that a method overlooked.
 struct Missed {
   std::string method;
   std::size_t cycle;
@@ -96,6 +98,7 @@ struct NyquistPicture {
 NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std::vector<SearchPoint>& roots = {},
                                const std::function<bool()>& stop = {});
 
+/// What predict() answers: cycles, predictions with verdicts, outcomes of simulations.
 struct PredictReport {
   SearchBox search;
   std::vector<Cycle> cycles;
