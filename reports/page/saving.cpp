@@ -42,7 +42,7 @@ async function savePlot(plot, format) {
 }
 
 function textOfPicture(svg) {
-  const copy = svg.cloneNode(true), ns = "http://www.w3.org/2000/svg";
+  const copy = svg.cloneNode(true), ns = svg.namespaceURI;
   const [, , width, height] = (svg.getAttribute("viewBox") ?? "0 0 760 400").split(/[ ,]+/).map(Number);
   for (const [key, value] of Object.entries({xmlns: ns, width, height})) copy.setAttribute(key, value);
   const ground = document.createElementNS(ns, "rect");
