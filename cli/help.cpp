@@ -86,7 +86,7 @@ std::string command_help(const CommandFacts& command) {
   const auto own = [](const OptionFacts& option) { return !option.argument && !option.common; };
   const auto common = [](const OptionFacts& option) { return option.common; };
   const auto argument = [](const OptionFacts& option) { return option.argument; };
-  return item("Usage:", 5, usage(command)) + "\n" + wrapped(command.summary + ".") +
+  return "Usage: " + wrapped(usage(command), 80, 7).substr(7) + "\n" + wrapped(command.summary + ".") +
          paragraphs(command.description.text) + options_text(command, "Arguments", argument) +
          options_text(command, "Options", own) + options_text(command, "Options of every command", common) +
          examples_text(command.description);

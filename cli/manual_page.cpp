@@ -36,7 +36,7 @@ std::string environment_section() {
 std::string see_also(const std::vector<std::string>& pages) {
   std::string text = roff::section("see also");
   for (const auto& page : pages)
-    text += roff::bold(page.substr(0, page.find('('))) + page.substr(page.find('(')) +
+    text += "\\%" + roff::bold(page.substr(0, page.find('('))) + page.substr(page.find('(')) +
             (&page == &pages.back() ? "\n" : ",\n");
   return text;
 }

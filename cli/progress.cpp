@@ -24,7 +24,7 @@ Progress::~Progress() {
   if (drawn_) std::cerr << '\r' << std::string(line_width, ' ') << '\r' << std::flush;
   begin_stage({});
   for (const auto& [what, time] : stages_)
-    if (!what.empty())
+    if (!what.empty() && what != "done")
       std::cerr << fmt::format("limcycle: {:8.3f} s  {}\n", std::chrono::duration<double>(time).count(), what);
 }
 

@@ -16,6 +16,8 @@ std::string counted(std::size_t count, const char* one, const char* many) {
 
 /// "2 roots, residuals up to 3.1e-12; ...": what a method found, and its effort where that is counted.
 std::string method_text(const std::string& method, const PredictReport& report) {
+  if (std::ranges::find(report.efforts, method, &Effort::method) == report.efforts.end())
+    return report.status == Status::interrupted ? "not reached" : "does not apply to this loop";
   std::size_t found = 0;
   double residual = 0.0;
   int harmonics = 1;
@@ -29,7 +31,7 @@ std::string method_text(const std::string& method, const PredictReport& report) 
   if (found > 0) text += ", residual at most " + with_digits(residual, 2);
   if (harmonics > 1) text += ", " + std::to_string(harmonics) + " harmonics";
   for (const auto& effort : report.efforts)
-    if (effort.method == method) text += fmt::format("; {} {}", effort.count, effort.unit);
+    if (effort.method == method && !effort.unit.empty()) text += fmt::format("; {} {}", effort.count, effort.unit);
   if (std::ranges::find(report.unfinished, method) != report.unfinished.end()) text += "; interrupted";
   return text;
 }

@@ -25,7 +25,7 @@ inline constexpr std::size_t longest_table = 200;
 /// energy went (if that was counted), the range of each column, the located events.
 std::string simulate_text(const std::string& title, const Simulation& run,
                           const std::optional<Agreement>& second = std::nullopt,
-                          const std::optional<EnergyBalance>& energy = std::nullopt);
+                          const std::optional<EnergyBalance>& energy = std::nullopt, const Units& units = {});
 
 /// Where the energy of a run came from and went to. What is zero to the last bit is not part of the motion and left out.
 Table energy_table(const EnergyBalance& energy);

@@ -73,7 +73,7 @@ struct OutcomeOfStart {
 struct Effort {
   std::string method;
   long count = 0;
-  std::string unit;  ///< plural: "return maps"
+  std::string unit;  ///< plural: "return maps"; empty: the work is not counted
 };
 
 /// A cycle that a method overlooked.
@@ -111,7 +111,7 @@ struct PredictReport {
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: is that proved?
   std::vector<std::string> notes;    ///< what a user must know: methods that do not apply, searches that are incomplete
   Status status = Status::converged;
-  std::vector<Effort> efforts{};  ///< beside those of the outcomes
+  std::vector<Effort> efforts{};  ///< of the methods that ran, beside those of the outcomes
 };
 
 /// Every limit cycle that the methods predict in the search box, what really happens from several starts and near every
