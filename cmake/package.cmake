@@ -4,6 +4,7 @@ set(LIMCYCLE_MAINTAINER "limcycle maintainers <maintainers@limcycle.invalid>" CA
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # cpack takes what is built; it does not build the tests
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME limcycle)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGE_CONTACT "${LIMCYCLE_MAINTAINER}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL development)
@@ -21,25 +22,25 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME limcycle)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION
 "limit cycles of feedback loops with friction
- Tells from one small text file whether a feedback loop with friction, a relay,
- a dead zone, backlash, a saturation or a dead time will oscillate: which limit
- cycles the describing function, the composite describing function and
- harmonic balance predict, which there really are, and what each prediction
- was worth. Follows cycles over a parameter, maps planes of two, and tells how
- far every parameter is from where hunting begins or ends.")
+Tells from one small text file whether a feedback loop with friction, a relay,
+a dead zone, backlash, a saturation or a dead time will oscillate: which limit
+cycles the describing function, the composite describing function and
+harmonic balance predict, which there really are, and what each prediction
+was worth. Follows cycles over a parameter, maps planes of two, and tells how
+far every parameter is from where hunting begins or ends.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblimcycle-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libgsl-dev (>= 2.7), libtbb-dev (>= 2021), \
 libfftw3-dev, libfmt-dev (>= 9), libtomlplusplus-dev, libmuparser-dev, libssl-dev, libsqlite3-dev, pkgconf | pkg-config")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-"limit cycles of feedback loops with friction - C++ library
- The methods of the program limcycle as a library: describing functions,
- harmonic balance, exact cycles by shooting, Floquet multipliers, simulation
- with located events, continuation, sensitivity, for the friction laws of the
- program and for friction laws of your own.
- .
- Headers and static libraries, with files for CMake and pkg-config.")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
+"C++ library for limit cycles of feedback loops with friction
+The methods of the program limcycle as a library: describing functions,
+harmonic balance, exact cycles by shooting, Floquet multipliers, simulation
+with located events, continuation and sensitivity, for the friction laws of
+the program and for friction laws of your own.
+
+Headers and static libraries, with files for CMake and pkg-config.")
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/policy.cmake)
 include(CPack)

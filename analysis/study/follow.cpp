@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/derivative_notes.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
@@ -21,6 +22,7 @@ class Following {
   }
 
   FollowReport run() {
+    if (const auto loop = family_(report_.start)) report_.notes = derivative_notes(*loop);
     auto cycles = cycles_at(report_.start);
     if (cycles.empty() && !stopped()) cycles = look_elsewhere();
     std::size_t done = 0;

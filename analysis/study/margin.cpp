@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "limcycle/analysis/derivative_notes.hpp"
 #include "limcycle/analysis/study/margin_side.hpp"
 
 namespace limcycle {
@@ -15,6 +16,7 @@ class Margins {
   Margins(const Loop& loop, const std::vector<MarginParameter>& parameters, const MarginOptions& options)
       : loop_(loop), parameters_(parameters), options_(options) {
     report_.factor = options.factor;
+    report_.notes = derivative_notes(loop);
   }
 
   MarginReport run() {

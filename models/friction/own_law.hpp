@@ -19,7 +19,7 @@ namespace limcycle {
 ///   df/dq = (f(q + h) - f(q - h))/2h + O(h^2),   h = eps^(1/3) max(|q|, L),  eps = 2.2e-16,
 /// with L the size that the law states for q: its `scales()` for x and v, its `state_scale(i)` for a state. For x,
 /// which may move along without end, h = eps^(1/3) L + eps^(1/2) |x|. Where the law has a corner, the difference is the
-/// mean slope over 2h. Relative error of a smooth law: about 1e-10. Cost: 2 evaluations for every variable.
+/// mean slope over 2h. Relative error of a smooth law: about 1e-9. Cost: 2 evaluations for every variable.
 template <class S>
 class OwnLaw {
  public:

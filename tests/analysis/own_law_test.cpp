@@ -9,6 +9,7 @@
 #include "limcycle/analysis/orbit/settle.hpp"
 #include "limcycle/analysis/orbit/shooting.hpp"
 #include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/study/follow.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 #include "limcycle/tests/loops.hpp"
 #include "limcycle/tests/own_laws.hpp"
@@ -98,7 +99,7 @@ void check_same(const PredictReport& own, const PredictReport& built_in) {
   for (std::size_t i = 0; i < own.outcomes.size(); ++i) CHECK(own.outcomes[i].outcome == built_in.outcomes[i].outcome);
 }
 
-bool says_differences(const PredictReport& report, std::string_view law) {
+bool says_differences(const auto& report, std::string_view law) {
   return std::ranges::any_of(report.notes, [&](const std::string& note) {
     return note.find("differences") != std::string::npos && note.find(law) != std::string::npos;
   });
@@ -133,6 +134,16 @@ TEST_CASE("derivatives of an own law are central differences: off by h^2, h as s
     const Dual<1> force = law.output({0.0, Dual<1>::variable(1.0, 0), 0.0}, {}, {});
     CHECK(force.value == 1.0);
     CHECK(force.d[0] - 3.0 == Approx(h * h).epsilon(1e-4).margin(1e-10));
+  }
+}
+
+TEST_CASE("derivatives of a smooth own law are right to 1e-9, over all speeds") {
+  const RoundStribeck smooth;
+  const auto law = own_law(smooth).on<Dual<1>>();
+  for (double v = 1e-4; v < 1.0; v *= 1.1) {
+    const double exact = smooth.slope(v), found = law.output({0.0, Dual<1>::variable(v, 0), 0.0}, {}, {}).d[0];
+    CAPTURE(v, exact);
+    CHECK(std::abs(found - exact) < 1e-9 * std::max(std::abs(exact), 1.0));
   }
 }
 
@@ -227,6 +238,45 @@ TEST_CASE("an own law that claims no symmetry has the same cycle, over the whole
   CHECK(whole.period == Approx(built_in.period).epsilon(1e-8));
   CHECK(whole.amplitude == Approx(built_in.amplitude).epsilon(1e-7));
   CHECK(std::abs(whole.multipliers.at(0) - built_in.multipliers.at(0)) < 1e-5 * std::abs(built_in.multipliers.at(0)));
+}
+
+TEST_CASE("a branch of cycles with an own law: followed as with the library's, differences labelled") {
+  FollowOptions options;
+  options.continuation.from = 6.0;
+  options.continuation.to = 7.0;
+  options.own = 6.0;
+  options.predict.starts = 1;
+  options.predict.methods = {.describing_function = false, .composite = false, .harmonic_balance = false};
+  const auto over_kd = [&](const Element<double>& law) {
+    return follow(
+        [&](double kd) -> std::optional<Loop> {
+          LoopParts parts = servo_parts(law);
+          std::get<Pid>(parts.controller).kd = kd;
+          return build_loop(parts);
+        },
+        options);
+  };
+  const auto own = over_kd(own_law(NamedLuGre{})), built_in = over_kd(lugre());
+  CHECK(says_differences(own, "my-lugre"));
+  CHECK_FALSE(says_differences(built_in, "lugre"));
+  REQUIRE(built_in.branches.size() == 1);
+  REQUIRE(own.branches.size() == 1);
+  const BranchPoint &mine = own.branches[0].points.back(), &theirs = built_in.branches[0].points.back();
+  CHECK(theirs.parameter != built_in.start);
+  CHECK(mine.parameter == Approx(theirs.parameter).epsilon(1e-9));
+  CHECK(mine.cycle.period == Approx(theirs.cycle.period).epsilon(1e-7));
+  CHECK(mine.cycle.amplitude == Approx(theirs.cycle.amplitude).epsilon(1e-6));
+}
+
+TEST_CASE("an own law in series with the plant, in place of an element") {
+  PredictOptions options;
+  options.methods.composite = false;
+  const auto in_series = [&](const Element<double>& law) {
+    return predict(forward(law, {8.0}, {1.0, 3.0, 3.0, 1.0}), options);
+  };
+  const auto own = in_series(own_law(OwnDahl{1.0, 4.0})), built_in = in_series(dahl(1.0, 4.0));
+  REQUIRE_FALSE(built_in.cycles.empty());
+  check_same(own, built_in);
 }
 
 TEST_CASE("stick-slip on a belt with a rounded Stribeck curve: its multiplier is Liouville's") {
