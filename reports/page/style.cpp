@@ -20,6 +20,7 @@ p, li, summary, figcaption { overflow-wrap: anywhere; }
 .answer { font-size: 1.15rem; margin: 0.5rem 0; max-width: 52rem; }
 .worth { margin: 0.25rem 0; color: var(--ink); max-width: 52rem; }
 .scroll { overflow-x: auto; }
+nav ul { display: flex; flex-wrap: wrap; gap: 0.25rem 1.25rem; list-style: none; padding: 0; } nav a { display: inline-block; color: var(--one); }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin-top: 0.5rem; }
 caption { text-align: left; color: var(--soft); padding-bottom: 0.25rem; }
 th, td { padding: 0.25rem 0.55rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
@@ -58,12 +59,13 @@ button[aria-pressed="true"] { background: var(--ink); color: var(--paper); }
 .hint { color: var(--soft); font-size: 0.9rem; }
 footer { padding-bottom: 3rem; }
 @media (pointer: coarse), (max-width: 40rem) { button { min-height: 2.75rem; min-width: 2.75rem; }
-  .slider input { height: 2.75rem; } summary { min-height: 2.75rem; padding: 0.6rem 0; } .skip { min-height: 2.75rem; } }
+  .slider input { height: 2.75rem; } summary { min-height: 2.75rem; padding: 0.6rem 0; } .skip { min-height: 2.75rem; }
+  nav a { min-height: 2.75rem; min-width: 2.75rem; padding: 0.6rem 0; } }
 @media (max-width: 40rem) { .plot { height: 22rem; } .plot.tall { height: 30rem; } .plot[data-figure="loop"] { height: 32rem; }
   dl { grid-template-columns: 1fr; } main, header, footer { padding: 0 0.75rem; } }
 @media (prefers-reduced-motion: reduce) { * { scroll-behavior: auto !important; transition: none !important; animation: none !important; } }
 :root.print .plot { width: 17cm; height: 10.5cm; } :root.print .plot.tall { height: 13cm; }
-@media print { .hint, .tools, .sliders .slider, .skip { display: none; } figure, table, tr, pre, dl { break-inside: avoid; }
+@media print { nav, .hint, .tools, .sliders .slider, .skip { display: none; } figure, table, tr, pre, dl { break-inside: avoid; }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; } h1, h2, h3, caption, summary { break-after: avoid; }
   .scroll { overflow: visible; } .picture svg { max-width: 100%; height: auto; } table { max-width: 100%; font-size: 0.8rem; }
   th, td { white-space: normal; padding: 0.15rem 0.35rem; } td.wide { min-width: 7rem; } main, header, footer { max-width: none; padding: 0; }
