@@ -89,9 +89,8 @@ std::string sensitivity_body(const SensitivityReport& found, const Units& units)
 }
 
 std::string energy_body(const CountedRun& counted) {
-  std::string words = "In " + counted.which;
-  words += fmt::format(", {} s of it: ",
-                       counted.run.trace.t.empty() ? "0" : fmt::format("{:.6g}", counted.run.trace.t.back()));
+  const auto& time = counted.run.trace.t;
+  const std::string words = fmt::format("This is {}, {:.6g} s. ", counted.which, time.empty() ? 0.0 : time.back());
   return html_tag("p", words + energy_in_words(counted.energy)) +
          html_table(energy_table(counted.energy), "Where the energy comes from and goes to");
 }
