@@ -5,7 +5,8 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 mkdir -p "$folder"/{tools,docs,cases,models,analysis,reports}
-cp -r "$root"/tools/{site,site.mjs,site_parts,Doxyfile} "$folder/tools"
+cp -r "$root"/tools/{site,site.mjs,site_parts,Doxyfile,install,assets} "$folder/tools"
+cp "$root/package-lock.json" "$folder"
 ln -s "$root/node_modules" "$folder/node_modules"
 echo 'mass = 1.0' >"$folder/cases/a.toml"
 
