@@ -134,12 +134,14 @@ class RootStudy {
 
   void note_doubts(const RootSearch& found, const SearchBox& box) {
     if (found.status == Status::converged || found.status == Status::no_cycle) return;
-    std::string note = "the root search between " + short_number(box.frequency_min) + " and " +
-                       short_number(box.frequency_max) + " rad/s ended with status " +
-                       std::string(to_string(found.status)) + ": roots may be missing";
+    const std::string range = short_number(box.frequency_min) + " and " + short_number(box.frequency_max) + " rad/s";
+    std::string note = found.status == Status::not_finite
+                           ? "the describing function exists nowhere in the search box between " + range +
+                                 ": it has nothing to predict from"
+                           : "the root search between " + range + " ended with status " +
+                                 std::string(to_string(found.status)) + ": roots may be missing";
     if (std::ranges::find(found_.notes, note) == found_.notes.end()) found_.notes.push_back(std::move(note));
-    found_.status =
-        found.status == Status::not_finite || found.status == Status::interrupted ? found.status : Status::incomplete;
+    found_.status = found.status == Status::interrupted ? found.status : Status::incomplete;
   }
 
   const Loop& loop_;

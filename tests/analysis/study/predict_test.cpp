@@ -312,6 +312,19 @@ TEST_CASE("a balance that more harmonics still move is no prediction, and a note
   }));
 }
 
+TEST_CASE("a law without a describing function leaves a note, not a failure: its cycle is found by simulation") {
+  auto law = with_levels<Awrejcewicz<double>>(1.5, 1.0);
+  law.vs = 0.01;
+  law.dv = 1e-3;
+  const auto report = predicted(servo(law), SearchBox{1e-3, 1.0, 0.01, 100.0});
+  CHECK_FALSE(report.cycles.empty());
+  CHECK(report.status != Status::not_finite);  // which the program takes for no answer
+  CHECK(std::ranges::find(report.incomplete, df) != report.incomplete.end());
+  CHECK(std::ranges::any_of(report.notes, [](const std::string& note) {
+    return note.find("exists nowhere in the search box") != std::string::npos;
+  }));
+}
+
 TEST_CASE("a stop is obeyed and what was computed is kept") {
   PredictOptions options;
   int asked = 0;
