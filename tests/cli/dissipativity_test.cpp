@@ -75,6 +75,15 @@ TEST_CASE("dissipativity of a loop: a proof that nothing can hunt, and none for 
   const Json servo = document({shipped("pid-lugre.toml")});
   CHECK(servo["loop"]["no_cycle"]["answer"] != true);
   CHECK(servo["loop"]["stuck_states"]["exists"]["answer"] == true);
+  CHECK(servo["loop"]["stuck_states"]["dimension"] == 1);
+  CHECK(servo["loop"]["sliding"]["velocity"].is_null());
+}
+
+TEST_CASE("dissipativity of a loop: what does not exist has no number") {
+  const Json belt = document({shipped("belt-lugre.toml")});  // it cannot stand still, and slides
+  CHECK(belt["loop"]["stuck_states"]["exists"]["answer"] == false);
+  for (const auto* key : {"dimension", "force", "output"}) CHECK(belt["loop"]["stuck_states"][key].is_null());
+  CHECK(belt["loop"]["sliding"]["velocity"] == -0.1);
 }
 
 TEST_CASE("dissipativity: text, page and points over the state") {
