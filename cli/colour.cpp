@@ -12,8 +12,8 @@ namespace {
 constexpr std::string_view bold = "\x1b[1m", faint = "\x1b[2m", red = "\x1b[31m", green = "\x1b[32m",
                            yellow = "\x1b[33m", plain = "\x1b[0m";
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> verdicts{{{"confirmed", green},
-                                                                                  {"stable", green},
+// Whether something is stable is told by yes or no, in the column of that name.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> verdicts{{{"confirmed", green},
                                                                                   {"holds", green},
                                                                                   {"proved", green},
                                                                                   {"valid", green},
@@ -21,7 +21,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> verdicts
                                                                                   {"undecided", yellow},
                                                                                   {"interrupted", yellow},
                                                                                   {"false", red},
-                                                                                  {"unstable", red},
                                                                                   {"fails", red},
                                                                                   {"missed", red}}};
 

@@ -22,7 +22,7 @@ namespace limcycle {
 namespace {
 
 // Their order in help and manual is that of descriptions.cpp.
-constexpr void (*commands[])(CLI::App&, Action&) = {
+constexpr void (*declarations[])(CLI::App&, Action&) = {
     add_predict,     add_report,    add_df,       add_simulate,      add_continue,  add_margin,     add_map,
     add_sensitivity, add_precision, add_adequate, add_dissipativity, add_claims,    add_experiment, add_status,
     add_check,       add_laws,      add_new,      add_manual,        add_completion};
@@ -78,7 +78,7 @@ int run(int argc, char** argv) {
   Action action;
   program.set_version_flag("--version", version_text(), "Print the version and exit");
   program.require_subcommand(1);
-  for (const auto add : commands) add(program, action);
+  for (const auto add : declarations) add(program, action);
   for (auto* command : program.get_subcommands({}))
     command->set_version_flag("--version", version_text(), "Print the version and exit");
   try {

@@ -52,7 +52,7 @@ int run(NewFlags flags) {
   try {
     read_case(text, "the new case");
   } catch (const InputError& error) {  // each part is right by itself
-    throw refusal("new", std::string("these parts do not fit together: ") + error.what());
+    throw refusal("new", "these parts do not fit together: " + error.fault().key + " " + error.fault().rule);
   }
   std::error_code ignored;
   if (!flags.output.empty() && !flags.force && std::filesystem::exists(flags.output, ignored))

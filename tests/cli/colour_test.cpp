@@ -45,6 +45,7 @@ TEST_CASE("colour: on a terminal, and nowhere else") {
   CHECK(holds(seen, bold + std::string("Limit cycles\x1b[0m")));
   CHECK(holds(seen, yellow + std::string("biased\x1b[0m")));
   CHECK(holds(seen, green + std::string("yes\x1b[0m")));
+  CHECK_FALSE(holds(seen, green + std::string("stable")));  // a heading is no verdict
   const std::string plain = run({"predict", shipped("pid-lugre.toml"), "--quiet"}).out;
   CHECK_FALSE(holds(plain, "\x1b"));
   CHECK(without_escapes(seen) == plain);
