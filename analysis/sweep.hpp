@@ -36,6 +36,7 @@ struct SweepTask {
 /// Called by one thread at a time. What it throws ends the sweep.
 using SweepSink = std::function<void(std::span<const std::size_t> points, std::span<const double> rows)>;
 
+/// Threads, and who may stop a sweep or hear how far it is.
 struct SweepOptions {
   int threads = 0;             ///< 0: one a core
   std::function<bool()> stop;  ///< asked before each block, by one thread at a time

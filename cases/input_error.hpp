@@ -40,7 +40,7 @@ std::string suggest(std::string_view name, std::span<const std::string> candidat
 /// Is it UTF-8? `valid`: length of the part in front that is.
 bool is_utf8(std::string_view text, std::size_t& valid);
 
-/// Text made fit for a one-line message: control characters and bytes that are not UTF-8 as \xNN, at most `length`
+/// Text made fit for a one-line message: control characters and bytes that are not UTF-8 as `\xNN`, at most `length`
 /// characters.
 std::string one_line(std::string_view text, std::size_t length = 300);
 

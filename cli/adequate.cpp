@@ -15,6 +15,8 @@
 namespace limcycle {
 namespace {
 
+constexpr int starts_asked = 3;  ///< the largest displacement of interest, a tenth and a thousandth of it
+
 struct AdequateFlags : CommonFlags {
   std::string html;         ///< --html
   double tolerance = 0.05;  ///< --tolerance
@@ -62,12 +64,12 @@ void spread_of_case(const Case& from, AdequateOptions& options, std::vector<std:
 }
 
 AdequateReport compute(const Case& from, const LoopParts& parts, const AdequateFlags& flags) {
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   AdequateOptions options;
   options.tolerance = flags.tolerance;
   options.spread = flags.spread;
   options.predict = from.predict;
-  options.predict.starts = std::min(options.predict.starts, 2);
+  options.predict.starts = std::min(options.predict.starts, starts_asked);
   options.predict.stop = interrupted;
   options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
   std::vector<std::string> left_out;

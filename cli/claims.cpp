@@ -7,6 +7,7 @@
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/reports/claims.hpp"
+#include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 namespace {
@@ -15,7 +16,7 @@ struct ClaimsFlags : CommonFlags {
   std::vector<std::string> words;  ///< ids, or a case file before or among them
   std::string html;                ///< --html
   int random = 20;                 ///< --random
-  bool list = false, verbose = false;
+  bool list = false;
 };
 
 bool is_case(const std::string& word) {
@@ -72,7 +73,7 @@ int list(const ClaimsFlags& flags, const std::vector<Claim>& which, const std::o
 }
 
 std::vector<TestedClaim> test_all(const std::vector<Claim>& which, const ClaimsFlags& flags) {
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   ClaimRunOptions options;
   options.seed = flags.seed;
   options.random_points = flags.random;
@@ -113,7 +114,7 @@ int run(ClaimsFlags flags) {
   const auto tested = test_all(which, flags);
   const auto made = provenance(flags, from ? &*from : nullptr);
   std::string text = claims_text(tested, flags.verbose);
-  if (from) text = from->title + "\n\n" + text;
+  if (from) text = wrapped(from->title) + "\n" + text;
   if (!flags.html.empty()) {
     output.file(flags.html, claims_page(tested, made, arguments(flags), from ? from->text : ""));
     text += "\nreport: " + flags.html + "\n";
@@ -142,7 +143,6 @@ void add_claims(CLI::App& program, Action& action) {
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
   command->add_flag("--list", flags->list, "List the claims, test none");
-  command->add_flag("--verbose", flags->verbose, "All of each claim: formula, source, every comparison");
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
 }

@@ -1,45 +1,111 @@
 #include "limcycle/cli/command.hpp"
 
+#include <fmt/format.h>
+#include <sys/resource.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
+#include <iostream>
 #include <stdexcept>
 #include <thread>
+#include <tuple>
 
 #include "build_info.hpp"
 #include "limcycle/cli/ranks.hpp"
 
 namespace limcycle {
 
-CLI::App* add_command(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
-                      bool takes_case, const std::shared_ptr<CommonFlags>& flags, Action run) {
-  CLI::App* command = program.add_subcommand(name, summary);
-  if (takes_case) command->add_option("CASE", flags->case_file, "Case file (TOML)")->required()->type_name("FILE");
-  command->add_option("--set", flags->set, "Replace a value of the case: PATH=VALUE, VALUE in TOML syntax; repeatable")
+namespace {
+
+constexpr auto* common = "Options of every command";
+
+/// Flags that every subcommand has, whatever it makes.
+void add_terminal_flags(CLI::App& command, CommonFlags& flags) {
+  command.add_option("-o,--output", flags.output, "Write the text to FILE instead of stdout")
+      ->type_name("FILE")
+      ->group(common);
+  command.add_option("--color", flags.color, "Colours; auto: on a terminal, but not with NO_COLOR")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->type_name("WHEN")
+      ->capture_default_str()
+      ->group(common);
+  command.add_flag("--quiet", flags.quiet, "No progress bar and no messages but errors")->group(common);
+  command.add_flag("--verbose", flags.verbose, "Tell what was done, and on stderr how long it took")->group(common);
+}
+
+void add_result_flags(CLI::App& command, CommonFlags& flags) {
+  command.add_option("--set", flags.set, "Replace a value of the case: PATH=VALUE, VALUE in TOML syntax; repeatable")
       ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--json", flags->json, "Write the JSON document to FILE, or to stdout alone with -")
-      ->type_name("FILE|-");
-  command->add_option("--csv", flags->csv, "Write the CSV document to FILE, or to stdout alone with -")
-      ->type_name("FILE|-");
-  command->add_option("-o,--output", flags->output, "Write the text to FILE instead of stdout")->type_name("FILE");
-  command->add_option("--seed", flags->seed, "Seed of everything random")
+      ->allow_extra_args(false)
+      ->group(common);
+  for (const auto& [name, into, what] : {std::tuple("--json", &flags.json, "Write the JSON document to FILE"),
+                                         std::tuple("--csv", &flags.csv, "Write the CSV document to FILE")})
+    command.add_option(name, *into, what + std::string(", or to stdout alone with -"))
+        ->type_name("FILE|-")
+        ->group(common);
+}
+
+void add_computing_flags(CLI::App& command, CommonFlags& flags) {
+  command.add_option("--seed", flags.seed, "Seed of everything random")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--threads", flags->threads, "Threads; 0: one a core")
+      ->capture_default_str()
+      ->group(common);
+  command.add_option("--threads", flags.threads, "Threads; 0: one a core; results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(common);
   std::vector<std::string> sets{"auto"};
   for (const Isa isa : all_isas()) sets.emplace_back(to_string(isa));
-  command
-      ->add_option("--isa", flags->isa,
-                   "Instruction set of the kernels: auto (the widest that this machine has) or one of those listed")
+  command.add_option("--isa", flags.isa, "Instruction set of the kernels; auto: the widest that this machine has")
       ->check(CLI::IsMember(sets))
       ->type_name("NAME")
-      ->capture_default_str();
-  command->add_flag("--quiet", flags->quiet, "No progress bar and no messages but errors");
-  command->callback([&action, run = std::move(run)] { action = run; });
+      ->capture_default_str()
+      ->group(common);
+}
+
+/// Runs a command and tells, with --verbose, what it took.
+int timed(const CommonFlags& flags, const Action& run) {
+  const auto begin = std::chrono::steady_clock::now();
+  const int code = run();
+  if (!flags.verbose || flags.quiet || rank() > 0) return code;
+  const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  std::cerr << fmt::format("limcycle: {:8.3f} s  in all; {:.3f} s of processors, {:.0f} MB of memory\n", passed,
+                           seconds(used.ru_utime) + seconds(used.ru_stime),
+                           static_cast<double>(used.ru_maxrss) / 1024.0);
+  return code;
+}
+
+CLI::App* add_named(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
+                    const std::shared_ptr<CommonFlags>& flags, Action run) {
+  CLI::App* command = program.add_subcommand(name, summary);
+  command->callback([&action, flags, run = std::move(run)] { action = [flags, run] { return timed(*flags, run); }; });
+  return command;
+}
+
+}  // namespace
+
+CLI::App* add_command(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
+                      bool takes_case, const std::shared_ptr<CommonFlags>& flags, Action run) {
+  CLI::App* command = add_named(program, action, name, summary, flags, std::move(run));
+  if (takes_case) command->add_option("CASE", flags->case_file, "Case file (TOML)")->required()->type_name("FILE");
+  add_result_flags(*command, *flags);
+  add_computing_flags(*command, *flags);
+  add_terminal_flags(*command, *flags);
+  return command;
+}
+
+CLI::App* add_plain_command(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
+                            const std::shared_ptr<CommonFlags>& flags, Action run) {
+  CLI::App* command = add_named(program, action, name, summary, flags, std::move(run));
+  add_terminal_flags(*command, *flags);
   return command;
 }
 

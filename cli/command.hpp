@@ -32,16 +32,24 @@ struct CommonFlags {
   std::uint64_t seed = 0;
   int threads = 1;
   std::string isa = "auto";
-  bool quiet = false;
+  std::string color = "auto";  ///< --color auto, always or never, of what goes to the terminal
+  bool quiet = false;          ///< nothing on stderr but errors
+  bool verbose = false;        ///< also what was done, and on stderr how long it took
 };
 
 /// What the command line asked for; set while it is parsed, run afterwards. The result is the exit code.
 using Action = std::function<int()>;
 
 /// Declares subcommand `name` with the common flags; with `takes_case` also the positional CASE. Options of its own are
-/// added to what is returned. `run` becomes the action when the subcommand is chosen.
+/// added to what is returned. `run` becomes the action when the subcommand is chosen. What help and manual page say of
+/// it at length stands in descriptions.cpp.
 CLI::App* add_command(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
                       bool takes_case, const std::shared_ptr<CommonFlags>& flags, Action run);
+
+/// The same for a subcommand that has neither a case nor results: of the common flags only --output, --color, --quiet
+/// and --verbose.
+CLI::App* add_plain_command(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
+                            const std::shared_ptr<CommonFlags>& flags, Action run);
 
 /// The case of the command line, read and validated. Throws InputError.
 Case load_case(const CommonFlags& flags);
@@ -61,15 +69,19 @@ InputError refusal(const std::string& key, const std::string& rule, const std::s
 void add_adequate(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_claims(CLI::App& program, Action& action);
+void add_completion(CLI::App& program, Action& action);
 void add_continue(CLI::App& program, Action& action);
 void add_dissipativity(CLI::App& program, Action& action);
 void add_df(CLI::App& program, Action& action);
 void add_experiment(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
 void add_map(CLI::App& program, Action& action);
+void add_manual(CLI::App& program, Action& action);
 void add_margin(CLI::App& program, Action& action);
+void add_new(CLI::App& program, Action& action);
 void add_precision(CLI::App& program, Action& action);
 void add_predict(CLI::App& program, Action& action);
+void add_report(CLI::App& program, Action& action);
 void add_sensitivity(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);
 void add_status(CLI::App& program, Action& action);

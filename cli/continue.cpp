@@ -39,7 +39,7 @@ int run(ContinueFlags flags) {
 
   ContinueReport report{range.path, number.unit, {}};
   {
-    Progress progress(flags.quiet);
+    Progress progress(flags.quiet, flags.verbose);
     FollowOptions options;
     options.continuation.from = range.from;
     options.continuation.to = range.to;

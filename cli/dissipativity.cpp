@@ -52,7 +52,7 @@ DissipativityReport compute(const Case& from, const DissipativityFlags& flags) {
   options.passivity.seed = flags.seed;
   options.predict = from.predict;
   if (!flags.parameter.empty()) options.range = range_of(from, flags);
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   options.passivity.stop = interrupted;
   options.passivity.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
   catch_interrupts();

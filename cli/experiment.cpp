@@ -58,7 +58,7 @@ int list(const ExperimentFlags& flags) {
 }
 
 std::vector<Experiment> run_all(const std::vector<ExperimentEntry>& entries, const ExperimentFlags& flags) {
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   ExperimentOptions options;
   options.laws = laws_of(flags.laws);
   options.threads = flags.threads;

@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -6,7 +8,9 @@
 
 #include "build_info.hpp"
 #include "limcycle/cases/input_error.hpp"
+#include "limcycle/cli/colour.hpp"
 #include "limcycle/cli/command.hpp"
+#include "limcycle/cli/help.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/rank_job.hpp"
@@ -17,10 +21,11 @@
 namespace limcycle {
 namespace {
 
+// Their order in help and manual is that of descriptions.cpp.
 constexpr void (*commands[])(CLI::App&, Action&) = {
-    add_predict, add_df,          add_simulate,  add_continue, add_margin,
-    add_map,     add_sensitivity, add_precision, add_adequate, add_dissipativity,
-    add_claims,  add_experiment,  add_status,    add_check,    add_laws};
+    add_predict,     add_report,    add_df,       add_simulate,      add_continue,  add_margin,     add_map,
+    add_sensitivity, add_precision, add_adequate, add_dissipativity, add_claims,    add_experiment, add_status,
+    add_check,       add_laws,      add_new,      add_manual,        add_completion};
 
 std::string version_text() {
   return std::string("limcycle ") + build_info::version + " (" + build_info::commit + ", " + build_info::compiler +
@@ -51,6 +56,16 @@ InputError unexpected(const CLI::App& program) {
   return refusal({}, command + "unknown option '" + word + "'", suggest(word.substr(0, word.find('=')), names));
 }
 
+/// Of the command that was named, or of all.
+void help(const CLI::App& program, std::string_view colour) {
+  const auto chosen = program.get_subcommands();
+  std::string text;
+  for (const auto& command : facts_of(program))
+    if (!chosen.empty() && command.name == chosen.front()->get_name()) text = command_help(command);
+  if (text.empty()) text = program_help(facts_of(program));
+  std::cout << (colours_wanted(colour, STDOUT_FILENO) ? coloured(text) : text) << std::flush;
+}
+
 /// Is the command one that several ranks share? Any other is for rank 0 alone.
 bool sweeps(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
@@ -70,7 +85,7 @@ int run(int argc, char** argv) {
     check_command(program, argc, argv);
     program.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    std::cout << program.help() << std::flush;
+    help(program, colour_flag(argc, argv));
     return exit_done;
   } catch (const CLI::CallForVersion&) {
     std::cout << version_text() << std::endl;
@@ -113,9 +128,10 @@ Ending outcome(int argc, char** argv) {
   }
 }
 
-void complain(const Ending& ending) {
-  if (rank() == 0 && !ending.message.empty())
-    std::cerr << "limcycle: " + one_line(ending.message, 2000) + "\n" << std::flush;
+void complain(const Ending& ending, std::string_view colour) {
+  if (rank() != 0 || ending.message.empty()) return;
+  const std::string line = "limcycle: " + one_line(ending.message, 2000) + "\n";
+  std::cerr << (colours_wanted(colour, STDERR_FILENO) ? coloured_complaint(line) : line) << std::flush;
 }
 
 }  // namespace
@@ -125,9 +141,9 @@ int main(int argc, char** argv) {
   using namespace limcycle;
   try {
     const Ending ending = outcome(argc, argv);
-    complain(ending);
+    complain(ending, colour_flag(argc, argv));
     const Ending of_others = end_ranks(ending);
-    if (ending.message.empty()) complain(of_others);
+    if (ending.message.empty()) complain(of_others, colour_flag(argc, argv));
     if (rank() > 0) return rank_count() > 1 ? exit_done : ending.code;
     return ending.code != exit_done ? ending.code : of_others.code;
   } catch (const std::exception& error) {  // nobody can be told any more how this one ends

@@ -72,7 +72,7 @@ int run(MarginFlags flags) {
 
   MarginReport report;
   {
-    Progress progress(flags.quiet);
+    Progress progress(flags.quiet, flags.verbose);
     MarginOptions options;
     options.factor = flags.factor;
     options.predict = from.predict;

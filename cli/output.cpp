@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "limcycle/cli/colour.hpp"
 #include "limcycle/cli/ranks.hpp"
 
 namespace limcycle {
@@ -58,6 +59,7 @@ Output::Output(const CommonFlags& flags) : json_(flags.json), csv_(flags.csv) {
       if (!named[i].second.empty() && named[i].second == named[k].second)
         throw refusal(named[i].first + " " + named[i].second, "is where " + named[k].first + " goes already");
   text_ = !flags.output.empty() ? flags.output : json_ == "-" || csv_ == "-" ? "" : "-";
+  colours_ = text_ == "-" && colours_wanted(flags.color, STDOUT_FILENO);
   for (const auto& [flag, path] : named) check_file(flag, path);
 }
 
@@ -79,6 +81,8 @@ void Output::check_file(const std::string& flag, const std::string& path) {
     throw refusal(flag + " " + path, std::string("cannot be written: ") + std::strerror(errno));
   if (!std::filesystem::exists(status)) created_.push_back(path);
 }
+
+void Output::text(std::string_view document) { write(text_, colours_ ? coloured(document) : std::string(document)); }
 
 void Output::write(const std::string& path, std::string_view document) {
   if (path.empty() || rank() > 0) return;

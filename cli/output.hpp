@@ -34,7 +34,8 @@ class Output {
 
   /// Write the whole document at once, into a new file that then takes the place of the old one, so that a full disk
   /// never costs an older result. A write that fails is kept for finish(), so that the others still go out.
-  void text(std::string_view document) { write(text_, document); }
+  /// On a terminal the text gets colours, as --color says.
+  void text(std::string_view document);
   void json(std::string_view document) { write(json_, document); }
   void csv(std::string_view document) { write(csv_, document); }
 
@@ -49,7 +50,8 @@ class Output {
  private:
   void write(const std::string& path, std::string_view document);
 
-  std::string text_, json_, csv_;     // "-" is stdout, empty: not wanted
+  std::string text_, json_, csv_;  // "-" is stdout, empty: not wanted
+  bool colours_ = false;
   std::vector<std::string> created_;  // by check_file(), not written yet
   std::string failure_;
 };

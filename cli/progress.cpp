@@ -17,15 +17,32 @@ constexpr std::size_t line_width = 78;
 
 }  // namespace
 
-Progress::Progress(bool quiet) : wanted_(!quiet && isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool quiet, bool verbose)
+    : wanted_(!quiet && isatty(STDERR_FILENO) == 1), verbose_(verbose && !quiet) {}
 
 Progress::~Progress() {
   if (drawn_) std::cerr << '\r' << std::string(line_width, ' ') << '\r' << std::flush;
+  begin_stage({});
+  for (const auto& [what, time] : stages_)
+    if (!what.empty() && what != "done")
+      std::cerr << fmt::format("limcycle: {:8.3f} s  {}\n", std::chrono::duration<double>(time).count(), what);
+}
+
+void Progress::begin_stage(std::string_view what) {
+  if (!verbose_ || (!stages_.empty() && stages_[stage_].what == what)) return;
+  const auto now = Clock::now();
+  if (!stages_.empty()) stages_[stage_].time += now - stage_begin_;
+  stage_begin_ = now;
+  const auto known = std::ranges::find(stages_, what, &Stage::what);
+  stage_ = static_cast<std::size_t>(known - stages_.begin());
+  if (known == stages_.end()) stages_.push_back({std::string(what), {}});
 }
 
 void Progress::show(double fraction, std::string_view what) {
-  if (!wanted_) return;
+  if (!wanted_ && !verbose_) return;
   const std::lock_guard lock(mutex_);
+  begin_stage(what);
+  if (!wanted_) return;
   const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
   std::string more;
   if (done > 0.0) more = ", " + as_waiting_time(passed() * (1.0 - done) / done) + " left";
@@ -34,8 +51,10 @@ void Progress::show(double fraction, std::string_view what) {
 }
 
 void Progress::count(std::size_t done, std::size_t total) {
-  if (!wanted_) return;
+  if (!wanted_ && !verbose_) return;
   const std::lock_guard lock(mutex_);
+  begin_stage("points of the sweep");
+  if (!wanted_) return;
   if (!first_) first_ = done;
   std::string more = fmt::format(", {} of {}", done, total);
   const double rate = static_cast<double>(done - std::min(*first_, done)) / passed();

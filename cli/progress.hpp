@@ -5,14 +5,16 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace limcycle {
 
 /// Progress bar with the time left on stderr: only on a terminal, only when the work takes more than a second, never
-/// with --quiet; erased at the end. Calls from several threads are fine.
+/// with --quiet; erased at the end. With --verbose it tells at the end, terminal or not, how long each thing took that
+/// was being done. Calls from several threads are fine.
 class Progress {
  public:
-  explicit Progress(bool quiet);
+  explicit Progress(bool quiet, bool verbose = false);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -26,11 +28,21 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  double passed() const;                            // s
-  void draw(double done, const std::string& more);  // with the mutex held
+  double passed() const;  // s
+  // With the mutex held:
+  void draw(double done, const std::string& more);
+  void begin_stage(std::string_view what);
+
+  struct Stage {
+    std::string what;
+    Clock::duration time{};
+  };
 
   std::mutex mutex_;
-  const bool wanted_;
+  const bool wanted_, verbose_;
+  std::vector<Stage> stages_;  // in the order in which they first began
+  std::size_t stage_ = 0;      // the one under way
+  Clock::time_point stage_begin_ = Clock::now();
   bool drawn_ = false;
   std::optional<std::size_t> first_;
   const Clock::time_point begin_ = Clock::now();

@@ -192,7 +192,7 @@ SensitivityReport study(const Case& from, const Loop& loop, const SensitivityFla
   if (flags.seed != 0) report.spread.seed = flags.seed;
   catch_interrupts();
   if (rank() == 0) {  // the others share the sweep only
-    Progress progress(flags.quiet);
+    Progress progress(flags.quiet, flags.verbose);
     progress.show(0.0, "the cycle and its neighbourhood");
     report.cycle = main_cycle(loop, from, report.notes);
     look_nearby(from, loop, flags, report);

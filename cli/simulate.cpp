@@ -5,6 +5,7 @@
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/text.hpp"
@@ -26,7 +27,7 @@ struct Answered {
 };
 
 Answered compute(const Case& from, const SimulateFlags& flags) {
-  Progress progress(flags.quiet);
+  Progress progress(flags.quiet, flags.verbose);
   const Loop loop = build_loop(*from.loop);
   SimulateOptions options = need_simulate(from);
   const double share = flags.no_check ? 1.0 : 0.4;
@@ -57,7 +58,7 @@ int run(SimulateFlags flags) {
   need_simulate(from);
   Output output(flags);
   const auto [result, second, energy] = compute(from, flags);
-  std::string text = simulate_text(from.title, result, second, energy);
+  std::string text = simulate_text(from.title, result, second, energy, units_of(*from.loop));
   if (!output.wants_csv() && !output.wants_json()) text += "\nThe samples: --csv FILE, --csv - or -o FILE.\n";
   output.text(text);
   if (output.wants_json()) output.json(simulate_json(provenance(flags, &from), result, second, energy));

@@ -46,6 +46,7 @@ std::string as_text(const SweepIdentity& identity) {
 
 void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
   flags.threads = 0;  // results do not depend on it
+  command.get_option("--threads")->capture_default_str();
   command.add_option("--store", flags.store, "Keep every point in this file as soon as it is computed")
       ->type_name("FILE");
   command.add_flag("--resume", flags.resume, "Go on with that file: only what is missing is computed")
@@ -78,7 +79,7 @@ SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& colu
   };
   catch_interrupts();
   {
-    Progress bar(flags.quiet);
+    Progress bar(flags.quiet, flags.verbose);
     SweepOptions options;
     options.threads = flags.threads;
     options.stop = interrupted;

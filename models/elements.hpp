@@ -42,7 +42,7 @@ struct KindList {
   template <class S>
   using On = std::variant<Kinds<S>...>;
 
-  /// Calls visit.template operator()<Kind>() for each kind.
+  /// Calls `visit.template operator()<Kind>()` for each kind.
   static void for_each(auto&& visit) { (visit.template operator()<Kinds>(), ...); }
 
   /// Whether E is one of the kinds, on double.

@@ -149,20 +149,24 @@ std::string worth_of(const std::string& method, const PredictReport& report, con
   const auto missed = static_cast<std::size_t>(
       std::count_if(report.missed.begin(), report.missed.end(), [&](const auto& one) { return one.method == method; }));
   const std::string subject = capital(method_in_words(method)) + " ";
+  const bool complete = std::ranges::find(report.incomplete, method) == report.incomplete.end();
+  const std::string which = report.cycles.size() == 1 ? "it" : counted(missed, "limit cycle");
+  if (own.empty() && !complete)
+    return subject + "found no limit cycle, but its search was not complete" +
+           (missed > 0 ? ": it may have overlooked " + which + "." : ".");
   if (own.empty() && missed == 0) {
     const bool agrees = report.cycles.empty() && count(report, Outcome::undecided) == 0;
     return subject + (agrees ? "predicts none either." : "predicts no limit cycle in the search box.");
   }
-  const std::string which = report.cycles.size() == 1 ? "it" : counted(missed, "limit cycle");
   // Harmonic balance starts from what other methods find and searches no box; a cycle that sticks it does not even try.
   const bool searches = method != "harmonic-balance";
   if (own.empty())
     return subject + (searches ? "predicts no limit cycle in the search box and misses " : "does not see ") + which +
            ".";
   std::string out = subject + (own.size() == 1 ? of_one(report, *own[0], units) : of_many(own));
-  const std::string verb = searches ? ", and misses " : ", and does not see ";
+  const std::string verb = !searches ? ", and does not see " : complete ? ", and misses " : ", and found nothing of ";
   if (missed > 0) out += verb + (report.cycles.size() == 1 ? "the one that exists" : which);
-  return out + ".";
+  return out + (complete ? "." : "; its search was not complete, so it may predict more.");
 }
 
 }  // namespace

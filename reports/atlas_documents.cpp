@@ -69,7 +69,11 @@ std::string atlas_csv(const StepperAtlas& atlas) {
 }
 
 std::string atlas_page(const StepperAtlas& atlas, const Provenance& provenance, const std::string& case_text) {
-  std::string body = "<h2>What became of every run</h2>\n" + atlas_picture(atlas);
+  std::string body =
+      "<h2>What became of every run</h2>\n" +
+      html_picture(atlas_picture(atlas),
+                   "Each square is a run: of a stepper, at a tolerance or step, at a stiffness before sliding. "
+                   "What became of it is its colour and its letter.");
   std::vector<std::string> laws;
   for (const auto& one : atlas.references)
     if (std::ranges::find(laws, one.law) == laws.end()) laws.push_back(one.law);
@@ -92,8 +96,7 @@ std::string atlas_page(const StepperAtlas& atlas, const Provenance& provenance, 
                     .body = body,
                     .command = "precision",
                     .flags = laws.size() > 1 ? "--stability --families" : "--stability",
-                    .case_text = case_text,
-                    .scripts = {}});
+                    .case_text = case_text});
 }
 
 }  // namespace limcycle

@@ -22,7 +22,7 @@ constexpr std::array<Look, 9> looks{{{RunClass::right, "#2e9e5b", ""},
                                      {RunClass::wrong_motion, "#e07b39", "w"},
                                      {RunClass::stops, "#b07cc6", "s"},
                                      {RunClass::chatters, "#5f8dd3", "f"},
-                                     {RunClass::misses_event, "#d1495b", "m"},
+                                     {RunClass::misses_event, "#c2354a", "m"},
                                      {RunClass::diverges, "#6b1d2a", "x"},
                                      {RunClass::too_slow, "#b9bec4", "t"}}};
 
@@ -57,8 +57,7 @@ std::string cell(double x, double y, const AtlasPoint& point) {
       fmt::format(R"(<g><title>{}</title><rect x="{:.1f}" y="{:.1f}" width="{:.0f}" height="{:.0f}" fill="{}"/>)",
                   html_escaped(words), x, y, square_width, square_height, look.colour);
   if (*look.letter != 0) {
-    const bool light =
-        point.kind == RunClass::rough || point.kind == RunClass::creeps || point.kind == RunClass::too_slow;
+    const bool light = point.kind != RunClass::misses_event && point.kind != RunClass::diverges;
     out += fmt::format(R"(<text class="cell{}" x="{:.1f}" y="{:.1f}">{}</text>)", light ? " dark" : "",
                        x + 0.5 * square_width, y + square_height - 3.5, look.letter);
   }

@@ -10,7 +10,7 @@
 namespace limcycle {
 namespace {
 
-std::string line(const std::string& name, const std::string& value) { return fmt::format("{:<12}{}\n", name, value); }
+std::string line(const std::string& name, const std::string& value) { return item(name, 10, value); }
 
 std::string poles_text(const CheckSummary& summary) {
   if (!summary.stable) return "not computed: the loop has a delay";
@@ -35,7 +35,7 @@ std::vector<std::string> parts(const CheckSummary& summary) {
 }  // namespace
 
 std::string check_text(const Provenance& provenance, const CheckSummary& summary) {
-  std::string text = line("title", provenance.title) + line("file", provenance.file);
+  std::string text = line("title", provenance.title) + fmt::format("{:<12}{}\n", "file", provenance.file);
   if (summary.plant) text += line("plant", *summary.plant) + line("controller", *summary.controller);
   text += line("elements", fmt::format("{}", fmt::join(parts(summary), ", ")));
   text += line("states", summary.states.empty() ? "none" : fmt::format("{}", fmt::join(summary.states, ", ")));

@@ -153,7 +153,9 @@ std::string claims_text(const std::vector<TestedClaim>& tested, bool verbose) {
 std::string claims_list(const std::vector<Claim>& claims) {
   std::size_t width = 0;
   for (const auto& claim : claims) width = std::max(width, claim.id.size());
-  std::string out = "Claims; limcycle claims ID tests one or those whose id begins so, without an id all\n\n";
+  std::string out =
+      wrapped("Claims. `limcycle claims ID` tests one, or those whose id begins so; without an id all are tested.") +
+      "\n";
   for (const auto& claim : claims) out += item(claim.id, width, claim.statement);
   return out;
 }

@@ -10,9 +10,10 @@ std::string continue_page(const ContinueReport& report, const Provenance& proven
                           const Units& units) {
   std::string body;
   if (!report.found.branches.empty()) {
-    body += "<h2>Bifurcation diagram</h2>\n<figure class=\"scroll\">\n" + continue_picture(report, units) +
-            "<figcaption>Amplitude and period of every limit cycle that was followed, over " +
-            html_escaped(report.path) + "; stable parts solid, unstable ones dashed.</figcaption>\n</figure>\n";
+    body += "<h2>Bifurcation diagram</h2>\n" +
+            html_picture(continue_picture(report, units),
+                         "Amplitude and period of every limit cycle that was followed, over " + report.path +
+                             "; stable parts solid, unstable ones dashed.");
     Table table = event_table(report, units);
     table.columns.push_back({"what happens", "", Align::left});
     std::size_t row = 0;

@@ -87,10 +87,10 @@ std::string df_text(const std::string& title, const std::vector<DfPoint>& points
     if (result.status != Status::converged) ++problems[to_string(result.status)];
     if (result.answered()) worst = std::max(worst, result.error);
   }
-  out += fmt::format("\n{} of {} points", results.size(), points.size());
-  if (worst >= 0.0) out += fmt::format("; worst estimated relative error of N {}", as_error(worst));
-  for (const auto& [method, n] : methods) out += fmt::format("; {} by {}", n, method);
-  out += ".\n";
+  std::string found = fmt::format("{} of {} points", results.size(), points.size());
+  if (worst >= 0.0) found += fmt::format("; worst estimated relative error of N {}", as_error(worst));
+  for (const auto& [method, n] : methods) found += fmt::format("; {} by {}", n, method);
+  out += "\n" + wrapped(found + ".");
   for (const auto& [status, n] : problems)
     out += fmt::format("{} {}: {}.\n", n, n == 1 ? "point" : "points",
                        status == "incomplete"  ? "the wanted accuracy was not reached (see the error)"

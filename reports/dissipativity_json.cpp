@@ -78,11 +78,13 @@ Json complex_list(const Eigen::VectorXcd& values) {
 
 Json extent(const Extent& extent) { return {number(extent.low), number(extent.high)}; }
 
+/// A set that is empty has no dimension, and no extent.
 Json stuck(const StuckSet& stuck) {
+  const bool exists = stuck.dimension >= 0;
   return {{"exists", answer(stuck.answer)},
-          {"dimension", stuck.dimension},
-          {"force", extent(stuck.force)},
-          {"output", extent(stuck.output)},
+          {"dimension", exists ? Json(stuck.dimension) : Json(nullptr)},
+          {"force", exists ? extent(stuck.force) : Json(nullptr)},
+          {"output", exists ? extent(stuck.output) : Json(nullptr)},
           {"attracts", answer(stuck.attracts)},
           {"eigenvalues", complex_list(stuck.eigenvalues)},
           {"marches", {{"tried", stuck.tried}, {"returned", stuck.returned}}}};
@@ -90,13 +92,14 @@ Json stuck(const StuckSet& stuck) {
 
 Json sliding(const DissipativityReport& report) {
   const SlidingStability& sliding = report.loop->sliding;
+  const bool slides = sliding.stable.decision != Decision::not_applicable;
   Json changes = Json::array();
   for (const auto& point : report.sliding_changes)
     changes.push_back(
         {{"speed", number(point.speed)}, {"frequency", number(point.frequency)}, {"stable_above", point.stable_above}});
   return {{"stable", answer(sliding.stable)},
-          {"velocity", number(sliding.velocity)},
-          {"force", number(sliding.force)},
+          {"velocity", slides ? number(sliding.velocity) : Json(nullptr)},
+          {"force", slides ? number(sliding.force) : Json(nullptr)},
           {"eigenvalues", complex_list(sliding.eigenvalues)},
           {"parameter", report.speed_of_sliding.empty() ? Json(nullptr) : Json(report.speed_of_sliding)},
           {"changes", changes}};

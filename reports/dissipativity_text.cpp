@@ -189,7 +189,7 @@ std::string sliding_text(const DissipativityReport& report) {
 }  // namespace
 
 std::string dissipativity_text(const std::string& title, const DissipativityReport& report) {
-  std::string text = title + "\n\n" + wrapped(dissipativity_answer(report));
+  std::string text = wrapped(title) + "\n" + wrapped(dissipativity_answer(report));
   if (report.over_all) text += "\nBounds\n" + bound_table(report).text();
   text += "\nPassivity\n";
   for (const auto& fact : passivity_facts(report)) text += item(fact[0], 10, fact[1]);

@@ -34,7 +34,7 @@ std::string one_html(const Experiment& one, bool several) {
   out += findings_html(one) + claims_html(one);
   for (const auto& figure : one.figures) {
     if (figure.panels.empty()) continue;
-    out += "<figure class=\"scroll\" tabindex=\"0\">\n" + experiment_figure(figure) + "</figure>\n";
+    out += html_picture(experiment_figure(figure), figure.heading);
   }
   if (!one.rows.empty())
     out += "<details><summary>Numbers</summary>\n" + html_table(experiment_table(one), "Numbers of " + one.name) +

@@ -48,7 +48,10 @@ std::string one_text(const Experiment& one, bool with_numbers) {
 std::string experiment_list(const std::vector<ExperimentEntry>& entries) {
   std::size_t width = 0;
   for (const auto& entry : entries) width = std::max(width, entry.name.size());
-  std::string out = "Experiments of the source documents; limcycle experiment NAME runs one, all of them: all\n\n";
+  std::string out = wrapped(
+                        "Experiments of the source documents. `limcycle experiment NAME` runs one, `limcycle "
+                        "experiment all` all of them.") +
+                    "\n";
   for (const auto& entry : entries) out += item(std::string(entry.name), width, std::string(entry.title));
   return out;
 }

@@ -1,37 +1,25 @@
 #include "limcycle/reports/figures.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "limcycle/reports/figure_numbers.hpp"
 #include "limcycle/reports/multipliers.hpp"
 #include "limcycle/reports/number.hpp"
-#include "limcycle/reports/nyquist_window.hpp"
+#include "limcycle/reports/nyquist_figure.hpp"
 #include "limcycle/reports/thin.hpp"
 
 namespace limcycle {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t points_of_cycle = 1000;
 constexpr std::size_t points_of_run = 1500;
-constexpr std::size_t points_of_family = 2000;
-
-/// Seven digits are more than a screen can show.
-Json rounded(double value) {
-  return std::isfinite(value) ? Json(std::stod(fmt::format("{:.7g}", value))) : Json(nullptr);
-}
 
 Json picked(const std::vector<double>& values, const std::vector<std::size_t>& index) {
   Json out = Json::array();
   for (const std::size_t i : index) out.push_back(i < values.size() ? rounded(values[i]) : Json(nullptr));
   return out;
 }
-
-std::string text_of(const Json& data) { return figure_data(data.dump(-1, ' ', false, Json::error_handler_t::replace)); }
 
 bool drawable(const Trace& trace) {
   const std::size_t n = trace.t.size();
@@ -114,90 +102,6 @@ Json curve(const Trace& trace, std::size_t most, double sticking, bool& whole) {
   return out;
 }
 
-/// The error discs of all predictions, and what is said of them.
-Json error_discs(const PredictReport& report, std::string& words) {
-  Json discs = Json::array();
-  std::string proved, guessed;
-  for (const auto& one : report.predictions) {
-    if (!one.trust || one.trust->band.discs.empty()) continue;
-    const Band& band = one.trust->band;
-    for (const auto& disc : band.discs)
-      discs.push_back({{"kind", to_string(band.kind)},
-                       {"re", rounded(disc.centre.real())},
-                       {"im", rounded(disc.centre.imag())},
-                       {"r", rounded(disc.radius)},
-                       {"w", rounded(disc.frequency)}});
-    if (band.kind == BandKind::rigorous)
-      proved += fmt::format("{} {} to {} rad/s", proved.empty() ? "" : " and", with_digits(band.frequency.low, 4),
-                            with_digits(band.frequency.high, 4));
-    else
-      guessed += fmt::format("{} {} rad/s", guessed.empty() ? "" : " and", with_digits(one.frequency, 3));
-  }
-  if (!proved.empty())
-    words += fmt::format(
-        " Rigorous error discs (Mees-Bergen, solid circles) are drawn over the band{} in which a cycle "
-        "is proved.",
-        proved);
-  if (!guessed.empty())
-    words += fmt::format(" The error {} (dashed) at{} {} heuristic.",
-                         guessed.find(" and") == std::string::npos ? "disc" : "discs", guessed,
-                         guessed.find(" and") == std::string::npos ? "is" : "are");
-  return discs;
-}
-
-Figure nyquist_figure(const PredictReport& report) {
-  const auto& picture = report.nyquist;
-  Json G = {{"re", Json::array()}, {"im", Json::array()}, {"w", Json::array()}};
-  const std::size_t stride = picture.G.size() / 2000 + 1;
-  for (std::size_t i = 0; i < std::min(picture.G.size(), picture.frequency.size()); i += stride) {
-    G["re"].push_back(rounded(picture.G[i].real()));
-    G["im"].push_back(rounded(picture.G[i].imag()));
-    G["w"].push_back(rounded(picture.frequency[i]));
-  }
-  Json family = {{"re", Json::array()}, {"im", Json::array()}, {"A", Json::array()}, {"w", Json::array()}};
-  std::size_t points = 0;
-  for (const auto& member : picture.minus_inverse_N) points += member.size();
-  const std::size_t skip = points / points_of_family + 1;
-  for (std::size_t m = 0; m < picture.minus_inverse_N.size(); ++m) {
-    const auto& member = picture.minus_inverse_N[m];
-    for (std::size_t i = 0; i < member.size(); i += skip) {
-      family["re"].push_back(rounded(member[i].real()));
-      family["im"].push_back(rounded(member[i].imag()));
-      family["A"].push_back(i < picture.family_amplitude.size() ? rounded(picture.family_amplitude[i]) : Json(nullptr));
-      family["w"].push_back(m < picture.family_frequency.size() ? rounded(picture.family_frequency[m]) : Json(nullptr));
-    }
-    for (const char* key : {"re", "im", "A", "w"}) family[key].push_back(nullptr);  // lifts the pen
-  }
-  Json roots = Json::array();
-  std::vector<std::complex<double>> places;
-  std::string crossings;
-  for (const auto& one : report.predictions) {
-    if (one.method != "describing-function") continue;
-    const auto place = response_at(picture, one.frequency);
-    if (!place) continue;
-    places.push_back(*place);
-    roots.push_back({{"re", rounded(place->real())},
-                     {"im", rounded(place->imag())},
-                     {"A", rounded(one.input_amplitude)},
-                     {"w", rounded(one.frequency)},
-                     {"verdict", to_string(one.verdict)}});
-    crossings +=
-        fmt::format("{} amplitude {} and {} rad/s ({})", crossings.empty() ? "" : ";",
-                    with_digits(one.input_amplitude, 3), with_digits(one.frequency, 3), to_string(one.verdict));
-  }
-  std::string about_discs;
-  const Json discs = error_discs(report, about_discs);
-  const auto box = nyquist_window(picture, places);
-  const Json window = {{"re", {box.re_from, box.re_to}}, {"im", {box.im_from, box.im_to}}};
-  return {"nyquist", "Nyquist plot and describing function",
-          places.empty() ? "The Nyquist curve G(jω) of the linear part and the curves −1/N(A,ω) of the element have no "
-                           "point in common "
-                           "at equal frequency: the describing function predicts no limit cycle."
-                         : "The Nyquist curve G(jω) of the linear part meets the curves −1/N(A,ω) of the element at" +
-                               crossings + "." + about_discs,
-          text_of({{"G", G}, {"family", family}, {"roots", roots}, {"discs", discs}, {"window", window}})};
-}
-
 Figure time_figure(const Shown& what, const Units& units) {
   bool whole = true;
   Json run = curve(*what.trace, points_of_cycle, what.cycle ? what.cycle->sticking_fraction : 0.0, whole);
@@ -209,8 +113,9 @@ Figure time_figure(const Shown& what, const Units& units) {
                            between(what.trace->output, units.force));
   if (what.cycle && what.cycle->sticking_fraction > 0.0)
     finding += fmt::format("; it sticks for {} of the time", as_percent(what.cycle->sticking_fraction));
-  return {"time", what.cycle ? "One period in time, twice" : "Simulation in time", finding + ".",
-          text_of({{"run", run}, {"labels", labels(units)}, {"name", what.name}, {"repeat", what.cycle != nullptr}})};
+  return {
+      "time", what.cycle ? "One period in time, twice" : "Simulation in time", finding + ".",
+      figure_text({{"run", run}, {"labels", labels(units)}, {"name", what.name}, {"repeat", what.cycle != nullptr}})};
 }
 
 Figure phase_figure(const PredictReport& report, const Units& units) {
@@ -246,7 +151,7 @@ Figure phase_figure(const PredictReport& report, const Units& units) {
   if (!cycles.empty() && !runs.empty()) finding += "; the first view is on the cycles";
   if (!all_whole) finding += "; of long simulations only the first part is drawn";
   return {"phase", "Phase plane", finding + ".",
-          text_of({{"cycles", cycles}, {"runs", runs}, {"labels", labels(units)}})};
+          figure_text({{"cycles", cycles}, {"runs", runs}, {"labels", labels(units)}})};
 }
 
 Figure loop_figure(const Shown& what, const Units& units) {
@@ -258,14 +163,14 @@ Figure loop_figure(const Shown& what, const Units& units) {
                       between(what.trace->output, units.force), between(what.trace->input, units.input),
                       between(what.trace->velocity, units.input.empty() ? "1/s" : units.input + "/s"),
                       whole ? "" : " (only the first part is drawn)"),
-          text_of({{"run", run}, {"labels", labels(units)}, {"name", what.name}})};
+          figure_text({{"run", run}, {"labels", labels(units)}, {"name", what.name}})};
 }
 
 }  // namespace
 
 std::vector<Figure> predict_figures(const PredictReport& report, const Units& units) {
   std::vector<Figure> out;
-  if (report.nyquist.G.size() >= 2) out.push_back(nyquist_figure(report));
+  if (report.nyquist.G.size() >= 2) out.push_back(nyquist_figure(report, units));
   const Shown what = shown(report);
   if (!what.trace) return out;
   out.push_back(time_figure(what, units));

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
+#include "limcycle/reports/case_in_page.hpp"
 #include "limcycle/reports/page/page.hpp"
 
 namespace limcycle {
@@ -45,7 +47,12 @@ std::string origin(const HtmlPage& page) {
   const auto entry = [](const std::string& name, const std::string& value) {
     return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html_escaped(value));
   };
-  std::string out = "<h2>Where this comes from</h2>\n<p>To make it again:</p>\n" + html_tag("pre", command) + "<dl>\n";
+  std::string out =
+      "<h2 id=\"origin\">Where this comes from</h2>\n<p>To make it again:</p>\n" + html_tag("pre", command);
+  if (!page.case_text.empty())
+    out += "<p>The same prediction from this page alone, which holds the case:</p>\n" +
+           html_tag("pre", "limcycle predict --from PAGE.html");
+  out += "<dl>\n";
   out += entry("program",
                fmt::format("limcycle {} ({})", from.version, from.commit.empty() ? "commit unknown" : from.commit));
   out += entry("built with", fmt::format("{}, {}", from.compiler, from.build_type));
@@ -56,6 +63,37 @@ std::string origin(const HtmlPage& page) {
   if (page.case_text.empty()) return out;
   return out + "<details open><summary>Case file</summary>\n<pre>" + html_escaped(page.case_text) +
          "</pre></details>\n";
+}
+
+/// Each selector of the rules in `style` after the class `owner`. Our pictures have plain rules only: no @, no
+/// comments.
+std::string scoped(std::string_view style, const std::string& owner) {
+  std::string out;
+  while (!style.empty()) {
+    const auto open = style.find('{'), close = style.find('}');
+    if (open == std::string_view::npos || close == std::string_view::npos || close < open) break;
+    std::string_view selectors = style.substr(0, open);
+    for (bool first = true; !selectors.empty(); first = false) {
+      const auto comma = std::min(selectors.find(','), selectors.size());
+      out += (first ? "." : ",.") + owner + " " + std::string(selectors.substr(0, comma));
+      selectors.remove_prefix(std::min(comma + 1, selectors.size()));
+    }
+    out += style.substr(open, close + 1 - open);
+    style.remove_prefix(close + 1);
+  }
+  return out;
+}
+
+/// A page holds several pictures, and a style element rules all of a page: each picture gets a class of its own style.
+std::string with_own_style(const std::string& svg) {
+  constexpr std::string_view begin = "<style>", end = "</style>", tag = "<svg ";
+  const auto from = svg.find(begin), to = svg.find(end);
+  if (!svg.starts_with(tag) || from == std::string::npos || to == std::string::npos) return svg;
+  const std::string_view style = std::string_view(svg).substr(from + begin.size(), to - from - begin.size());
+  const std::string owner = fmt::format("picture-{:x}", std::hash<std::string_view>{}(style)&0xFFFFFFFFu);
+  return fmt::format("{}class=\"{}\" {}{}{}", tag, owner,
+                     std::string_view(svg).substr(tag.size(), from + begin.size() - tag.size()), scoped(style, owner),
+                     std::string_view(svg).substr(to));
 }
 
 }  // namespace
@@ -93,7 +131,7 @@ std::string html_tag(const std::string& name, const std::string& text) {
 std::string html_table(const Table& table, const std::string& caption) {
   std::string out = fmt::format(
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-      "aria-label=\"{0}\"><table><caption>{0}</caption>\n<thead><tr>",
+      "aria-label=\"{0}\"><table><caption><span>{0}</span></caption>\n<thead><tr>",
       html_escaped(caption));
   for (const auto& column : table.columns) {
     const std::string heading =
@@ -116,18 +154,23 @@ std::string html_table(const Table& table, const std::string& caption) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string html_notes(const std::vector<std::string>& notes) {
+std::string html_picture(const std::string& svg, const std::string& caption) {
+  if (svg.empty()) return "";
+  std::string out = "<figure>\n<div class=\"picture scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" +
+                    html_escaped("Picture: " + caption) + "\">\n" + with_own_style(svg) + "</div>\n";
+  return out + "<figcaption>" + html_escaped(caption) + "</figcaption>\n</figure>\n";
+}
+
+std::string html_notes(const std::vector<std::string>& notes, int level) {
   if (notes.empty()) return "";
-  std::string out = "<h2>Notes</h2>\n<ul>\n";
+  std::string out = html_tag("h" + std::to_string(level), "Notes") + "<ul>\n";
   for (const auto& note : notes) out += html_tag("li", note);
   return out + "</ul>\n";
 }
 
 std::string html_page(const HtmlPage& page) {
   const std::string title = page.provenance.title;
-  const std::string policy = page.scripts.empty()
-                                 ? "style-src 'unsafe-inline'; img-src data:"
-                                 : "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
+  const std::string policy = "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -135,10 +178,13 @@ std::string html_page(const HtmlPage& page) {
       policy + "\">\n<link rel=\"icon\" href=\"data:,\">\n";
   out += R"(<meta name="generator" content="limcycle )" + html_escaped(page.provenance.version) + "\">\n";
   out += html_tag("title", title + " - limcycle") + "<style>" + std::string(page_style()) + "</style>\n</head>\n";
-  out += "<body>\n<header>\n" + html_tag("h1", title);
+  out += "<body>\n<a class=\"skip\" href=\"#results\">Skip to the results</a>\n<header>\n" + html_tag("h1", title);
   out += "<p class=\"answer\"><strong>" + html_escaped(page.answer) + "</strong></p>\n";
   for (const auto& sentence : page.worth) out += "<p class=\"worth\">" + html_escaped(sentence) + "</p>\n";
-  out += "</header>\n<main>\n" + page.body + "</main>\n<footer>\n" + origin(page) + "</footer>\n";
+  out += "</header>\n<main id=\"results\" tabindex=\"-1\">\n" + page.body + "</main>\n<footer>\n" + origin(page) +
+         "</footer>\n";
+  if (!page.case_text.empty()) out += case_element(page.provenance, page.case_text, page.command, page.flags);
+  if (!page.result.empty()) out += result_element(page.result);
   for (const auto& script : page.scripts) out += "<script>" + script + "</script>\n";
   return out + "</body>\n</html>\n";
 }

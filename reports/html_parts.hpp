@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "limcycle/reports/page/page.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 
@@ -12,14 +13,18 @@ namespace limcycle {
 /// not UTF-8 replaced.
 std::string html_escaped(std::string_view text);
 
-/// <name>text</name>, the text escaped.
+/// `<name>text</name>`, the text escaped.
 std::string html_tag(const std::string& name, const std::string& text);
 
 /// A table with its caption. Cells of a column "verdict" carry their text as a class too.
 std::string html_table(const Table& table, const std::string& caption);
 
-/// Heading and list; nothing without notes.
-std::string html_notes(const std::vector<std::string>& notes);
+/// A picture (SVG text) of the program in a page: a figure with its caption, in a box that scrolls by itself and stays
+/// light where the page is dark. Rules of its style hold for this picture only. Empty without a picture.
+std::string html_picture(const std::string& svg, const std::string& caption);
+
+/// Heading (h2, or another level) and list; nothing without notes.
+std::string html_notes(const std::vector<std::string>& notes, int level = 2);
 
 /// What a page is made of.
 struct HtmlPage {
@@ -30,11 +35,12 @@ struct HtmlPage {
   std::string command;               ///< that makes it again: "predict"; its case and overrides are added
   std::string flags{};               ///< of that command, as they are typed
   std::string case_text;             ///< the case file as read; empty: left out
-  std::vector<std::string> scripts{};
+  std::string result{};              ///< JSON document for programs; empty: none
+  std::vector<std::string> scripts{std::string(page_script())};  ///< the page's own last
 };
 
-/// A self-contained page: it asks nothing of the network (its own policy forbids it; without scripts it forbids those
-/// too) and tells where it comes from.
+/// A self-contained page that holds its case and its result for programs (case_in_page.hpp): it asks nothing of the
+/// network (its own policy forbids it) and tells where it comes from.
 std::string html_page(const HtmlPage& page);
 
 }  // namespace limcycle

@@ -117,6 +117,7 @@ std::string range_text(const ParameterEntry& parameter) {
 }
 
 std::string laws_text(const std::vector<CatalogueEntry>& entries) {
+  constexpr std::size_t page_width = 80;
   std::string text, group;
   const auto widest = std::ranges::max(entries, {}, [](const auto& entry) { return entry.kind.size(); }).kind.size();
   for (const auto& entry : entries) {
@@ -125,11 +126,13 @@ std::string laws_text(const std::vector<CatalogueEntry>& entries) {
       text +=
           fmt::format("{}{}\n  {:<{}}  states  equation\n", text.empty() ? "" : "\n", heading(group), "kind", widest);
     }
-    text += fmt::format("  {:<{}}  {:>6}  {}\n", entry.kind, widest, states_text(entry), shortened(entry.equation, 88));
+    text += fmt::format("  {:<{}}  {:>6}  {}\n", entry.kind, widest, states_text(entry),
+                        shortened(entry.equation, page_width - 12 - widest));
   }
-  return text +
-         "\nN: as many states as the lists have entries. 'limcycle laws KIND' tells the parameters, units, "
-         "defaults,\nsource and, of a friction law, the features of one of them.\n";
+  return text + "\n" +
+         wrapped(
+             "N: as many states as the lists have entries. 'limcycle laws KIND' tells the parameters, units, defaults, "
+             "source and, of a friction law, the features of one of them.");
 }
 
 std::string law_text(const std::vector<CatalogueEntry>& entries) {
@@ -137,7 +140,7 @@ std::string law_text(const std::vector<CatalogueEntry>& entries) {
   for (const auto& entry : entries) {
     if (!text.empty()) text += '\n';
     text += fmt::format("{} ({})\n{}", entry.kind, entry.group == "friction" ? "friction law" : entry.group,
-                        wrapped(entry.equation, 98, 2));
+                        wrapped(entry.equation, 80, 2));
     text += item("states", 9, states_sentence(entry));
     if (entry.features) text += features_text(*entry.features);
     if (!entry.source.empty()) text += item("source", 9, entry.source);
@@ -147,10 +150,13 @@ std::string law_text(const std::vector<CatalogueEntry>& entries) {
                             {"valid", "", Align::left},
                             {"meaning", "", Align::left}},
                 .rows = {}};
-    for (const auto& parameter : entry.parameters)
+    for (const auto& parameter : entry.parameters) {
+      const bool choice = parameter.type == "choice";  // its names are too long for a column of their own
       table.rows.push_back({parameter.key, parameter.unit == "1" ? "-" : parameter.unit, default_text(parameter),
-                            range_text(parameter), parameter.meaning});
-    if (!table.rows.empty()) text += '\n' + table.text(120);
+                            choice ? "a name" : range_text(parameter),
+                            parameter.meaning + (choice ? ": " + range_text(parameter) : "")});
+    }
+    if (!table.rows.empty()) text += '\n' + table.with_last_wrapped();
   }
   return text;
 }

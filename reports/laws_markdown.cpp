@@ -38,15 +38,17 @@ std::string table(const std::vector<std::string>& heading, const std::vector<std
   return text;
 }
 
-std::string section(const CatalogueEntry& entry) {
+/// `marks`: those of its heading.
+std::string section(const CatalogueEntry& entry, const char* marks) {
+  std::string text = fmt::format("\n{} {}\n\n```\n{}```\n", marks, entry.kind, wrapped(entry.equation, 100));
+  if (entry.features || !entry.source.empty()) text += '\n';
   const Features features = entry.features.value_or(Features{});
-  std::string text = fmt::format("\n## {}\n\n```\n{}```\n\n", entry.kind, wrapped(entry.equation, 100));
   const auto item = [&](const char* label, std::string_view words) {
     if (!words.empty()) text += fmt::format("- {}: {}\n", label, prose(words));
   };
   item("source", entry.source);
   item("confirmed", features.evidence);
-  item("memory", to_string(features.memory));
+  if (entry.features) item("memory", to_string(features.memory));
   item("drift", features.drift);
   item("rate of motion", features.rate);
   item("passive from v to F", features.passivity);
@@ -55,7 +57,30 @@ std::string section(const CatalogueEntry& entry) {
     rows.push_back({"`" + parameter.key + "`", parameter.unit == "1" ? "-" : cell(parameter.unit),
                     cell(prose(default_text(parameter))), cell(prose(range_text(parameter))),
                     cell(prose(parameter.meaning))});
-  return text + '\n' + table({"key", "unit", "default", "valid", "meaning"}, rows);
+  return rows.empty() ? text : text + '\n' + table({"key", "unit", "default", "valid", "meaning"}, rows);
+}
+
+/// What may stand in a loop beside friction, group by group.
+std::string other_groups(const std::vector<CatalogueEntry>& entries) {
+  struct Group {
+    const char *name, *heading, *words;
+  };
+  constexpr Group groups[] = {
+      {"element", "Elements",
+       "In `[loop.element]`, in series after the controller. A friction law may stand there too."},
+      {"error element", "Elements on the error",
+       "In `[loop.error]`, between the error e = r - y and the controller: this one, `dead-zone` and `saturation`."},
+      {"plant", "Plants", "In `[loop.plant]`. F is the friction, u the command."},
+      {"controller", "Controllers",
+       "In `[loop.controller]`. Any of them may have a friction compensation, a saturation and a lag behind it, in "
+       "this order."}};
+  std::string text;
+  for (const auto& group : groups) {
+    text += fmt::format("\n## {}\n\n{}\n", group.heading, group.words);
+    for (const auto& entry : entries)
+      if (entry.group == group.name) text += section(entry, "###");
+  }
+  return text;
 }
 
 }  // namespace
@@ -69,16 +94,20 @@ std::string laws_markdown(const std::vector<CatalogueEntry>& entries) {
     rows.push_back({fmt::format("[{0}](#{0})", entry.kind), states_text(entry), std::string(to_string(features.memory)),
                     clause(features.drift), cell(prose(features.rate)), clause(features.passivity),
                     cell(prose(features.evidence))});
-    sections += section(entry);
+    sections += section(entry, "##");
   }
-  return "# Friction laws\n\n<!-- Made by tools/laws --fix from what the program knows; a test compares the two. "
+  return "# Friction laws, elements, plants and controllers\n\n<!-- Made by tools/laws --fix from what the program "
+         "knows; a test compares the two. "
          "-->\n\n"
+         "What a case file may name as a `kind`, with its equation, keys and sources: the friction laws, then "
+         "[elements](#elements),\n[plants](#plants) and [controllers](#controllers).\n\n"
          "F opposes the velocity v; z is a deflection, g(v) the Stribeck level, sgn the sign. *States* counts the "
          "continuous\nones (N: as many as the lists have entries). *Memory*: local is the present state alone, "
          "non-local the return points,\nso that closed minor loops close. *Drift*: does a bounded periodic force "
          "below Fc move the body on, cycle by cycle.\n*Passive*: no more work can be taken out than was stored. The "
          "conformance tests hold every law against its row.\n\n" +
-         table({"law", "states", "memory", "drift", "rate of motion", "passive", "confirmed"}, rows) + sections;
+         table({"law", "states", "memory", "drift", "rate of motion", "passive", "confirmed"}, rows) + sections +
+         other_groups(entries);
 }
 
 }  // namespace limcycle

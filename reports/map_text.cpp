@@ -116,7 +116,7 @@ Table worth_table(const MapReport& report) {
 
 std::string map_text(const std::string& title, const MapReport& report) {
   const HuntingMap& map = report.map;
-  std::string out = title + "\n\n" + wrapped(map_answer(report)) + "\n";
+  std::string out = wrapped(title) + "\n" + wrapped(map_answer(report)) + "\n";
   if (map.known() < map.size())
     out += wrapped(fmt::format("{} of {} points are computed.", map.known(), map.size())) + "\n";
   out += wrapped("x: " + side(map.x, report.x_unit)) + wrapped("y: " + side(map.y, report.y_unit)) + "\n";

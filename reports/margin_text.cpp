@@ -39,9 +39,9 @@ std::string cell(const MarginSide& side, double own) {
 std::string step(const ParameterMargin& one) {
   const MarginSide& side = *one.nearest();
   const bool raise = std::abs(side.value) > std::abs(one.parameter.value);
-  return fmt::format("{} {} from {} to {} ({})", raise ? "raise" : "lower", one.parameter.path,
+  return fmt::format("{} {} from {} to {} ({}{})", raise ? "raise" : "lower", one.parameter.path,
                      with_digits(one.parameter.value, 4), Units::attach(place(side), unit_of(one)),
-                     change(side.value, one.parameter.value));
+                     change(side.value, one.parameter.value), side.diverges ? ", but it diverges beyond" : "");
 }
 
 const ParameterMargin* nearest(const MarginReport& report, bool friction) {

@@ -162,7 +162,7 @@ std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
 }
 
 std::string sensitivity_text(const std::string& title, const SensitivityReport& report, const Units& units) {
-  std::string out = title + "\n\n" + wrapped(sensitivity_answer(report));
+  std::string out = wrapped(title) + "\n" + wrapped(sensitivity_answer(report));
   if (report.cycle && !report.local.empty())
     out += "\nDerivatives of the cycle (exact, at the values of the case)\n" + derivative_table(report, units).text();
   if (report.cycle && !report.local.empty())

@@ -12,7 +12,18 @@ namespace {
 
 constexpr int run_digits = 6;
 
-Table ranges(const Simulation& run) {
+/// Unit of a column; empty: none, or one that only the case knows (states).
+std::string unit_of(const std::string& column, const Units& units) {
+  const auto rate_of = [](const std::string& unit) { return unit.empty() ? unit : unit + "/s"; };
+  if (column == "t") return "s";
+  if (column == "y") return units.y;
+  if (column == "dy_dt") return rate_of(units.y);
+  if (column == "loop.friction.input") return units.input;
+  if (column == "loop.friction.rate") return rate_of(units.input);
+  return column == "loop.friction.output" ? units.force : "";
+}
+
+Table ranges(const Simulation& run, const Units& units) {
   Table table{{{"column", "", Align::left}, {"first", ""}, {"least", ""}, {"greatest", ""}, {"last", ""}}, {}};
   for (std::size_t i = 0; i < run.columns.size(); ++i) {
     double least = INFINITY, greatest = -INFINITY;
@@ -20,22 +31,24 @@ Table ranges(const Simulation& run) {
       least = std::min(least, row.at(i));
       greatest = std::max(greatest, row.at(i));
     }
-    table.rows.push_back({run.columns[i], with_digits(run.rows.front().at(i), run_digits),
-                          with_digits(least, run_digits), with_digits(greatest, run_digits),
-                          with_digits(run.rows.back().at(i), run_digits)});
+    const std::string unit = unit_of(run.columns[i], units);
+    table.rows.push_back({run.columns[i] + (unit.empty() ? "" : " [" + unit + "]"),
+                          with_digits(run.rows.front().at(i), run_digits), with_digits(least, run_digits),
+                          with_digits(greatest, run_digits), with_digits(run.rows.back().at(i), run_digits)});
   }
   return table;
 }
 
-std::string outcome_in_words(const Simulation& run) {
+std::string outcome_in_words(const Simulation& run, const Units& units) {
   if (run.outcome == Outcome::cycle)
     return fmt::format("It settles on a cycle of period {} s and amplitude {}.", with_error(run.period, cycle_accuracy),
-                       with_error(run.amplitude, cycle_accuracy));
+                       Units::attach(with_error(run.amplitude, cycle_accuracy), units.y));
   if (run.outcome == Outcome::undecided) return {};
   return fmt::format("It comes to {}.", to_string(run.outcome));
 }
 
-/// What is zero to the last bit is not part of the motion and left out.
+}  // namespace
+
 Table energy_table(const EnergyBalance& energy) {
   Table table{{{"energy", "", Align::left}, {"", "", Align::left}, {"J", ""}}, {}};
   const auto add = [&](const char* what, const char* where, double value) {
@@ -59,8 +72,6 @@ Table energy_table(const EnergyBalance& energy) {
   add("dissipated", "at switches, by impulses", energy.impulses);
   return table;
 }
-
-}  // namespace
 
 std::string energy_in_words(const EnergyBalance& energy) {
   if (!energy.checks()) return "The law does not tell the energy that it stores, so that there is no balance to check.";
@@ -89,15 +100,15 @@ std::string agreement_in_words(const Agreement& second) {
 }
 
 std::string simulate_text(const std::string& title, const Simulation& run, const std::optional<Agreement>& second,
-                          const std::optional<EnergyBalance>& energy) {
+                          const std::optional<EnergyBalance>& energy, const Units& units) {
   std::string out = wrapped(title) + "\n";
   out += fmt::format("{} samples, {} steps of {}", run.rows.size(), run.steps, run.stepper);
   out += run.status == Status::converged ? ".\n" : fmt::format("; ended early: {}.\n", to_string(run.status));
   if (!run.why.empty()) out += wrapped(run.why);
-  if (const auto outcome = outcome_in_words(run); !outcome.empty()) out += wrapped(outcome);
+  if (const auto outcome = outcome_in_words(run, units); !outcome.empty()) out += wrapped(outcome);
   if (second) out += wrapped(agreement_in_words(*second));
   if (energy) out += wrapped(energy_in_words(*energy)) + "\n" + energy_table(*energy).text();
-  if (!run.rows.empty()) out += "\n" + ranges(run).text();
+  if (!run.rows.empty()) out += "\n" + ranges(run, units).text();
   std::map<std::string, std::size_t> kinds;
   for (const auto& event : run.events) ++kinds[event.what];
   if (!kinds.empty()) out += "\nLocated events\n";

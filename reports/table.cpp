@@ -190,6 +190,29 @@ std::string Table::text(std::size_t width) const {
   return total(widths) <= width ? straight(columns, cells, header_lines, widths) : turned(*this, width);
 }
 
+std::string Table::with_last_wrapped(std::size_t width) const {
+  Table narrow{columns, {}};
+  std::size_t before = 0;
+  for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
+    std::size_t widest = std::max(display_width(columns[i].heading), display_width(columns[i].unit) + 2);
+    for (const auto& row : rows) widest = std::max(widest, display_width(row.at(i)));
+    before += widest + gap.size();
+  }
+  const std::size_t left = std::max<std::size_t>(20, width - std::min(width, before));
+  for (const auto& row : rows) {
+    std::vector<std::string> first = row;
+    const std::string lines = wrapped(row.at(columns.size() - 1), left);
+    for (std::size_t from = 0; from < lines.size();) {
+      const std::size_t end = lines.find('\n', from);
+      first.back() = lines.substr(from, end - from);
+      narrow.rows.push_back(first);
+      first.assign(columns.size(), "");
+      from = end + 1;
+    }
+  }
+  return narrow.text(before + left);
+}
+
 std::string short_path(const std::string& path) { return path.starts_with("loop.") ? path.substr(5) : path; }
 
 }  // namespace limcycle

@@ -25,6 +25,7 @@ std::string yes_or_no(const std::optional<bool>& value);
 
 enum class Align { left, right };
 
+/// Heading, unit and alignment of a column.
 struct Column {
   std::string heading;
   std::string unit;  ///< printed under the heading; empty: none
@@ -39,6 +40,9 @@ struct Table {
   /// Aligned text, each line ended by a newline, no trailing spaces. Where a row would need more than `width` columns,
   /// the table is turned: one line a column, as many rows side by side as fit (always at least one).
   std::string text(std::size_t width = 80) const;
+
+  /// The same, but where a row would need more the last column is wrapped beside the others, in at least 20 columns.
+  std::string with_last_wrapped(std::size_t width = 80) const;
 };
 
 /// A number of the case where space is short: its path without "loop.".

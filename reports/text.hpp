@@ -25,7 +25,10 @@ inline constexpr std::size_t longest_table = 200;
 /// energy went (if that was counted), the range of each column, the located events.
 std::string simulate_text(const std::string& title, const Simulation& run,
                           const std::optional<Agreement>& second = std::nullopt,
-                          const std::optional<EnergyBalance>& energy = std::nullopt);
+                          const std::optional<EnergyBalance>& energy = std::nullopt, const Units& units = {});
+
+/// Where the energy of a run came from and went to. What is zero to the last bit is not part of the motion and left out.
+Table energy_table(const EnergyBalance& energy);
 
 /// Whether the energy of a run balances, one sentence; begins with "Warning" where it does not.
 std::string energy_in_words(const EnergyBalance& energy);
@@ -42,5 +45,9 @@ Table trust_table(const PredictReport& report, const Units& units);
 
 /// Whether the absence of oscillations is proved, in a sentence; empty where that was not asked.
 std::string absence_in_words(const PredictReport& report);
+
+/// What each method did, for --verbose: roots and residuals, runs with their steps, return maps. The same bytes however
+/// many threads; no times. `methods`: those that were asked for.
+std::string predict_efforts(const PredictReport& report, const Methods& methods);
 
 }  // namespace limcycle

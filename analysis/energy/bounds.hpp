@@ -37,6 +37,7 @@ struct WorstSeen {
   long inputs = 0, unfinished = 0;  ///< inputs tried; those that ran out of steps or did not end otherwise
 };
 
+/// Of every state and of the force.
 struct Bounds {
   std::vector<StateBound> states;
   ForceBound force;
@@ -44,6 +45,7 @@ struct Bounds {
   Status status = Status::converged;
 };
 
+/// Over which motions bounds are asked.
 struct BoundsOptions {
   double top_speed = infinite;  ///< |v| of inputs, m/s; of a search at most 1e3 velocity scales
   std::uint64_t seed = 0;

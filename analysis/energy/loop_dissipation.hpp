@@ -10,6 +10,7 @@
 
 namespace limcycle {
 
+/// What is asked of a loop.
 struct LoopDissipationOptions {
   /// Viscous friction (N s/m) that makes the friction law passive; negative: what it has to spare; NaN: not known. For
   /// a law with a threshold of passivity in sigma2 it is that threshold less sigma2.

@@ -36,6 +36,7 @@ struct Counterexample {
   std::string words;           ///< what the motion does, in a sentence
 };
 
+/// What passivity() is asked.
 struct PassivityOptions {
   double top_speed = infinite;  ///< |v| that inputs may have, m/s
   double accuracy = 1e-6;       ///< relative, of numbers that are searched for

@@ -8,6 +8,7 @@
 
 namespace limcycle {
 
+/// How accurately and how long the independent check integrates.
 struct ResimulationOptions {
   double tolerance = 1e-12;     ///< of one step, relative to the state and its scale
   long max_steps = 20'000'000;  ///< of the whole run

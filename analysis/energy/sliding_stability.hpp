@@ -29,6 +29,7 @@ struct HopfPoint {
   bool stable_above = false;  ///< sliding is stable at higher speeds
 };
 
+/// How finely speeds are scanned.
 struct HopfOptions {
   int points = 96;  ///< of the scan, at equal ratios of the speed
   std::function<bool()> stop;

@@ -30,6 +30,7 @@ struct StuckSet {
   int tried = 0, returned = 0;
 };
 
+/// How stuck states are checked by marches.
 struct StuckOptions {
   bool march = true;      ///< check by marches
   long max_steps = 4000;  ///< of each

@@ -15,6 +15,7 @@ using LawFamily = std::function<std::optional<Element<double>>(double)>;
 /// std::invalid_argument if it has no number of that name.
 LawFamily family_of(const Element<double>& element, std::string_view key);
 
+/// How accurately thresholds are located.
 struct ThresholdOptions {
   double accuracy = 1e-6;    ///< of a threshold, relative to it (or to the range, at 0)
   int scan = 33;             ///< values looked at before bisection; 2 (the ends) are enough where passivity is monotone
@@ -31,6 +32,7 @@ struct ThresholdChange {
   Passive below{}, above{};
 };
 
+/// The values of a number at which passivity changes.
 struct Threshold {
   Passive at_low{}, at_high{};
   std::vector<ThresholdChange> changes;  ///< ascending

@@ -5,12 +5,14 @@
 
 namespace limcycle {
 
+/// When Newton's method for a harmonic balance ends.
 struct BalanceNewtonOptions {
   double tolerance = 1e-9;  ///< of the largest scaled residual
   int max_iterations = 30;
   std::function<bool()> stop;
 };
 
+/// What Newton's method for a harmonic balance came to.
 struct BalanceSolution {
   Status status = Status::stalled;
   BalancePoint point;

@@ -19,6 +19,7 @@ struct CompositePoint {
   std::optional<double> bias = {};  ///< N; if it is given, mean_velocity is a result only
 };
 
+/// How accurately a composite describing function is computed.
 struct CompositeOptions {
   int harmonics = 1;           ///< orders 1..harmonics of x are returned, 1..64
   double accuracy = 1e-6;      ///< wanted relative error of the gain, 1e-11..1e-1

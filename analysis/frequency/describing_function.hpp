@@ -17,6 +17,7 @@ enum class DfMethod {
   quadrature,  ///< nodes graded towards reversals and split at switches
 };
 
+/// How describing functions are computed.
 struct DfOptions {
   int harmonics = 7;       ///< orders 1..harmonics are returned
   double accuracy = 1e-6;  ///< wanted relative error of the gain, 1e-13..1e-1
@@ -33,6 +34,7 @@ struct DfPoint {
   double bias = 0.0;
 };
 
+/// Gain and harmonics of the periodic output at one point.
 struct DescribingFunction {
   std::complex<double> gain;                    ///< N = (b1 + j a1)/A
   double mean = 0.0;                            ///< mean output

@@ -87,10 +87,11 @@ class Search {
         continue;
       }
       failures = 0;
-      found_ = true;
       point_ = now.point;
       outputs_ = now.outputs;
       residual_ = now.residual;
+      measure_change();
+      found_ = true;
       if (H >= std::min(5, options_.max_harmonics) && tail() <= options_.tail) break;
     }
     return found_ ? polish(failures) : failed(last_.status, no_balance());
@@ -203,6 +204,15 @@ class Search {
     return y;
   }
 
+  /// What the orders that were added last did to frequency and y's first harmonic.
+  void measure_change() {
+    const double frequency = point_.frequency;
+    const double first = std::abs(output_series(equations_.means(point_.mean_outputs, point_.free))(1));
+    if (found_) change_ = std::max(std::abs(frequency / frequency_ - 1.0), std::abs(first / first_ - 1.0));
+    frequency_ = frequency;
+    first_ = first;
+  }
+
   double tail() const { return tail_of(output_series(equations_.means(point_.mean_outputs, point_.free))); }
 
   static double tail_of(const VectorXcd& y) {
@@ -228,6 +238,7 @@ class Search {
     result.offset = result.y(0).imag();
     result.amplitude = half_peak_to_peak(result.y);
     result.tail = tail_of(result.y);
+    result.change = change_;
     result.residual = residual_;
     return result;
   }
@@ -251,7 +262,8 @@ class Search {
   BalancePoint point_;
   BalanceOutputs outputs_;
   BalanceSolution last_;
-  double residual_ = 0.0;
+  double residual_ = 0.0, change_ = 1.0;
+  double frequency_ = 0.0, first_ = 0.0;  ///< of the last number of harmonics that had a balance
   bool found_ = false, stopped_ = false;
 };
 

@@ -9,6 +9,7 @@
 
 namespace limcycle {
 
+/// How many harmonics, and when a balance is good.
 struct HarmonicBalanceOptions {
   int max_harmonics = 75;            ///< 1..400
   double accuracy = 1e-9;            ///< of the scaled equations, 1e-12..1e-3
@@ -42,8 +43,10 @@ struct HarmonicBalance {
   double first_harmonic = 0.0;  ///< amplitude of y's first harmonic
   double offset = 0.0;          ///< mean of y
   double tail = 0.0;            ///< largest of the highest third of the harmonics of y over the first; 1 where H is 1
-  double residual = 0.0;        ///< largest scaled defect of the equations, on finer panels than they were solved on
-  long evaluations = 0;         ///< of the elements' equations
+  double change = 1.0;    ///< of frequency or y's first harmonic, the larger relative one, by the last orders that
+                          ///< were added; 1 if only one number of harmonics had a balance
+  double residual = 0.0;  ///< largest scaled defect of the equations, on finer panels than they were solved on
+  long evaluations = 0;   ///< of the elements' equations
 };
 
 /// Harmonic balance of a loop with any number of elements: the inputs' harmonics and the frequency that reproduce

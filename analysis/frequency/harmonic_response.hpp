@@ -16,6 +16,7 @@ struct HarmonicResponse {
   long evaluations = 0;  ///< of the element's equations
 };
 
+/// How accurately the response to several harmonics is computed.
 struct HarmonicResponseOptions {
   int harmonics = 7;       ///< orders 0..harmonics are returned, 1..1000
   double accuracy = 1e-9;  ///< wanted error of every harmonic, relative to the largest; 1e-13..1e-1

@@ -22,6 +22,7 @@ struct SearchBox {
   double frequency_min, frequency_max;  ///< rad/s
 };
 
+/// Where the loop equation is asked for.
 struct SearchPoint {
   double amplitude;  ///< unit of the element's input
   double frequency;  ///< rad/s

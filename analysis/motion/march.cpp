@@ -48,6 +48,14 @@ AnyStepper make(StepperKind kind, const ErrorWeights& w, LoopField& field) {
   }
 }
 
+constexpr double longest_step = 1e15;  ///< s
+
+template <class E>
+constexpr bool holds_rate() {
+  if constexpr (CanHold<E>) return E::holds == Held::rate;
+  return false;
+}
+
 /// The field as Odeint's explicit steppers want it, and with its Jacobian as the implicit one does.
 auto right_side(LoopField& field) {
   return [&field](const State& x, State& dx, double t) { field.rate(x, dx, t); };
@@ -78,8 +86,14 @@ StepperKind choose_stepper(const Loop& loop, double rtol, bool driven) {
         },
         element);
   });
+  // A body that truly sticks waits as long as an integrator needs, many times the slowest time constant of the free
+  // motion, while the fastest poles (the filter of a derivative) keep an explicit step short.
+  const bool sticks = std::ranges::any_of(loop.elements, [](const auto& element) {
+    return std::visit([]<class E>(const E&) { return holds_rate<E>(); }, element);
+  });
   const auto moduli = pole_moduli(loop);
-  if (bristle || (!moduli.empty() && moduli.back() > 200.0 * moduli.front())) return StepperKind::rodas5p;
+  const double stiff = sticks ? 20.0 : 200.0;
+  if (bristle || (!moduli.empty() && moduli.back() > stiff * moduli.front())) return StepperKind::rodas5p;
   return explicit_stepper(rtol);
 }
 
@@ -237,6 +251,7 @@ Status March::step(double t_end) {
     dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
     fresh_ = false;
   }
+  dt_ = std::min(dt_, longest_step);  // at rest steps grow for ever
   double dt = std::min({dt_, dt_max_, t_end - t_});
   bool shortened = dt < dt_;  // by what is asked for, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_;

@@ -18,6 +18,7 @@ struct EndEvidence {
   bool on_purpose = false;
 };
 
+/// Why a branch ends.
 struct EndDiagnosis {
   double parameter = 0.0;
   double error = 0.0;  ///< of it, relative; NaN if the end was not located

@@ -10,6 +10,7 @@
 
 namespace limcycle {
 
+/// Range, accuracy and limits of a continuation.
 struct ContinuationOptions {
   double from = 0.0, to = 0.0;  ///< range of the parameter
   // Steps are arclength in (orbit in units of its own size, 6 times the share of the range).
@@ -24,6 +25,7 @@ struct ContinuationOptions {
   std::function<void(double)> progress;  ///< share of the range that was seen
 };
 
+/// A cycle of a branch and the value of the parameter that it belongs to.
 struct BranchPoint {
   double parameter = 0.0;
   Cycle cycle;  ///< without its trace

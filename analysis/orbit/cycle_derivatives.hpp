@@ -25,12 +25,14 @@ struct CycleDerivative {
   double multiplier_error = 0.0;  ///< the largest of those that are told
 };
 
+/// Derivatives of a cycle by every parameter.
 struct CycleDerivatives {
   Status status = Status::converged;
   std::string why;                  ///< one sentence, if there is no answer
   std::vector<CycleDerivative> by;  ///< in the order of the neighbours
 };
 
+/// How accurately derivatives of a cycle are computed.
 struct CycleDerivativeOptions {
   double rtol = 1e-10;  ///< of the integration; a second one, thirty times as loose, tells the errors
   bool multipliers = true;

@@ -53,6 +53,7 @@ struct CyclePieces {
   Eigen::VectorXd sizes;              ///< largest |state| met, at least 1e-6 of the typical one
 };
 
+/// How a cycle is cut in pieces.
 struct CutOptions {
   double rtol = 1e-10;
   long max_steps = 200000;

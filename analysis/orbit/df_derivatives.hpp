@@ -23,6 +23,7 @@ struct GainDerivative {
   double error = 0.0;  ///< estimated, absolute
 };
 
+/// A describing function and its derivatives.
 struct DfDerivatives {
   Status status = Status::converged;
   std::string why;            ///< one sentence, if there is no answer
@@ -32,6 +33,7 @@ struct DfDerivatives {
   std::vector<GainDerivative> by;  ///< in the order of the neighbours
 };
 
+/// How accurately derivatives of a describing function are computed.
 struct DfDerivativeOptions {
   double rtol = 1e-10;  ///< of the integration; a second one, thirty times as loose, tells the errors
   long max_steps = 200000;

@@ -14,6 +14,7 @@ struct EnsembleMember {
   LoopState start;
 };
 
+/// How long, how accurately and with how many threads an ensemble is marched.
 struct EnsembleOptions {
   double rtol = 1e-8;              ///< in (0, 0.1], see loop_weights
   double duration = infinite;      ///< s, of every member
@@ -43,6 +44,7 @@ struct EnsembleResult {
   bool in_lanes = false;   ///< else marched one by one
 };
 
+/// What became of every member.
 struct EnsembleRun {
   std::vector<EnsembleResult> members;  ///< in the order of what was asked
   double occupancy = 1.0;               ///< share of the lanes that did useful work

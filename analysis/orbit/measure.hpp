@@ -27,6 +27,7 @@ struct LocatedExtremes {
   /// step of the method there (and what its rate says is left) how much. A step that ends with a switch has the cubic.
   void include(LoopField& field, March& march, std::size_t index);
 };
+/// Least and greatest of a signal.
 struct Extremes {
   double low = 0.0, high = 0.0;
 };

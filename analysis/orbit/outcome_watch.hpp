@@ -28,6 +28,7 @@ struct OutputStep {
   double crossing(double level) const;
 };
 
+/// When the watch of a motion decides.
 struct OutcomeOptions {
   double rtol = 1e-8;             ///< of the march
   double amplitude_floor = 1e-9;  ///< swings of y below this have died out

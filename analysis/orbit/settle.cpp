@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
@@ -214,6 +215,9 @@ std::string_view to_string(Outcome outcome) {
 }
 
 Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options) {
+  if (loop.delay > 0.0)
+    throw std::invalid_argument("settle: the loop has a dead time, which a simulation from a state does not know; take "
+                                "in_time_domain() of it");
   return Settling(loop, start, options).run();
 }
 

@@ -12,6 +12,7 @@ namespace limcycle {
 enum class Outcome { rest, sliding, cycle, divergence, undecided };
 std::string_view to_string(Outcome outcome);
 
+/// How long and how accurately a motion is followed until it is clear what it comes to.
 struct SettleOptions {
   double rtol = 1e-7;              ///< of the simulation; looser ones may break stiction early
   double amplitude_floor = 1e-9;   ///< swings of y below this have died out
@@ -37,7 +38,7 @@ struct Settled {
 /// stable periodic solution with the same swing: a decaying stick-slip, whose swings shrink for ever, never is. Rest is
 /// one only when every rate has decayed faster than 1/t or is noise on the mean (see RestWatch): slow hunting, which
 /// waits at rest for thousands of seconds while an integrator winds up, never is. What neither test decides within the
-/// budget is undecided.
+/// budget is undecided. Throws std::invalid_argument for a loop with a dead time: see in_time_domain().
 Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options);
 
 /// State in which y (from the rest point of the linear part, elements without history) is displaced by `displacement`.

@@ -119,8 +119,10 @@ class Shooter {
     return Status::converged;
   }
 
-  /// Is the derivative already known, at this tolerance and close enough?
+  /// Is the derivative already known, at this tolerance and close enough? (A Jacobian that was too old is thrown away,
+  /// and at a grazed switch there is none.)
   bool is_linear_at(double rtol) const {
+    if (jacobian_.size() == 0 || linear_.status != Status::converged || linear_.derivative.size() == 0) return false;
     return std::abs(linear_rtol_ / rtol - 1.0) < 1e-9 && chart_->coordinates(linear_at_.x, state_.x).norm() < 1e-5;
   }
 
@@ -311,6 +313,16 @@ Status refine(Shooter& shooter, const ShootingOptions& options, double& rtol, do
   }
 }
 
+/// Does y swing by more than roundings? A body that sticks comes back to the section for any length of time.
+bool moves(const Loop& loop, const Cycle& cycle) {
+  const State typical = typical_sizes(loop);
+  double size = 0.0;
+  for (Eigen::Index i = 0; i < loop.C_y.size(); ++i)
+    size = std::max(size, std::abs(loop.C_y(i)) * typical[static_cast<std::size_t>(i)]);
+  for (const double y : cycle.trace.y) size = std::max(size, std::abs(y));
+  return cycle.amplitude > 1e-13 * size;
+}
+
 }  // namespace
 
 Section choose_section(const Loop& loop, const Trace& trace) {
@@ -358,6 +370,8 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
   if (status != Status::converged) return failed(status, shooter, "the fixed point was lost at the tight tolerance");
   if (!describe(loop, shooter, rtol, options.resolution, cycle))
     return failed(Status::stalled, shooter, "the cycle could not be followed");
+  if (!moves(loop, cycle))
+    return failed(Status::no_cycle, shooter, "what repeats itself stands still: rest, not a cycle");
   cycle.method = exact ? "exact" : "shooting";
   if (options.derivative_rtol > 0.0) {
     judge(shooter, result, exact, options.derivative_rtol);

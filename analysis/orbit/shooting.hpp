@@ -6,6 +6,7 @@
 
 namespace limcycle {
 
+/// How accurately a cycle is solved for.
 struct ShootingOptions {
   double rtol = 3e-12;       ///< of the integration; the answer is no better than this
   double tolerance = 1e-10;  ///< on the scaled residual |P(x) - x| of the return map

@@ -27,6 +27,7 @@ struct Signal {
   std::vector<double> breaks(double until) const;  ///< times at which value or slope jumps, in (0, until)
 };
 
+/// A run in time: how long, from where, under which signals, how accurately.
 struct SimulateOptions {
   double duration = 0.0;                  ///< s, > 0
   std::map<std::string, double> initial;  ///< by state name; states not named start at 0
@@ -41,6 +42,7 @@ struct SimulateOptions {
   std::function<void(LoopField&, March&, const std::vector<Mode>& modes)> watch;
 };
 
+/// A run in time: samples, events and what it came to.
 struct Simulation {
   std::vector<std::string>
       columns;  ///< "t", state names, then "y", "dy_dt", and per element "<path>.input", "<path>.output"

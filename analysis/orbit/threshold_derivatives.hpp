@@ -14,6 +14,7 @@ struct ThresholdDerivative {
   double error = 0.0;  ///< estimated, absolute
 };
 
+/// Derivatives of a threshold by every other parameter.
 struct ThresholdDerivatives {
   Status status = Status::converged;
   std::string why;                      ///< one sentence, if there is no answer

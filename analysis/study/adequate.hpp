@@ -18,6 +18,7 @@ struct SceneVariation {
   LoopParts parts;   ///< with friction
 };
 
+/// What adequate() is asked: how close is enough, and over what.
 struct AdequateOptions {
   double tolerance = 0.05;                 ///< on period and amplitude, relative
   double spread = 0.1;                     ///< by which each number of the law is moved, one at a time; 0: not at all
@@ -39,6 +40,7 @@ struct AdequatePoint {
   std::string why;           ///< unless within: what is wrong, one sentence
 };
 
+/// What adequate() answers: the least law, the cheapest method, and everything that was tried.
 struct AdequateReport {
   SceneAnswer best;      ///< of the case's own law by shooting
   std::string verified;  ///< by what it is confirmed, in words; empty: it is not

@@ -30,6 +30,7 @@ struct CompositeRoot {
   std::string note;  ///< one sentence, or empty
 };
 
+/// Settings of the search of the composite balance.
 struct CompositeSearchOptions {
   double frequency_min = 0.01, frequency_max = 1000.0;  ///< rad/s
   double force_min = 0.0, force_max = 0.0;              ///< N; 0: 0.2 and 100 times the level of the friction
@@ -38,6 +39,7 @@ struct CompositeSearchOptions {
   std::function<bool()> stop;                           ///< asked often; true ends the search
 };
 
+/// All roots that a search of the composite balance found.
 struct CompositeSearch {
   std::vector<CompositeRoot> roots;  ///< sorted by frequency
   std::vector<std::string> notes;    ///< what a user must know of the search

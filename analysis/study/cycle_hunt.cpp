@@ -24,14 +24,19 @@ CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const Sear
 const OutcomeOfStart& CycleHunt::settle_from(const LoopState& start, std::string name) {
   settle_.known = cycles_;
   Settled settled = settle(loop_, start, settle_);
-  OutcomeOfStart outcome{std::move(name), settled.outcome, std::move(settled.why), {}, std::move(settled.trace)};
+  OutcomeOfStart outcome{std::move(name),          settled.outcome, std::move(settled.why), {},
+                         std::move(settled.trace), settled.time,    settled.steps};
   outcome.cycle = settled.known;
-  if (settled.shot) outcome.cycle = merge(cycles_, settled.shot->cycle);
+  if (settled.shot) {
+    maps_ += settled.shot->maps;
+    outcome.cycle = merge(cycles_, settled.shot->cycle);
+  }
   outcomes_.push_back(std::move(outcome));
   return outcomes_.back();
 }
 
 std::optional<std::size_t> CycleHunt::keep(const ShootingResult& shot) {
+  maps_ += shot.maps;
   if (shot.status != Status::converged || !shot.cycle.stable) return std::nullopt;
   if (shot.cycle.amplitude < settle_.amplitude_floor) return std::nullopt;
   return merge(cycles_, shot.cycle);

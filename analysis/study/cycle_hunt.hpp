@@ -24,6 +24,8 @@ class CycleHunt {
   const std::vector<OutcomeOfStart>& outcomes() const { return outcomes_; }
   /// Of the simulations: that of SettleOptions, or less where bristles are too stiff for it.
   double rtol() const { return settle_.rtol; }
+  /// Return maps that shooting computed.
+  long maps() const { return maps_; }
 
  private:
   std::optional<std::size_t> keep(const ShootingResult& shot);
@@ -32,6 +34,7 @@ class CycleHunt {
   SettleOptions settle_;
   std::vector<Cycle> cycles_;
   std::vector<OutcomeOfStart> outcomes_;
+  long maps_ = 0;
 };
 
 }  // namespace limcycle

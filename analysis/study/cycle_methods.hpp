@@ -7,6 +7,7 @@
 
 namespace limcycle {
 
+/// With which settings the methods look for a cycle, and their budgets.
 struct CycleMethodsOptions {
   std::vector<double> tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
   int periods = 10;               ///< of a simulation

@@ -7,6 +7,7 @@
 
 namespace limcycle {
 
+/// How a stepper is run on a cycle.
 struct CycleRunOptions {
   StepperKind stepper = StepperKind::automatic;
   double rtol = 1e-7;

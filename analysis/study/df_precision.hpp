@@ -8,6 +8,7 @@
 
 namespace limcycle {
 
+/// With which settings a describing function is computed to see how right each is.
 struct DfPrecisionOptions {
   std::vector<double> accuracies{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
   int largest_fft = 1 << 16;  ///< samples a period

@@ -25,7 +25,10 @@ DfPredictions df_predictions(const Loop& loop, const LoopBalance& balance, const
   }
   if (options.stop && options.stop()) return result;
   if (result.predictions.empty()) result.absence = absence(loop, box);
-  if (options.nyquist) result.nyquist = nyquist_picture(loop, box, options.stop);
+  if (!options.nyquist) return result;
+  std::vector<SearchPoint> roots;
+  for (const Root& root : found.roots) roots.push_back({root.amplitude, root.frequency});
+  result.nyquist = nyquist_picture(loop, box, roots, options.stop);
   return result;
 }
 

@@ -19,8 +19,8 @@ class RootStudy {
       found_.notes.push_back("the rest of the loop has an undamped resonance at " + short_number(pole) +
                              " rad/s: roots within 0.1 % of it are not looked for");
     for (const SearchBox& box : between_undamped_poles()) {
-      auto part = search(box);
-      found_.roots.insert(found_.roots.end(), part.roots.begin(), part.roots.end());
+      const auto roots = search(box);
+      found_.roots.insert(found_.roots.end(), roots.begin(), roots.end());
     }
     return std::move(found_);
   }
@@ -51,7 +51,7 @@ class RootStudy {
 
   /// On a belt N has a kink where the velocity amplitude A w is the mean velocity: there the search runs over (A w, w),
   /// in which that line is straight.
-  RootSearch search(SearchBox box) {
+  std::vector<Root> search(SearchBox box) {
     RootSearchOptions options;
     options.interrupted = stop_;
     // The other element's kink crosses the whole box; of gravity it is a ridge of the free swing, on which f is small.
@@ -76,23 +76,70 @@ class RootStudy {
         if (speed > 0.0) point.amplitude /= point.frequency;
       balance_.prepare(points, accuracy);
     };
-    auto found =
-        find_roots([&](double A, double w, double accuracy) { return balance_(speed > 0.0 ? A / w : A, w, accuracy); },
-                   box, options);
-    if (speed > 0.0) {
-      for (Root& root : found.roots) root.amplitude /= root.frequency;
-      std::erase_if(found.roots, [&](const Root& root) {
-        return root.amplitude < box_.amplitude_min || root.amplitude > box_.amplitude_max;
-      });
+    std::vector<Root> roots;
+    for (int branch = 0; branch < (balance_.has_second() ? AmplitudeBranches::most : 1); ++branch) {
+      const auto f = [&](double A, double w, double accuracy) {
+        const double amplitude = speed > 0.0 ? A / w : A;
+        return balance_.has_second() ? balance_.on_branch(branch, amplitude, w, accuracy)
+                                     : balance_(amplitude, w, accuracy);
+      };
+      auto found = find_roots(f, box, options);
+      if (branch > 0 && found.status == Status::not_finite) break;
+      for (Root& root : found.roots) {
+        if (speed > 0.0) root.amplitude /= root.frequency;
+        roots.push_back(root);
+      }
+      note_doubts(found, box);
     }
-    if (found.status != Status::converged && found.status != Status::no_cycle) {
-      found_.notes.push_back("the root search between " + short_number(box.frequency_min) + " and " +
-                             short_number(box.frequency_max) + " rad/s ended with status " +
-                             std::string(to_string(found.status)) + ": roots may be missing");
-      found_.status =
-          found.status == Status::not_finite || found.status == Status::interrupted ? found.status : Status::incomplete;
+    if (balance_.has_second()) add_roots_from_second(box, options, roots);
+    return without_doubles(std::move(roots));
+  }
+
+  /// The search over the amplitude of the second element's input: that of the main element follows from it.
+  void add_roots_from_second(const SearchBox& box, RootSearchOptions options, std::vector<Root>& roots) {
+    const auto [from, to] = balance_.second_range();
+    const SearchBox second{from, to, box.frequency_min, box.frequency_max};
+    options.prepare = {};
+    options.amplitude_hints.clear();
+    for (int branch = 0; branch < AmplitudeBranches::most; ++branch) {
+      const auto f = [&](double a, double w, double accuracy) {
+        return balance_.from_second(branch, a, w, accuracy).left;
+      };
+      auto found = find_roots(f, second, options);
+      if (found.status == Status::not_finite) break;
+      for (Root& root : found.roots) {
+        root.amplitude = balance_.from_second(branch, root.amplitude, root.frequency, 1e-12).amplitude;
+        roots.push_back(root);
+      }
     }
-    return found;
+  }
+
+  /// Those in the box, each once: two branches meet where one turns into the other, and a second element is searched
+  /// from both sides.
+  std::vector<Root> without_doubles(std::vector<Root> roots) const {
+    const auto near = [](double a, double b) { return std::abs(a / b - 1.0) < 1e-7; };
+    std::vector<Root> kept;
+    for (const Root& root : roots) {
+      constexpr double edge = 1e-9;
+      if (!(root.amplitude > box_.amplitude_min * (1.0 - edge) && root.amplitude < box_.amplitude_max * (1.0 + edge)))
+        continue;
+      if (std::ranges::none_of(kept, [&](const Root& other) {
+            return near(other.amplitude, root.amplitude) && near(other.frequency, root.frequency);
+          }))
+        kept.push_back(root);
+    }
+    std::ranges::sort(kept, {}, [](const Root& root) { return std::pair(root.frequency, root.amplitude); });
+    return kept;
+  }
+
+  void note_doubts(const RootSearch& found, const SearchBox& box) {
+    if (found.status == Status::converged || found.status == Status::no_cycle) return;
+    std::string note = "the root search between " + short_number(box.frequency_min) + " and " +
+                       short_number(box.frequency_max) + " rad/s ended with status " +
+                       std::string(to_string(found.status)) + ": roots may be missing";
+    if (std::ranges::find(found_.notes, note) == found_.notes.end()) found_.notes.push_back(std::move(note));
+    found_.status =
+        found.status == Status::not_finite || found.status == Status::interrupted ? found.status : Status::incomplete;
   }
 
   const Loop& loop_;

@@ -6,6 +6,7 @@
 
 namespace limcycle {
 
+/// All roots of the first-harmonic balance in a box.
 struct DfRoots {
   std::vector<Root> roots;
   std::vector<std::string> notes;  ///< where roots may be missing

@@ -19,6 +19,7 @@ struct PassivityRange {
   double from = 0.0, to = 0.0;
 };
 
+/// What dissipativity() is asked beside the loop.
 struct DissipativityOptions {
   double speed = 1.0;                   ///< |v| up to which the force is bounded, m/s
   PassivityOptions passivity;           ///< top speed of the motions that energy may be taken by, seed, stop, progress
@@ -31,6 +32,7 @@ struct SigmaThreshold {
   double value = 0.0, error = 0.0;  ///< N s/m; infinite: none is enough
 };
 
+/// Everything that energy says of a law and its loop.
 struct DissipativityReport {
   std::string kind, path;             ///< of the element: "lugre", "loop.friction"
   bool friction = true;               ///< else its input and output are what supply is made of

@@ -68,7 +68,7 @@ class Following {
       tell(0.2 * i / options_.scan, "looking for a cycle");
       auto cycles = cycles_at(p);
       if (cycles.empty()) continue;
-      report_.notes.push_back("there is no limit cycle at " + short_number(report_.start, 6) +
+      report_.notes.push_back("no limit cycle was found at " + short_number(report_.start, 6) +
                               "; the one followed was found at " + short_number(p, 6));
       report_.start = p;
       return cycles;

@@ -8,6 +8,7 @@
 
 namespace limcycle {
 
+/// What follow_cycles() is asked.
 struct FollowOptions {
   ContinuationOptions continuation;  ///< from, to; its stop and progress are set from those of `predict`
   PredictOptions predict;            ///< how cycles are found at the start; its search box is for the case's own value

@@ -20,6 +20,7 @@ struct HuntingAnswer {
   double period;     ///< of the same, s
 };
 
+/// How a loop of many is simulated.
 struct HuntingQuestion {
   std::vector<double> displacements;  ///< of y, one start each
   double amplitude_floor = 1e-9, amplitude_ceiling = 1e6;

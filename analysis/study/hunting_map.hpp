@@ -24,6 +24,7 @@ struct MapAxis {
 enum class Worth { right, biased, missed, wrong, undecided, not_applicable };  // "wrong" is printed "false"
 std::string_view to_string(Worth worth);
 
+/// What one method was worth at a point of a map.
 struct MethodAtPoint {
   Worth worth = Worth::not_applicable;
   double amplitude = NAN;  ///< predicted over true, of y's first harmonic, at the prediction nearest to a cycle; or NaN

@@ -145,7 +145,10 @@ LoopBalance::LoopBalance(const Loop& loop)
       symmetric_(symmetry(loop).has_value()) {
   const Sorted sorted = sort(loop);
   beside_ = sorted.beside;
-  if (!sorted.others.empty()) other_ = sorted.others.front();
+  if (!sorted.others.empty()) {
+    other_ = sorted.others.front();
+    second_.emplace(loop.elements[*other_]);
+  }
   if (!is_friction(loop, main_) || symmetric_) return;
   bool exact = false;
   const Port& port = loop.ports[main_];
@@ -218,62 +221,10 @@ Complex LoopBalance::gain(double amplitude, double frequency, double accuracy) c
   return result.gain;
 }
 
-Complex LoopBalance::other_gain(double input_amplitude, double frequency, double accuracy) const {
-  const auto exact = exact_gain(loop_->elements[*other_], input_amplitude, frequency, 0.0);
-  return exact ? *exact : df(loop_->elements[*other_], input_amplitude, frequency, 0.0, accuracy).gain;
-}
-
-/// Output of the other element when the rest put out W: its input amplitude is the smallest a with
-/// a |1 - H_oo N_o(a)| = |sum H_oj W_j|, by a scan upwards and bisection.
-Complex LoopBalance::other_output(const Eigen::MatrixXcd& H, const Eigen::VectorXcd& W, double frequency,
-                                  double accuracy) const {
-  const auto o = static_cast<Index>(*other_);
-  const Complex reached = H.row(o) * W;
-  const double wanted = std::abs(reached);
-  if (wanted == 0.0) return 0.0;
-  const auto excess = [&](double a) {
-    return a * std::abs(1.0 - H(o, o) * other_gain(a, frequency, accuracy)) - wanted;
-  };
-  double low = 0.0, high = 1e-3 * wanted;
-  for (int i = 0; i < 400 && excess(high) < 0.0; ++i) {
-    low = high;
-    high *= 1.15;
-  }
-  for (int i = 0; i < 60; ++i) {
-    const double mid = 0.5 * (low + high);
-    (excess(mid) < 0.0 ? low : high) = mid;
-  }
-  const Complex N = other_gain(0.5 * (low + high), frequency, accuracy);
-  return N * reached / (1.0 - H(o, o) * N);
-}
-
 Complex LoopBalance::operator()(double amplitude, double frequency, double accuracy) const {
-  if (loop_->elements.size() == 1) {
-    const Complex N = gain(amplitude, frequency, accuracy);
-    return std::isfinite(N.real()) ? 1.0 - N * loop_->element_response(frequency)(0, 0) : undefined;
-  }
-  const Eigen::VectorXcd W = outputs(amplitude, frequency, accuracy);
-  if (!W.allFinite()) return undefined;
-  return 1.0 - (loop_->element_response(frequency).row(static_cast<Index>(main_)) * W).value() / amplitude;
-}
-
-Complex LoopBalance::response(double amplitude, double frequency, int order) const {
-  const Eigen::MatrixXcd H = loop_->element_response(order * frequency);
-  const auto m = static_cast<Index>(main_);
-  if (loop_->elements.size() == 1) return H(m, m);
-  Eigen::VectorXcd W = outputs(amplitude, frequency, 1e-9);
-  const Eigen::VectorXcd inputs = loop_->element_response(frequency) * W;
-  Eigen::VectorXcd N = Eigen::VectorXcd::Zero(W.size());  // of those that answer the harmonic that comes back to them
-  const auto answers = [&](Index k) {
-    N(k) = inputs(k) == 0.0 ? 0.0 : W(k) / inputs(k);
-    W(k) = 0.0;
-  };
-  if (other_) answers(static_cast<Index>(*other_));
-  for (const auto& [index, factor] : beside_)
-    if (pulls_back(*loop_, index)) answers(static_cast<Index>(index));
-  const Index ne = W.size();
-  const Eigen::MatrixXcd back = Eigen::MatrixXcd::Identity(ne, ne) - H * N.asDiagonal();
-  return back.fullPivLu().solve(H * W)(m) / W(m);
+  if (loop_->elements.size() > 1) return oscillation(amplitude, frequency, accuracy).left;
+  const Complex N = gain(amplitude, frequency, accuracy);
+  return std::isfinite(N.real()) ? 1.0 - N * loop_->element_response(frequency)(0, 0) : undefined;
 }
 
 Complex LoopBalance::beside_gain(const Beside& beside, double amplitude, double frequency, double mean,
@@ -284,8 +235,8 @@ Complex LoopBalance::beside_gain(const Beside& beside, double amplitude, double 
   return exact ? *exact : df(loop_->elements[beside.index], A, frequency, mean, accuracy).gain;
 }
 
-/// Phasors (sine reference) of all element outputs on the predicted oscillation.
-Eigen::VectorXcd LoopBalance::outputs(double amplitude, double frequency, double accuracy) const {
+/// Phasors (sine reference) of the outputs of the main element and of those beside it.
+Eigen::VectorXcd LoopBalance::own_outputs(double amplitude, double frequency, double accuracy) const {
   Eigen::VectorXcd W = Eigen::VectorXcd::Zero(std::ssize(loop_->elements));
   W(static_cast<Index>(main_)) = gain(amplitude, frequency, accuracy) * amplitude;
   const Eigen::VectorXd means = has_gravity() ? mean_inputs(amplitude, frequency, accuracy) : Eigen::VectorXd();
@@ -294,8 +245,12 @@ Eigen::VectorXcd LoopBalance::outputs(double amplitude, double frequency, double
     const double mean = is_friction(*loop_, index) || means.size() == 0 ? mean_velocity_ : means(k);
     W(k) = beside_gain({index, factor}, amplitude, frequency, mean, accuracy) * factor * amplitude;
   }
-  if (other_) W(static_cast<Index>(*other_)) = other_output(loop_->element_response(frequency), W, frequency, accuracy);
   return W;
+}
+
+/// The same of all elements on the predicted oscillation.
+Eigen::VectorXcd LoopBalance::outputs(double amplitude, double frequency, double accuracy) const {
+  return other_ ? oscillation(amplitude, frequency, accuracy).outputs : own_outputs(amplitude, frequency, accuracy);
 }
 
 double LoopBalance::output_amplitude(double amplitude, double frequency) const {
@@ -304,7 +259,8 @@ double LoopBalance::output_amplitude(double amplitude, double frequency) const {
 
 std::optional<bool> LoopBalance::stable(double amplitude, double frequency, int index) const {
   if (index == 0) return std::nullopt;
-  if (index < 0) return false;
+  const auto returns = second_ ? pair_returns(amplitude, frequency) : std::optional(index > 0);
+  if (returns != true) return returns;
   if (loop_->delay > 0.0) return std::nullopt;  // the other roots of a loop with delay are infinitely many
   if (loop_->elements.size() > 1) return true;
   // The quasi-linear loop, N acting as Re N + (Im N / w) d/dt: all its other roots must lie in the left half plane.

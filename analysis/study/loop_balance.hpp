@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/cycle.hpp"
 #include "limcycle/analysis/frequency/root_search.hpp"
+#include "limcycle/analysis/study/amplitude_branches.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {
@@ -15,7 +16,8 @@ namespace limcycle {
 /// the forward element) against everything else. Elements that see the same input but for a factor (a friction
 /// compensation; a dead zone on the error of a rigid servo; gravity on a pendulum) act beside it. One more memoryless
 /// element (a saturated command, an element on the error) is eliminated by its own describing function at the amplitude
-/// that they cause.
+/// that they cause. Several amplitudes may do (see AmplitudeBranches): of an amplitude of the main element and a
+/// frequency all is then told for the one that comes nearest to satisfying the loop condition.
 class LoopBalance {
  public:
   /// Why the plain describing function does not apply to this loop, or nothing.
@@ -25,6 +27,21 @@ class LoopBalance {
 
   /// 1 + N(A,w) G(jw); NaN where N does not exist (no half-wave symmetric steady state in a symmetric loop).
   std::complex<double> operator()(double amplitude, double frequency, double accuracy) const;
+
+  /// Whether the amplitude of a second element is eliminated.
+  bool has_second() const { return second_.has_value(); }
+  /// The same on one branch of the second element's amplitude, 0..AmplitudeBranches::most - 1; NaN where it has none.
+  std::complex<double> on_branch(int branch, double amplitude, double frequency, double accuracy) const;
+  /// A point of the loop condition that is told from the second element's side.
+  struct FromSecond {
+    std::complex<double> left;  ///< 1 - what comes back to the second element's input, over it; NaN: no such motion
+    double amplitude;           ///< of the main element's input
+  };
+  /// The loop condition with the roles exchanged: the second element's input has this amplitude, that of the main
+  /// element follows, on one of its branches. Each finds roots in a wide region that the other sees in a narrow wedge.
+  FromSecond from_second(int branch, double amplitude, double frequency, double accuracy) const;
+  /// Amplitudes of the second element's input between which it matters that it is no linear one.
+  std::pair<double, double> second_range() const;
   /// Computes at once what operator() will be asked at these points with this accuracy. From one thread at a time.
   void prepare(const std::vector<SearchPoint>& points, double accuracy) const;
   /// N(A,w) of the main element.
@@ -62,13 +79,28 @@ class LoopBalance {
     std::vector<std::size_t> others;
   };
   static Sorted sort(const Loop& loop);
+  /// What is known of the second element.
+  struct Second {
+    explicit Second(const Element<double>& element) : reach(element) {}
+    ElementReach reach;
+    std::shared_ptr<AmplitudeBranches> own = std::make_shared<AmplitudeBranches>();   ///< of its own amplitude
+    std::shared_ptr<AmplitudeBranches> main = std::make_shared<AmplitudeBranches>();  ///< of the main element's
+  };
+  struct Oscillation {
+    int branch;
+    Eigen::VectorXcd outputs;   ///< phasors, sine reference
+    std::complex<double> left;  ///< 1 + N G
+  };
   std::complex<double> other_gain(double input_amplitude, double frequency, double accuracy) const;
-  std::complex<double> other_output(const Eigen::MatrixXcd& H, const Eigen::VectorXcd& W, double frequency,
-                                    double accuracy) const;
+  std::pair<double, double> main_range(double back) const;
+  std::vector<Oscillation> oscillations(double amplitude, double frequency, double accuracy) const;
+  std::optional<bool> pair_returns(double amplitude, double frequency) const;
+  Oscillation oscillation(double amplitude, double frequency, double accuracy) const;
   std::complex<double> beside_gain(const Beside& beside, double amplitude, double frequency, double mean,
                                    double accuracy) const;
   bool has_gravity() const;
   Eigen::VectorXd mean_state(double amplitude, double frequency, double accuracy, bool& exact) const;
+  Eigen::VectorXcd own_outputs(double amplitude, double frequency, double accuracy) const;
   Eigen::VectorXcd outputs(double amplitude, double frequency, double accuracy) const;
 
   class MainGain;
@@ -78,6 +110,7 @@ class LoopBalance {
   std::shared_ptr<MainGain> main_gain_;
   std::vector<Beside> beside_;        ///< not the main element itself
   std::optional<std::size_t> other_;  ///< the one that is eliminated
+  std::optional<Second> second_;      ///< the same one
   bool symmetric_ = false;
   double mean_velocity_ = 0.0;
 };

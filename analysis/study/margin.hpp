@@ -33,10 +33,12 @@ struct MarginSide {
   /// What happens to the branch of cycles there, and the cycle; if it was followed to a fold or a change of stability.
   std::optional<BranchEvent::Type> event = {};
   std::optional<Cycle> cycle = {};
+  bool diverges = false;  ///< hunting ends there because the motion grows without bound beyond
   bool found() const { return what == What::ends || what == What::begins; }
 };
 std::string_view to_string(MarginSide::What what);
 
+/// One parameter: what happens upwards and downwards of its own value.
 struct ParameterMargin {
   MarginParameter parameter;
   MarginSide up, down;  ///< towards larger and smaller magnitude, the sign kept
@@ -47,6 +49,7 @@ struct ParameterMargin {
   double distance() const;
 };
 
+/// How far margin() looks, and how cycles are found.
 struct MarginOptions {
   double factor = 10.0;     ///< how far either way
   double accuracy = 1e-7;   ///< relative, of the cycles that are followed
@@ -54,6 +57,7 @@ struct MarginOptions {
   PredictOptions predict;   ///< how cycles are found at the own values; stop and progress are used throughout
 };
 
+/// What margin() answers for each parameter.
 struct MarginReport {
   bool hunts = false;
   std::vector<Cycle> cycles;                ///< at the own values

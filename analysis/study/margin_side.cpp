@@ -11,8 +11,9 @@ namespace limcycle {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double beyond = 1e-2;  ///< how far past a lost cycle, relative, one looks whether the loop still hunts
-constexpr int successors = 3;    ///< other cycles that are followed in turn
+constexpr double beyond = 1e-2;    ///< how far past a lost cycle, relative, one looks whether the loop still hunts
+constexpr double at_limit = 1e-9;  ///< relative: the scale of a branch is logarithmic
+constexpr int successors = 3;      ///< other cycles that are followed in turn
 
 }  // namespace
 
@@ -43,7 +44,7 @@ SideSearch::Lost SideSearch::follow(const Cycle& cycle, double p, double limit) 
   for (const auto& point : branch.points)
     if (point.cycle.stable == true) last = point.cycle.start;
   const BranchEvent& event = branch.events.back();
-  const bool reached = event.type == BranchEvent::Type::end && event.parameter == limit;
+  const bool reached = event.type == BranchEvent::Type::end && std::abs(event.parameter / limit - 1.0) < at_limit;
   const bool cut = branch.status == Status::max_iterations || branch.status == Status::interrupted;
   return {event.parameter,
           event.error,
@@ -100,9 +101,9 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
       return {What::none, 0.0, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
     if (lost.kind == Lost::Kind::failed) return {What::unknown, 0.0, unknown, lost.why};
     const double step = limit_ > p ? beyond : -beyond;
-    const double next = lost.value * (1.0 + (parameter_.value > 0.0 ? step : -step));
-    const bool past = std::abs(std::log(next / parameter_.value)) >= std::abs(std::log(limit_ / parameter_.value));
-    if (past || !parameter_.family(next)) return found(What::ends, lost, lost.why);
+    double next = lost.value * (1.0 + (parameter_.value > 0.0 ? step : -step));
+    if (std::abs(std::log(next / parameter_.value)) > std::abs(std::log(limit_ / parameter_.value))) next = limit_;
+    if (!parameter_.family(next)) return found(What::ends, lost, lost.why);
     Outcome outcome{};
     auto other = cycle_at(next, &lost.last, outcome);
     if (stopped()) break;
@@ -111,8 +112,14 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
         const std::string after = outcome == Outcome::divergence
                                       ? "; beyond it the motion diverges"
                                       : "; beyond it the motion ends in " + std::string(to_string(outcome));
-        return found(What::ends, lost, lost.why + after);
+        MarginSide side = found(What::ends, lost, lost.why + after);
+        side.diverges = outcome == Outcome::divergence;
+        return side;
       }
+      if (!lost.event && std::isnan(lost.error))  // neither side of the end is understood
+        return {What::unknown, 0.0, unknown,
+                "the cycle was lost near " + short_number(lost.value, 5) + ": " + lost.why +
+                    "; what the motion does just beyond was not decided"};
       return found(What::ends, lost, lost.why + "; what the motion does just beyond was not decided");
     }
     cycle = std::move(*other);

@@ -11,6 +11,7 @@
 
 namespace limcycle {
 
+/// What a work-precision study is made of.
 struct PrecisionOptions {
   CycleMethodsOptions cycle;  ///< predict.search is the box of the describing function
   DfPrecisionOptions df;
@@ -37,6 +38,7 @@ struct WorkChart {
   std::vector<std::string> never_best;  ///< those that are never on the front
 };
 
+/// What a work-precision study says.
 struct PrecisionReport {
   std::optional<CycleReference> cycle;
   std::optional<WorkChart> cycle_chart;  ///< if the case has a loop

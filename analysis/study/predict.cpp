@@ -44,6 +44,8 @@ TimeDomainLoop treat_in_time(const Loop& loop, const PredictReport& report, std:
   return treated;
 }
 
+constexpr double settled = 0.05;  ///< relative change of an answer by the last harmonics that were added to it
+
 /// The work of one prediction, step by step, so that what is finished stays when the user interrupts.
 class PredictionStudy {
  public:
@@ -95,9 +97,12 @@ class PredictionStudy {
     DfPredictions found = df_search_.get();
     report_.notes.insert(report_.notes.begin(), found.notes.begin(), found.notes.end());
     if (found.status != Status::converged) report_.status = found.status;
+    if (found.status == Status::incomplete || found.status == Status::not_finite)
+      report_.incomplete.emplace_back(df_name);
     report_.predictions = std::move(found.predictions);
     report_.absence = std::move(found.absence);
     report_.nyquist = std::move(found.nyquist);
+    report_.efforts.push_back({std::string(df_name), 0, {}});
     (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(df_name);
   }
 
@@ -128,16 +133,16 @@ class PredictionStudy {
       composite_roots_[report_.predictions.size()] = root;
       report_.predictions.push_back(std::move(p));
     }
+    report_.efforts.push_back({std::string(composite_name), found.evaluations, "periods of mass and friction"});
+    if (found.status == Status::incomplete) report_.incomplete.emplace_back(composite_name);
     (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(composite_name);
   }
 
-  /// Initial displacements of y: the largest amplitude of interest and smaller ones, two and then one decade apart.
   void run_starts() {
-    const double unit = output_per_input(time_);
-    double displacement = unit * box_.amplitude_max;
-    for (int i = 0; i < options_.starts && !stopped(); ++i, displacement *= i == 1 ? 0.1 : 0.01) {
-      tell(0.2 + 0.4 * i / std::max(1, options_.starts), "simulation");
-      if (displacement < unit * box_.amplitude_min) break;
+    double done = 0.0;
+    for (const double displacement : start_displacements(output_per_input(time_), box_, options_.starts)) {
+      if (stopped()) return;
+      tell(0.2 + 0.4 * done++ / std::max(1, options_.starts), "simulation");
       hunt_->settle_from(displaced(time_, displacement), "y displaced by " + short_number(displacement));
     }
   }
@@ -225,10 +230,14 @@ class PredictionStudy {
                                 (ne > 1 ? ": it has no describing-function root to begin from"
                                         : ", which sticks: harmonics ripple more than pre-sliding is wide"));
     }
+    Effort effort{std::string(balance_name), 0, "evaluations of its equations"};
     for (const HarmonicGuess& guess : guesses) {
       if (stopped()) return;
-      add_balance(harmonic_balance(loop_, guess, options));
+      const HarmonicBalance found = harmonic_balance(loop_, guess, options);
+      effort.count += found.evaluations;
+      add_balance(found);
     }
+    report_.efforts.push_back(std::move(effort));
     used_.emplace_back(balance_name);
   }
 
@@ -247,6 +256,13 @@ class PredictionStudy {
   void add_balance(const HarmonicBalance& found) {
     if (found.harmonics == 0 || !(found.residual < 1e-6) || !(found.first_harmonic > 0.0)) {
       report_.notes.push_back("harmonic balance found no solution from one of its starts: " + found.why);
+      return;
+    }
+    // Harmonics that still move the answer by more than a verdict allows have not come to one.
+    if (found.status != Status::converged && !(found.change < settled)) {
+      report_.notes.push_back("harmonic balance came to no prediction from one of its starts: with " +
+                              std::to_string(found.harmonics) + " harmonics amplitude and frequency are not settled; " +
+                              found.why);
       return;
     }
     Prediction p;
@@ -299,6 +315,7 @@ class PredictionStudy {
     report_.cycles = hunt_->cycles();
     for (Cycle& cycle : report_.cycles) cycle.error = std::max(cycle.error, delay_error(cycle));
     report_.outcomes = hunt_->outcomes();
+    report_.efforts.push_back({"shooting", hunt_->maps(), "return maps"});
     note_memory();
     std::ranges::move(derivative_notes(loop_), std::back_inserter(report_.notes));
     for (const auto& method : used_) {
@@ -325,6 +342,16 @@ class PredictionStudy {
 };
 
 }  // namespace
+
+std::vector<double> start_displacements(double unit, const SearchBox& box, int starts) {
+  std::vector<double> list;
+  double displacement = unit * box.amplitude_max;
+  for (int i = 0; i < starts && displacement >= unit * box.amplitude_min; ++i) {
+    list.push_back(displacement);
+    displacement *= i == 0 ? 0.1 : 0.01;
+  }
+  return list;
+}
 
 PredictReport predict(const Loop& loop, const PredictOptions& options) { return PredictionStudy(loop, options).run(); }
 

@@ -13,6 +13,11 @@
 
 namespace limcycle {
 
+/// Initial displacements of y from which a loop is tried: the largest amplitude of interest and smaller ones, one and
+/// then two decades apart, as far as they are of interest. `unit`: amplitude of y per input of the element (see
+/// output_per_input).
+std::vector<double> start_displacements(double unit, const SearchBox& box, int starts);
+
 /// Box chosen from the loop's own scales: the response to the element's output level over the band of the loop's poles.
 SearchBox default_search_box(const Loop& loop);
 
@@ -23,6 +28,7 @@ struct Methods {
   bool harmonic_balance = true;  ///< from each root of the others, and from cycles that they missed
 };
 
+/// What predict() is asked beside the loop.
 struct PredictOptions {
   Methods methods;
   std::optional<SearchBox> search;  ///< default: default_search_box
@@ -57,9 +63,20 @@ struct OutcomeOfStart {
   Outcome outcome = Outcome::undecided;
   std::string why;  ///< one sentence
   std::optional<std::size_t> cycle;
-  Trace trace;  ///< the run, for pictures
+  Trace trace;        ///< the run, for pictures
+  double time = 0.0;  ///< simulated, s
+  long steps = 0;     ///< of the integrator
 };
 
+/// What a method had to do, in the unit in which its work is counted. Times are not told here: results do not depend on
+/// how fast they come.
+struct Effort {
+  std::string method;
+  long count = 0;
+  std::string unit;  ///< plural: "return maps"; empty: the work is not counted
+};
+
+/// A cycle that a method overlooked.
 struct Missed {
   std::string method;
   std::size_t cycle;
@@ -74,10 +91,14 @@ struct NyquistPicture {
   std::vector<std::vector<std::complex<double>>> minus_inverse_N;
 };
 
-/// Both curves over the search box; points where N or G does not exist are NaN or left out. `stop` is asked between
-/// points: when it returns true the curves end there.
-NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std::function<bool()>& stop = {});
+/// Both curves over the search box, finer where G turns fast; where an amplitude or frequency belongs to a root, the
+/// curves have a point there. G is that of small motions: other elements of the loop, and gravity, change it with the
+/// amplitude. Points where N or G does not exist are NaN or left out. `stop` is asked between points: when it returns
+/// true the curves end there.
+NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std::vector<SearchPoint>& roots = {},
+                               const std::function<bool()>& stop = {});
 
+/// What predict() answers: cycles, predictions with verdicts, outcomes of simulations.
 struct PredictReport {
   SearchBox search;
   std::vector<Cycle> cycles;
@@ -85,10 +106,12 @@ struct PredictReport {
   std::vector<Missed> missed;
   std::vector<OutcomeOfStart> outcomes;
   std::vector<std::string> unfinished{};  ///< methods whose search was interrupted: they may predict more
+  std::vector<std::string> incomplete{};  ///< methods whose search left something undecided (see the notes): likewise
   NyquistPicture nyquist;
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: is that proved?
   std::vector<std::string> notes;    ///< what a user must know: methods that do not apply, searches that are incomplete
   Status status = Status::converged;
+  std::vector<Effort> efforts{};  ///< of the methods that ran, beside those of the outcomes
 };
 
 /// Every limit cycle that the methods predict in the search box, what really happens from several starts and near every

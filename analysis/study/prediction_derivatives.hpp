@@ -17,6 +17,7 @@ struct PredictionDerivative {
   double frequency = 0.0, frequency_error = 0.0;  ///< rad/s
 };
 
+/// Derivatives of a predicted oscillation by every parameter.
 struct PredictionDerivatives {
   Status status = Status::converged;
   std::string why;                            ///< one sentence, if there is no answer

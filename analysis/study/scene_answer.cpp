@@ -118,16 +118,16 @@ SceneAnswer ask_balance(const Loop& loop, const PredictOptions& options) {
 /// One plain simulation, watched until its swings repeat.
 class SimulationWatch {
  public:
-  SimulationWatch(const Loop& loop, const PredictOptions& options) : loop_(loop), options_(options) {
+  SimulationWatch(const Loop& loop, const PredictOptions& options, const SearchBox& box)
+      : loop_(loop), options_(options), box_(box) {
     const auto moduli = pole_moduli(loop);
     horizon_ = 200.0 / (moduli.empty() ? 1.0 : moduli.front());
     longest_ = 25.0 * horizon_;
-    box_ = box_of(loop, options);
   }
 
-  SceneAnswer operator()() {
+  SceneAnswer operator()(double displacement) {
     const double unit = output_per_input(loop_);
-    const LoopState start = displaced(loop_, unit * box_.amplitude_max);
+    const LoopState start = displaced(loop_, displacement);
     LoopField field(loop_);
     field.modes() = start.modes;
     March march(field, StepperKind::automatic, loop_weights(loop_, 1e-7));
@@ -136,7 +136,9 @@ class SimulationWatch {
       if (march.steps() > 200000) return unanswered("the simulation gave up after 200000 steps");
       if (options_.stop && march.steps() % 64 == 0 && options_.stop()) return unanswered("interrupted");
       if (const Status status = march.step(longest_); status != Status::converged) return ended(status);
-      if (!turning_.feed(march.t(), field.y(march.x()))) continue;
+      const double y = field.y(march.x());
+      if (std::abs(y) > 1e4 * unit * box_.amplitude_max) return ended(Status::not_finite);
+      if (!turning_.feed(march.t(), y)) continue;
       for (const std::size_t order : {2U, 4U, 6U})
         if (repeats(order)) return cycle(order);
       wait_for_slow_swings(march.t());
@@ -144,6 +146,9 @@ class SimulationWatch {
     const auto& points = turning_.points();
     const bool calm = points.empty() || points.back().t < 0.5 * march.t() ||
                       (points.size() > 2 && turning_.swing(0) < unit * box_.amplitude_min);
+    const bool grows = points.size() > 3 && turning_.swing(0) > 10.0 * displacement &&
+                       turning_.swing(0) > turning_.swing(1) && turning_.swing(1) > turning_.swing(2);
+    if (grows) return ended(Status::not_finite);
     if (!calm) return unanswered("the simulation neither came to rest nor repeated itself");
     SceneAnswer answer;
     answer.answered = true;
@@ -202,10 +207,35 @@ class SimulationWatch {
   static constexpr double agree = 5e-3;
   const Loop& loop_;
   const PredictOptions& options_;
-  SearchBox box_{};
+  const SearchBox& box_;
   double horizon_ = 0.0, longest_ = 0.0;  ///< s
   TurningPoints turning_;
 };
+
+/// "cycle/rest" of ends in any order, each as often as it may come.
+std::string joined(std::vector<std::string> ends) {
+  std::ranges::sort(ends);
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::string all;
+  for (const auto& word : ends) all += (all.empty() ? "" : "/") + word;
+  return all;
+}
+
+/// A plain simulation from every start that shooting has; the largest cycle counts.
+SceneAnswer ask_simulation(const Loop& loop, const PredictOptions& options) {
+  const SearchBox box = box_of(loop, options);
+  SceneAnswer all;
+  std::vector<std::string> ends;
+  for (const double displacement : start_displacements(output_per_input(loop), box, options.starts)) {
+    SceneAnswer one = SimulationWatch(loop, options, box)(displacement);
+    if (!one.answered) return one;
+    ends.push_back(one.verdict);
+    if (one.amplitude >= all.amplitude) all = std::move(one);
+  }
+  if (ends.empty()) return unanswered("nothing was simulated");
+  all.verdict = joined(std::move(ends));
+  return all;
+}
 
 SceneAnswer ask_shooting(const Loop& loop, const PredictOptions& options) {
   PredictOptions only_time = options;
@@ -218,11 +248,10 @@ SceneAnswer ask_shooting(const Loop& loop, const PredictOptions& options) {
   for (const auto& one : report.outcomes) {
     const std::string word(to_string(one.outcome));
     if (one.outcome == Outcome::undecided) return unanswered("undecided from " + one.start + ": " + one.why);
-    if (std::ranges::find(ends, word) == ends.end()) ends.push_back(word);
+    ends.push_back(word);
   }
   if (ends.empty()) return unanswered("nothing was simulated");
-  std::ranges::sort(ends);
-  for (const auto& word : ends) answer.verdict += (answer.verdict.empty() ? "" : "/") + word;
+  answer.verdict = joined(std::move(ends));
   answer.answered = true;
   for (const Cycle& cycle : report.cycles) {
     if (cycle.stable != true || cycle.amplitude <= answer.amplitude) continue;
@@ -236,7 +265,7 @@ SceneAnswer ask_shooting(const Loop& loop, const PredictOptions& options) {
 }
 
 SceneAnswer ask(const std::string& method, const Loop& loop, const PredictOptions& options) {
-  if (method == simulation_name) return SimulationWatch(loop, options)();
+  if (method == simulation_name) return ask_simulation(loop, options);
   if (method == shooting_name) return ask_shooting(loop, options);
   if (method == balance_name) return ask_balance(loop, options);
   std::string why;
@@ -245,12 +274,16 @@ SceneAnswer ask(const std::string& method, const Loop& loop, const PredictOption
   return list ? answer_of(*list) : unanswered(why);
 }
 
-/// Is what one start gives among the ends that all starts have?
-bool is_among(const std::string& verdict, const std::string& all) {
-  const auto has = [&](const std::string& word) {
-    return ("/" + all + "/").find("/" + word + "/") != std::string::npos;
-  };
-  return verdict == no_cycle ? has("rest") || has("sliding") : has(verdict);
+/// A verdict as one tells it that does not know rest from steady sliding.
+std::string without_kinds_of_calm(const std::string& verdict) {
+  std::vector<std::string> ends;
+  for (std::size_t from = 0; from <= verdict.size();) {
+    const std::size_t to = std::min(verdict.find('/', from), verdict.size());
+    const std::string word = verdict.substr(from, to - from);
+    ends.push_back(word == "rest" || word == "sliding" ? std::string(no_cycle) : word);
+    from = to + 1;
+  }
+  return joined(std::move(ends));
 }
 
 }  // namespace
@@ -284,7 +317,7 @@ double scene_error(const std::string& method, const SceneAnswer& answer, const S
   if (!answer.answered || !best.answered) return not_known;
   bool same = answer.verdict == best.verdict;
   if (method == simulation_name)
-    same = is_among(answer.verdict, best.verdict);  // from one start
+    same = answer.verdict == without_kinds_of_calm(best.verdict);
   else if (method != shooting_name)
     same = answer.hunts() == best.hunts();  // roots of the whole box
   if (!same || answer.hunts() != (answer.period > 0.0)) return infinite;

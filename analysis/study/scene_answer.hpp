@@ -18,7 +18,7 @@ struct SceneAnswer {
   double error = 0.0;                    ///< own estimate, relative
   double seconds = 0.0;                  ///< CPU
   std::string why;                       ///< unless answered: one sentence
-  bool hunts() const { return verdict != "no cycle" && verdict.find("cycle") != std::string::npos; }
+  bool hunts() const { return ("/" + verdict + "/").find("/cycle/") != std::string::npos; }
 };
 
 /// The ladder of methods, least first. A first-harmonic method says "no cycle" where it sees no stable oscillation,

@@ -98,6 +98,7 @@ class GlobalPlan {
   SobolDesign sobol_;
 };
 
+/// What a study of the whole spread says.
 struct GlobalSensitivity {
   std::vector<OutputSensitivity> outputs;   ///< in the order of HuntingAnswer::names
   Probability hunting;                      ///< that the loop hunts, from Sobol's points A and B

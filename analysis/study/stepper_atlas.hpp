@@ -27,6 +27,7 @@ std::string_view to_string(RunClass kind);
 
 inline constexpr double atlas_right = 1e-3, atlas_rough = 1e-2;
 
+/// One run of the atlas.
 struct AtlasPoint {
   std::string law;
   double stiffness = not_known;  ///< N/m; NaN: the law has none
@@ -50,6 +51,7 @@ struct AtlasReference {
   std::string words;
 };
 
+/// Which runs an atlas is made of, and their budgets.
 struct AtlasOptions {
   std::vector<double> tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12};
   std::vector<double> steps{1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5};  ///< s, of the fixed methods
@@ -63,6 +65,7 @@ struct AtlasOptions {
   std::function<void(double, std::string_view)> progress;
 };
 
+/// Every run, and what they are measured by.
 struct StepperAtlas {
   std::vector<AtlasPoint> points;  ///< by loop, stepper, setting: in the order given, whatever the threads
   std::vector<AtlasReference> references;

@@ -23,6 +23,7 @@ struct StiffPoint {
   WorkPoint result;     ///< method: stepper; setting: tolerance
 };
 
+/// What every stepper does over the stiffness of the bristles.
 struct StiffnessStudy {
   std::vector<StiffPoint> points;
   std::vector<std::string> notes;  ///< where no verified reference exists, and how good those are that do

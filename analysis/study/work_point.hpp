@@ -57,6 +57,7 @@ struct WorkPoint {
   bool charted() const { return quality == Quality::right || quality == Quality::biased; }
 };
 
+/// How often runs are repeated to be timed, and who may stop them.
 struct WorkOptions {
   double repeat_within = 0.05;  ///< CPU seconds: cheap runs are repeated until they took this together, or ...
   int repeats = 5;              ///< ... this often

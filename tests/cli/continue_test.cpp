@@ -85,7 +85,7 @@ TEST_CASE("continue: a start without a cycle is looked for, and said") {
   REQUIRE(ran.code == 0);
   const auto document = Json::parse(ran.out);
   REQUIRE(document["notes"].size() == 1);
-  CHECK_THAT(document["notes"][0].get<std::string>(), Contains("there is no limit cycle at 0.15"));
+  CHECK_THAT(document["notes"][0].get<std::string>(), Contains("no limit cycle was found at 0.15"));
   CHECK(document["parameter"]["start"].get<double>() < 0.0819);
 }
 

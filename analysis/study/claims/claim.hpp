@@ -38,6 +38,7 @@ struct ClaimResult {
   Status status = Status::converged;
 };
 
+/// How thoroughly a claim is tested.
 struct ClaimOptions {
   std::uint64_t seed = 0;
   int random_points = 20;  ///< of the random parameters, where a claim has a range of them

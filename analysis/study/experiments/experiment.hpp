@@ -60,6 +60,7 @@ struct ExperimentClaim {
   std::string measure;  ///< by how much
 };
 
+/// An experiment that was done: numbers, findings, claims and figures.
 struct Experiment {
   std::string name, title;
   std::string document;  ///< which figures of the documents it repeats
@@ -76,6 +77,7 @@ struct Experiment {
   double value(const std::string& law, const std::string& key, const std::string& setting = {}) const;
 };
 
+/// Which laws take part in an experiment.
 struct ExperimentOptions {
   std::vector<LawSetting> laws = law_settings();  ///< those not in the list of laws are left out
   int threads = 1;                                ///< 0: one a core

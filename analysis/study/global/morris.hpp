@@ -53,6 +53,7 @@ struct MorrisEffects {
   double share_without_answer() const;
 };
 
+/// Elementary effects of every parameter on one output.
 struct MorrisResult {
   std::size_t rows = 0, rows_without_answer = 0;
   std::vector<MorrisEffects> parameters;  ///< in the order of the design

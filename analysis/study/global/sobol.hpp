@@ -22,6 +22,7 @@ struct SobolInteraction {
   std::size_t pairs = 0;  ///< of answers that it is made of
 };
 
+/// Indices of every parameter for one output.
 struct SobolIndices {
   std::size_t samples = 0;                        ///< base samples that were looked at
   std::size_t rows = 0, rows_without_answer = 0;  ///< of these samples
@@ -35,6 +36,7 @@ struct SobolIndices {
   std::vector<std::size_t> by_total() const;
 };
 
+/// How intervals of Sobol indices are made.
 struct SobolOptions {
   std::size_t samples = 0;       ///< take only the first so many base samples of the design; 0: all
   std::size_t resamples = 1000;  ///< of the bootstrap; below 100: no intervals

@@ -120,6 +120,24 @@ TEST_CASE("turning points: a ringing that does not die while the body waits is n
   CHECK(late == 9);
 }
 
+TEST_CASE("a body that waits for its integrator takes few steps, whatever filter is in the loop") {
+  // Slow sliding on a Stribeck curve that is flat at rest creeps to the set-point; 1 micrometre off, the integrator
+  // winds up for 1500 s first. The filter of the derivative has 1 ms.
+  LoopParts parts;
+  parts.plant = Mass{5.0, 2.0, 0.0};
+  parts.friction = stribeck(12.0, 8.0, 0.01);
+  Pid controller = pid(2000.0, 8000.0, 150.0);
+  controller.tf = 1e-3;
+  parts.controller = controller;
+  for (const double start : {0.1, 1e-4, 1e-6}) {
+    const auto settled = run(build_loop(parts), start);
+    INFO("start " << start << ": " << settled.why);
+    CHECK(settled.outcome == Outcome::rest);
+    CHECK(settled.steps < 2000);
+    if (start == 1e-6) CHECK(settled.time > 1500.0);
+  }
+}
+
 TEST_CASE("slow hunting is one swing each way a period, not three") {
   for (const Element<double>& friction : {Element<double>(coulomb(1.5, 1.0, 0.4)), Element<double>(lugre())}) {
     LoopParts parts = servo_parts(friction);
@@ -132,4 +150,15 @@ TEST_CASE("slow hunting is one swing each way a period, not three") {
     CHECK(cycle.period == Approx(1140.0).epsilon(2e-3));  // by simulation
     CHECK(returns_of(choose_section(loop, cycle.trace), cycle.trace) == 1);
   }
+}
+
+TEST_CASE("a dead time is not left out silently") {
+  LoopParts parts;
+  parts.plant = TransferFunction{{1.0}, {1.0, 1.0}, 0.5};
+  parts.element = saturation(1.0);
+  const Loop loop = build_loop(parts);
+  LoopState start;
+  start.x.assign(static_cast<std::size_t>(loop.states()), 0.0);
+  start.modes.resize(loop.elements.size());
+  CHECK_THROWS_AS(settle(loop, start, {}), std::invalid_argument);
 }

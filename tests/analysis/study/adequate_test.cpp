@@ -176,16 +176,42 @@ TEST_CASE("adequate: answers are compared by kind first, then by their numbers")
   best.amplitude = 1.0;
   best.first_harmonic = 1.1;
   answer.verdict = "no cycle";
-  CHECK(scene_error("simulation", answer, best) == 0.0);  // one start may well come to rest
+  CHECK(std::isinf(scene_error("simulation", answer, best)));  // it tries every start, too
   CHECK(std::isinf(scene_error("describing-function", answer, best)));
   answer.verdict = "cycle";
   answer.period = 2.02;
   answer.amplitude = answer.first_harmonic = 1.0;
-  CHECK(scene_error("simulation", answer, best) == Approx(0.01));
+  CHECK(std::isinf(scene_error("simulation", answer, best)));
+  answer.verdict = "cycle/no cycle";
+  CHECK(scene_error("simulation", answer, best) == Approx(0.01));  // which does not know rest from sliding
+  answer.verdict = "cycle";
   CHECK(scene_error("describing-function", answer, best) == Approx(1.0 - 1.0 / 1.1));  // of the first harmonic
   CHECK(std::isinf(scene_error("shooting", answer, best)));                            // which tries every start
   answer.answered = false;
   CHECK(std::isnan(scene_error("simulation", answer, best)));
+}
+
+TEST_CASE("adequate: a plain simulation sees what every start comes to, not only the largest") {
+  // A motor that gives 4 N: from 100 m and from 10 m it runs away, nearer it hunts.
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  Pid limited = pid(3.0, 4.0, 6.0);
+  limited.saturation = 4.0;
+  parts.controller = limited;
+  const Loop loop = build_loop(parts);
+  PredictOptions options;
+  options.search = SearchBox{1e-4, 100.0, 0.01, 100.0};
+  options.starts = 3;
+  const auto simulated = ask_scene("simulation", loop, options), best = ask_scene("shooting", loop, options);
+  INFO(simulated.why << "; " << best.why);
+  REQUIRE((simulated.answered && best.answered));
+  CHECK(simulated.verdict == "cycle/divergence");
+  CHECK(best.verdict == "cycle/divergence");
+  CHECK(scene_error("simulation", simulated, best) < 0.02);
+  SceneAnswer runaway;
+  runaway.answered = true;
+  runaway.verdict = "divergence/no cycle";
+  CHECK_FALSE(runaway.hunts());
+  CHECK(std::isinf(scene_error("simulation", runaway, best)));
 }
 
 TEST_CASE("adequate: without friction there is nothing to ask") {

@@ -35,7 +35,7 @@ TEST_CASE("follow: without a cycle at the start the range is scanned, and it is 
   CHECK(report.start < 0.0819);
   REQUIRE(report.branches.size() == 1);
   REQUIRE(report.notes.size() == 1);
-  CHECK_THAT(report.notes[0], Catch::Matchers::Contains("there is no limit cycle at 0.15"));
+  CHECK_THAT(report.notes[0], Catch::Matchers::Contains("no limit cycle was found at 0.15"));
   // An own value outside the range does not count: the range begins with a cycle.
   CHECK(follow(dead_zone_relay, options(0.01, 0.05, 7.0)).start == 0.01);
 }

@@ -86,6 +86,26 @@ TEST_CASE("margin: stick-slip with ideal stiction lasts until break-away and sli
   CHECK(Fc.down.what == MarginSide::What::none);
 }
 
+TEST_CASE("margin: where a cycle lasts to the end of the range, hunting does not end there") {
+  // Beyond an integral gain of 60400 the axis is unstable without friction; with it, it still hunts near the set-point.
+  LoopParts parts;
+  parts.plant = Mass{5.0, 2.0, 0.0};
+  parts.friction = coulomb(12.0, 8.0);
+  const auto with = [parts](double ki) mutable -> std::optional<Loop> {
+    Pid controller = pid(2000.0, ki, 150.0);
+    controller.tf = 1e-3;
+    parts.controller = controller;
+    return build_loop(parts);
+  };
+  MarginOptions options;
+  options.predict.search = SearchBox{1e-6, 0.1, 0.01, 1000.0};
+  const auto report =
+      margin(*LoopFamily(with)(8000.0), {{"loop.controller.ki", "N/(m s)", 8000.0, false, with}}, options);
+  const auto& up = named(report, "loop.controller.ki").up;
+  CHECK(up.what == MarginSide::What::none);
+  CHECK_FALSE(up.diverges);
+}
+
 TEST_CASE("margin: distance of -1/N from the Nyquist curve against a scan of the closed form") {
   // N of a relay with dead zone is real, at most 2 M/(pi d); G = 1/(1 + jw)^3: |1 + 1/(N G)| = |1 + (1 + jw)^3/N|.
   const double smallest = 0.5 * std::numbers::pi * 0.1;  // of 1/N

@@ -297,6 +297,21 @@ TEST_CASE("a saturated command beside the friction is eliminated by its own desc
     for (const double w : {0.1, 2.0}) CHECK(std::abs(a(A, w, 1e-9) - b(A, w, 1e-9)) < 1e-9 * std::abs(b(A, w, 1e-9)));
 }
 
+TEST_CASE("a balance that more harmonics still move is no prediction, and a note says so") {
+  // Below the smaller root of the describing function the play holds the motion: the balance from there wanders off to
+  // ever slower oscillations as harmonics are added.
+  Backlash<double> play;
+  play.half_gap = 0.5;
+  const auto report = predicted(forward(play, {1.5}, {1.0, 2.0, 1.0, 0.0}), SearchBox{0.51, 50.0, 0.01, 100.0});
+  CHECK(predictions_of(report, df).size() == 2);
+  const auto balanced = predictions_of(report, balance);
+  REQUIRE(balanced.size() == 1);
+  CHECK(balanced[0].verdict == Verdict::confirmed);
+  CHECK(std::ranges::any_of(report.notes, [](const std::string& note) {
+    return note.find("harmonic balance came to no prediction from one of its starts") != std::string::npos;
+  }));
+}
+
 TEST_CASE("a stop is obeyed and what was computed is kept") {
   PredictOptions options;
   int asked = 0;

@@ -1,0 +1,56 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "limcycle/models/elements.hpp"
+
+namespace limcycle {
+
+/// How large is the oscillation of an element that is driven by another and by its own output that comes back? Where
+/// the size of what must drive it, s(a) = a |1 - H N(a)|, is not monotone in a, several amplitudes a answer (a
+/// saturated command that winds up, a mass that jumps over its stiction), and each is an oscillation of its own. A
+/// branch is one of the rising and falling pieces of s, from small a on: it ends where s turns, which depends on the
+/// frequency alone.
+class AmplitudeBranches {
+ public:
+  using Size = std::function<double(double amplitude)>;
+  struct Answer {
+    int branch;
+    double amplitude;
+  };
+  /// An end of a branch.
+  struct Turn {
+    double amplitude, size;
+  };
+  static constexpr int most = 7;  ///< branches that are told apart: a saturation has three, a quantizer two a step
+
+  /// Every a with s(a) = wanted. `range` is where s may turn: below it s is in proportion to a, beyond it it rises.
+  /// `frequency` and `accuracy` name the function s: it is sampled once for each pair of them.
+  std::vector<Answer> answers(const Size& size, std::pair<double, double> range, double wanted, double frequency,
+                              double accuracy);
+
+ private:
+  std::vector<Turn> turns(const Size& size, std::pair<double, double> range, double frequency, double accuracy);
+
+  std::mutex guard_;
+  std::map<std::pair<double, double>, std::vector<Turn>> known_;  ///< by frequency and accuracy
+};
+
+/// Amplitudes below which and beyond which a memoryless element's gain does not change, or changes as 1/a: those
+/// between which s can turn when `back` is the response from its output to its own input.
+class ElementReach {
+ public:
+  explicit ElementReach(const Element<double>& element);
+  std::pair<double, double> range(double back) const;
+  /// Amplitude at which the gain begins to change; for one like a sign, which has no size of its own, of its output.
+  double bend() const { return bend_ < infinite ? bend_ : output_; }
+
+ private:
+  double output_;           ///< typical size of the output
+  double bend_ = infinite;  ///< amplitude below which the gain does not change; infinite if there is none
+};
+
+}  // namespace limcycle

@@ -1,0 +1,75 @@
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "limcycle/reports/catalogue.hpp"
+#include "limcycle/reports/table.hpp"
+#include "limcycle/tests/cli/program.hpp"
+
+using limcycle::test::Ran;
+using limcycle::test::run;
+using limcycle::test::Scratch;
+using limcycle::test::shipped;
+
+namespace {
+
+/// Every line of what a command writes: at most 80 columns, no space at its end, no tab; a complaint is one line.
+void check_page(const std::vector<std::string>& arguments) {
+  const Ran ran = run(arguments);
+  CAPTURE(arguments, ran.err);
+  CHECK(ran.code <= 3);
+  std::istringstream lines(ran.out);
+  for (std::string line; std::getline(lines, line);) {
+    INFO(line);
+    CHECK(limcycle::display_width(line) <= 80);
+    CHECK_FALSE(line.ends_with(' '));
+    CHECK(line.find('\t') == std::string::npos);
+  }
+  if (ran.code == 2) CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
+}
+
+std::vector<std::string> cases() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(LIMCYCLE_SOURCE_DIR) + "/cases"))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().filename());
+  std::ranges::sort(names);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("columns: what is told of cases, laws, experiments and claims") {
+  for (const auto& name : cases()) check_page({"check", shipped(name)});
+  check_page({"laws"});
+  for (const auto& entry : limcycle::catalogue()) check_page({"laws", entry.kind});
+  check_page({"experiment"});
+  check_page({"claims", "--list"});
+  check_page({"claims", "A1"});
+  check_page({"claims", "A8", "--verbose"});
+}
+
+TEST_CASE("columns: predict on every case that has a cycle or none") {
+  for (const auto& name : cases()) check_page({"predict", shipped(name), "--set", "predict.starts=2", "--verbose"});
+}
+
+TEST_CASE("columns: every other question, on cases that are answered soon") {
+  const Scratch scratch;
+  for (const auto* name : {"relay-integrator.toml", "relay-third-order.toml", "backlash.toml"}) {
+    check_page({"margin", shipped(name)});
+    check_page({"sensitivity", shipped(name), "--local"});
+    check_page({"precision", shipped(name), "--no-stiffness"});
+  }
+  for (const auto* name : {"df-lugre.toml", "relay-third-order.toml", "pid-lugre.toml"})
+    check_page({"df", shipped(name)});
+  for (const auto* name : {"pid-lugre.toml", "saturated-servo.toml", "two-mass-drive.toml"})
+    check_page({"simulate", shipped(name)});
+  for (const auto* name : {"pid-lugre.toml", "belt-coulomb.toml", "valve-stiction.toml", "backlash.toml"})
+    check_page({"dissipativity", shipped(name)});
+  check_page({"adequate", shipped("belt-coulomb.toml"), "--spread", "0"});
+  const std::string relay = shipped("relay-third-order.toml"), store = scratch.file("s.db");
+  check_page({"continue", relay, "--parameter", "loop.element.dead_zone=0.05:0.1"});
+  check_page({"map", relay, "--x", "loop.element.dead_zone=0.05:0.1:4", "--y", "loop.element.level=0.5:2:3", "--store",
+              store});
+  check_page({"status", store});
+  check_page({"sensitivity", relay, "--samples", "16", "--trajectories", "4"});
+  check_page({"experiment", "pre-sliding", "--law", "lugre"});
+}
