@@ -131,7 +131,7 @@ std::string html_tag(const std::string& name, const std::string& text) {
 std::string html_table(const Table& table, const std::string& caption) {
   std::string out = fmt::format(
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-      "aria-label=\"{0}\"><table><caption>{0}</caption>\n<thead><tr>",
+      "aria-label=\"{0}\"><table><caption><span>{0}</span></caption>\n<thead><tr>",
       html_escaped(caption));
   for (const auto& column : table.columns) {
     const std::string heading =

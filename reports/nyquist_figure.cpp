@@ -44,7 +44,7 @@ Json error_discs(const PredictReport& report, std::string& words) {
   return discs;
 }
 
-Json response(const NyquistPicture& picture) {
+Json response_curve(const NyquistPicture& picture) {
   Json G = {{"re", Json::array()}, {"im", Json::array()}, {"w", Json::array()}};
   const std::size_t stride = picture.G.size() / most_of_response + 1;
   for (std::size_t i = 0; i < std::min(picture.G.size(), picture.frequency.size()); i += stride) {
@@ -58,7 +58,7 @@ Json response(const NyquistPicture& picture) {
 bool near(double a, double b) { return std::abs(a - b) <= 1e-9 * std::abs(b); }
 
 /// A few members evenly, and those at the frequency of a root.
-bool is_drawn(std::size_t member, const PredictReport& report) {
+bool is_member_drawn(std::size_t member, const PredictReport& report) {
   const auto& frequencies = report.nyquist.family_frequency;
   const std::size_t stride = std::max<std::size_t>(1, (frequencies.size() - 1) / (drawn_members - 1));
   if (member % stride == 0 || member >= frequencies.size()) return true;
@@ -68,7 +68,7 @@ bool is_drawn(std::size_t member, const PredictReport& report) {
 }
 
 /// Frequencies are null where N does not depend on them.
-Json family(const PredictReport& report, const std::string& unit) {
+Json family_curves(const PredictReport& report, const std::string& unit) {
   const auto& picture = report.nyquist;
   Json A = Json::array(), members = Json::array();
   for (const double amplitude : picture.family_amplitude) A.push_back(rounded(amplitude));
@@ -81,7 +81,7 @@ Json family(const PredictReport& report, const std::string& unit) {
     }
     const bool known = depends && m < picture.family_frequency.size();
     members.push_back({{"w", known ? rounded(picture.family_frequency[m]) : Json(nullptr)},
-                       {"drawn", is_drawn(m, report)},
+                       {"drawn", is_member_drawn(m, report)},
                        {"re", re},
                        {"im", im}});
   }
@@ -152,9 +152,9 @@ Figure nyquist_figure(const PredictReport& report, const Units& units) {
         "this loop G changes with the amplitude. The crosses stand at";
   if (!crossings.places.empty()) finding += crossings.words + "." + about_discs;
   return {"nyquist", "Nyquist plot and describing function", finding,
-          figure_text({{"G", response(report.nyquist)},
+          figure_text({{"G", response_curve(report.nyquist)},
                        {"small_motions", !crossings.on_curve},
-                       {"family", family(report, units.input)},
+                       {"family", family_curves(report, units.input)},
                        {"roots", crossings.roots},
                        {"discs", discs},
                        {"window", {{"re", {box.re_from, box.re_to}}, {"im", {box.im_from, box.im_to}}}}})};

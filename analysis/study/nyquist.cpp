@@ -45,7 +45,7 @@ void sample_response(const Loop& loop, const std::vector<double>& grid, NyquistP
     if (exists && joined) {
       const double before = picture.frequency.back();
       const std::complex<double> at_before = picture.G.back();
-      refine(G, before, at_before, w, here, 7, picture);
+      refine(G, before, at_before, w, here, 12, picture);
     }
     if (exists) {
       picture.frequency.push_back(w);

@@ -41,9 +41,10 @@ Object.assign(draw, {
   phase(d) {
     const traces = [];
     d.runs.forEach((run, i) => {
-      traces.push({name: run.name, x: run.y, y: run.rate, mode: "lines", line: line("three", 1), legendgroup: "run" + i});
-      traces.push({name: "start", x: [run.y[0]], y: [run.rate[0]], mode: "markers", showlegend: false,
-        legendgroup: "run" + i, marker: {color: colour("three"), size: 8}});
+      traces.push({name: "simulations", x: run.y, y: run.rate, mode: "lines", line: line("three", 1), legendgroup: "runs",
+        showlegend: i === 0, hoverinfo: "text", text: run.name});
+      traces.push({name: "starts", x: [run.y[0]], y: [run.rate[0]], mode: "markers", showlegend: false, hoverinfo: "text", text: run.name,
+        legendgroup: "runs", marker: {color: colour("three"), size: 8}});
     });
     d.cycles.forEach((run) => {
       traces.push({name: run.name, x: run.y, y: run.rate, mode: "lines",

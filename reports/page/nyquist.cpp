@@ -9,7 +9,9 @@ const minusInverse = (z) => { const size = z[0] * z[0] + z[1] * z[1]; return [-z
 const size = (z) => Math.hypot(z[0], z[1]);
 const isNumber = (z) => Number.isFinite(z[0]) && Number.isFinite(z[1]);
 const point = (curve, i) => curve.re[i] === null || curve.im[i] === null || curve.re[i] === undefined ? [NaN, NaN] : [curve.re[i], curve.im[i]];
-const inWords = (z) => isNumber(z) ? digits(z[0]) + (z[1] < 0 ? " − " : " + ") + digits(Math.abs(z[1])) + "j" : "–";
+// What is a billionth of the other part is rounding.
+const clean = (z) => z.map((one, i) => Math.abs(one) < 1e-9 * Math.abs(z[1 - i]) ? 0 : one);
+const inWords = (z) => isNumber(z) ? digits(clean(z)[0]) + (z[1] < 0 ? " − " : " + ") + digits(Math.abs(clean(z)[1])) + "j" : "–";
 const withUnit = (value, unit) => digits(value) + (unit ? " " + unit : "");
 
 // −1/N at a computed amplitude. Between two computed frequencies N is interpolated, linearly in ω; never beyond them.
@@ -106,7 +108,7 @@ Object.assign(draw, {
       marker: {color: [colour("one"), colour("two")], size: 13, symbol: ["circle", "square"], line: {color: colour("ink"), width: 2}},
       hovertemplate: "%{text}<extra></extra>", text: ["G at the sliders", "−1/N at the sliders"]});
     return [traces, layout(choice.polar
-      ? {xaxis: axis("phase (degrees)", {range: [-370, 10], dtick: isNarrow() ? 90 : 45}), yaxis: axis("size", {type: "log"})}
+      ? {xaxis: axis("phase (degrees)", {range: [-370, 10], dtick: isNarrow() ? 90 : 45}), yaxis: axis("size", {type: "log", dtick: 1})}
       : {xaxis: axis("real part", {range: d.window.re}), yaxis: axis("imaginary part", {range: d.window.im, scaleanchor: "x"})})];
   },
 });

@@ -42,7 +42,7 @@ async function savePlot(plot, format) {
 }
 
 function textOfPicture(svg) {
-  const copy = svg.cloneNode(true), ns = "http://www.w3.org/2000/svg";
+  const copy = svg.cloneNode(true), ns = svg.namespaceURI;
   const [, , width, height] = (svg.getAttribute("viewBox") ?? "0 0 760 400").split(/[ ,]+/).map(Number);
   for (const [key, value] of Object.entries({xmlns: ns, width, height})) copy.setAttribute(key, value);
   const ground = document.createElementNS(ns, "rect");
@@ -58,7 +58,8 @@ async function savePicture(svg, name, format) {
   const image = new Image();
   image.src = url;
   await image.decode();
-  const canvas = element("canvas", {width: 2 * width, height: 2 * height});
+  const scale = Math.max(2, 1200 / width);  // a small picture is to be legible too
+  const canvas = element("canvas", {width: Math.ceil(scale * width), height: Math.ceil(scale * height)});
   canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
   URL.revokeObjectURL(url);
   save(fileName(name, "png"), await new Promise((done) => canvas.toBlob(done, "image/png")), "image/png");

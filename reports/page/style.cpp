@@ -23,6 +23,7 @@ p, li, summary, figcaption { overflow-wrap: anywhere; }
 nav ul { display: flex; flex-wrap: wrap; gap: 0.25rem 1.25rem; list-style: none; padding: 0; } nav a { display: inline-block; color: var(--one); }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin-top: 0.5rem; }
 caption { text-align: left; color: var(--soft); padding-bottom: 0.25rem; }
+caption span { position: sticky; left: 0; display: inline-block; max-width: min(52rem, 100vw - 2rem); }
 th, td { padding: 0.25rem 0.55rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
 th.left, td.left { text-align: left; }
 td.wide { white-space: normal; min-width: 13rem; text-align: left; }
@@ -64,8 +65,9 @@ footer { padding-bottom: 3rem; }
 @media (max-width: 40rem) { .plot { height: 22rem; } .plot.tall { height: 30rem; } .plot[data-figure="loop"] { height: 32rem; }
   dl { grid-template-columns: 1fr; } main, header, footer { padding: 0 0.75rem; } }
 @media (prefers-reduced-motion: reduce) { * { scroll-behavior: auto !important; transition: none !important; animation: none !important; } }
-:root.print .plot { width: 17cm; height: 10.5cm; } :root.print .plot.tall { height: 13cm; }
-@media print { nav, .hint, .tools, .sliders .slider, .skip { display: none; } figure, table, tr, pre, dl { break-inside: avoid; }
+:root.print .plot { width: 17cm; height: 8.5cm; } :root.print .plot.tall { height: 10cm; }
+@media print { nav, .hint, .tools, .sliders .slider, .sliders legend, .skip { display: none; } :focus-visible { outline: none; }
+  figure, table, tr, pre, dl { break-inside: avoid; }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; } h1, h2, h3, caption, summary { break-after: avoid; }
   .scroll { overflow: visible; } .picture svg { max-width: 100%; height: auto; } table { max-width: 100%; font-size: 0.8rem; }
   th, td { white-space: normal; padding: 0.15rem 0.35rem; } td.wide { min-width: 7rem; } main, header, footer { max-width: none; padding: 0; }

@@ -76,10 +76,38 @@ TEST_CASE("the page says the verdict, shows the tables and how to make it again"
 TEST_CASE("the page asks nothing of the network") {
   const auto text = page(sample::hunting());
   CHECK(holds(text, "default-src 'none'"));
-  CHECK_FALSE(std::regex_search(text, std::regex("(src|href)\\s*=\\s*[\"'](?!data:)")));
+  CHECK_FALSE(std::regex_search(text, std::regex("(src|href)\\s*=\\s*[\"'](?!data:|#)")));
   CHECK_FALSE(holds(text, "http://"));
   CHECK_FALSE(holds(text, "https://"));
   CHECK_FALSE(holds(text, "@import"));
+}
+
+TEST_CASE("a reader who uses keys skips to the results") {
+  const auto text = page(sample::hunting());
+  CHECK(text.find("<a class=\"skip\" href=\"#results\">") < text.find("<h1>"));
+  CHECK(holds(text, "<main id=\"results\" tabindex=\"-1\">"));
+}
+
+TEST_CASE("a page without figures that are drawn by script has buttons all the same, and no library") {
+  const auto text = html_page({.provenance = made(), .answer = "", .body = "", .command = "map", .case_text = ""});
+  CHECK(holds(text, std::string(page_script())));
+  CHECK_FALSE(holds(text, std::string(plotly_script())));
+}
+
+TEST_CASE("the style of a picture rules that picture only") {
+  const std::string svg = "<svg width=\"1\"><style>text,.a b{fill:red}.c{x:1}</style><text/></svg>\n";
+  const auto text = html_picture(svg, "What it <shows>");
+  const auto at = text.find("<svg class=\"");
+  REQUIRE(at != std::string::npos);
+  const auto name = text.substr(at + 12, text.find('"', at + 12) - at - 12);
+  CHECK(
+      holds(text, "<style>." + name + " text,." + name + " .a b{fill:red}." + name + " .c{x:1}</style><text/></svg>"));
+  CHECK(holds(text, "aria-label=\"Picture: What it &lt;shows&gt;\""));
+  CHECK(holds(text, "<figcaption>What it &lt;shows&gt;</figcaption>"));
+  const std::string other = "<svg width=\"1\"><style>text{fill:blue}</style></svg>";
+  CHECK_FALSE(holds(html_picture(other, "x"), name));
+  CHECK(html_picture("", "x").empty());
+  CHECK(holds(html_picture("<svg><path/></svg>", "x"), "<svg><path/></svg>"));
 }
 
 TEST_CASE("each figure says in words what it shows") {
@@ -166,4 +194,18 @@ TEST_CASE("a report without traces or curves has no figures but is a page") {
   CHECK_FALSE(holds(text, "<figure>"));
   CHECK_FALSE(holds(text, "<details"));
   CHECK(holds(text, "This loop hunts"));
+}
+
+TEST_CASE("a period that is too long to draw well is drawn whole all the same: it is shown twice") {
+  auto report = sample::hunting();
+  auto& trace = report.cycles[0].trace;
+  for (std::size_t i = 0; i < trace.t.size(); ++i) {
+    trace.rate[i] = std::sin(400.0 * trace.t[i]);
+    trace.y[i] = std::cos(400.0 * trace.t[i]);
+  }
+  for (const auto& figure : predict_figures(report, {})) {
+    const auto data = Json::parse(figure.data);
+    if (figure.id == "time") CHECK(data["run"]["t"].back().get<double>() == Approx(trace.t.back()));
+    if (figure.id == "phase") CHECK(data["cycles"][0]["t"].back().get<double>() == Approx(trace.t.back()));
+  }
 }

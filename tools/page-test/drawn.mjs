@@ -28,5 +28,5 @@ export async function checkDrawn(tab) {
     if (one.label.length < 10) tab.blame(`picture ${i} has no words: '${one.label}'`);
     if (!(one.wide > 100)) tab.blame(`picture ${i} is not seen`);
   });
-  return { plots: page.plots.length, pictures: page.pictures.length };
+  return page.plots.length + page.pictures.length;
 }

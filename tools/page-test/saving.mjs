@@ -60,7 +60,9 @@ async function checkCsv(tab, name, content, button) {
   if (saved.length < 2 || !saved.every((cell) => held.has(cell))) tab.blame(`${name}: numbers that the data does not hold`);
 }
 
+// In the dark: what is saved is to be light all the same.
 export async function checkSaving(tab) {
+  await tab.media('screen', 'dark');
   const buttons = await tab.ask(() => [...document.querySelectorAll('.tools button')].map((one, i) => ({ i, kind: one.textContent,
     of: one.closest('.tools').getAttribute('aria-label') })).filter((one) => ['SVG', 'PNG', 'CSV', 'JSON'].includes(one.kind)));
   const owed = await tab.ask(() => ({ plots: document.querySelectorAll('.plot').length, tables: document.querySelectorAll('main table').length,
@@ -75,7 +77,7 @@ export async function checkSaving(tab) {
   for (const { i, kind, of } of tried) {
     const file = await tab.savedBy(() => tab.ask((i) => document.querySelectorAll('.tools button')[i].click(), i));
     const name = `${kind} of ${of}`;
-    if (!file) { tab.blame(`${name}: nothing was saved`); continue; }
+    if (!file) { tab.blame(`${name}: nothing was saved`); break; }
     if (!new RegExp(`^[a-z0-9-]+\\.${kind.toLowerCase()}$`).test(file.name)) tab.blame(`${name}: saved as '${file.name}'`);
     try {
       if (kind === 'PNG') checkPng(tab, name, file.content);

@@ -69,7 +69,7 @@ export async function checkSliders(tab) {
     return 0;
   }
   const [nw, na] = [data.G.w.length, data.family.A.length];
-  for (const [w, a] of [[0, 0], [nw >> 2, na >> 1], [nw >> 1, na - 2], [nw - 1, na >> 2]]) await checkAt(tab, data, w, a);
+  for (const [w, a] of [[0, 0], [Math.floor(0.27 * nw), na >> 1], [Math.floor(0.56 * nw), na - 2], [nw - 1, na >> 2]]) await checkAt(tab, data, w, a);
 
   await wait(600);  // what is announced waits until the slider rests
   const spoken = await tab.ask(() => [document.querySelector('.sliders [aria-live=polite]').textContent, document.getElementById('readout-nyquist').textContent]);

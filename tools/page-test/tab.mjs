@@ -56,7 +56,7 @@ export async function openTab(browser, page) {
     ask: (question, ...given) => value(`(${question})(...${JSON.stringify(given)})`),
     open: async () => {
       await call('Page.navigate', { url });
-      if (!await until(() => value('document.readyState === "complete" && document.documentElement.dataset.ready === "yes"'), 20_000))
+      if (!await until(() => value('document.readyState === "complete" && document.documentElement.dataset.ready === "yes"')))
         blame('the page did not get ready');
     },
     async resize(width, height = 900) {
