@@ -12,7 +12,7 @@
 namespace limcycle {
 namespace {
 
-constexpr std::size_t block_columns = 32;  // of a line in a block
+constexpr std::size_t block_columns = 36;  // of a line in a block
 constexpr std::size_t sum_lines = 3;       // of a polynomial
 
 constexpr std::string_view true_minus = "\xE2\x88\x92", ellipsis = "\xE2\x80\xA6";
