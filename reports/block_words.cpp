@@ -12,7 +12,7 @@
 namespace limcycle {
 namespace {
 
-constexpr std::size_t block_columns = 32;  // of a line in a block
+constexpr std::size_t block_columns = 36;  // of a line in a block
 constexpr std::size_t sum_lines = 3;       // of a polynomial
 
 constexpr std::string_view true_minus = "\xE2\x88\x92", ellipsis = "\xE2\x80\xA6";
@@ -44,7 +44,9 @@ std::string listed(const std::vector<Number>& values, auto&& word) {
 
 std::string complex_word(const std::complex<double>& value, auto&& word) {
   if (value.imag() == 0.0) return word(value.real());
-  return word(value.real()) + (value.imag() < 0.0 ? " - " : " + ") + "j " + word(std::abs(value.imag()));
+  std::string minus = word(-1.0);  // each way of writing has its own sign
+  minus.pop_back();
+  return word(value.real()) + " " + (value.imag() < 0.0 ? minus : "+") + " j " + word(std::abs(value.imag()));
 }
 
 std::string matrix_rows(const Eigen::MatrixXd& matrix) {

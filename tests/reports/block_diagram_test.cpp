@@ -51,7 +51,9 @@ LoopParts everything() {
   Relay<double> relay;
   relay.level = 2.0;
   parts.element = relay;
-  parts.error = Quantizer<double>{0.25};
+  Quantizer<double> quantizer;
+  quantizer.step = 0.25;
+  parts.error = quantizer;
   parts.reference_rate = 0.001;
   parts.load = -0.5;
   return parts;
