@@ -20,7 +20,8 @@ StepperKind stepper_kind(const std::string& name);
 std::string_view to_string(StepperKind kind);
 
 /// Matrix exponentials for loops of piecewise affine elements, the stiff stepper for loops with bristle laws or a stiff
-/// linear part, else an explicit one of Odeint: of order 8 for tight tolerances, of order 5 for loose ones.
+/// linear part (where a body can stick and wait, a part that is stiff by much less), else an explicit one of Odeint: of
+/// order 8 for tight tolerances, of order 5 for loose ones.
 /// `driven`: signals of time act from outside, so that matrix exponentials do not apply.
 StepperKind choose_stepper(const Loop& loop, double rtol, bool driven = false);
 /// That of Odeint's that suits a tolerance.
