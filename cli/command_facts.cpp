@@ -72,7 +72,7 @@ void split_type(const std::string& written, OptionFacts& into) {
   }
 }
 
-OptionFacts facts_of(const CLI::Option& option, const std::string& command) {
+OptionFacts option_facts(const CLI::Option& option, const std::string& command) {
   OptionFacts facts;
   facts.argument = option.get_positional();
   facts.name = facts.argument ? option.get_name(true) : "--" + option.get_lnames().front();
@@ -95,7 +95,7 @@ std::vector<CommandFacts> facts_of(const CLI::App& program) {
   std::vector<CommandFacts> all;
   for (const auto* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     CommandFacts facts{command->get_name(), command->get_description(), description_of(command->get_name()), {}};
-    for (const auto* option : command->get_options()) facts.options.push_back(facts_of(*option, facts.name));
+    for (const auto* option : command->get_options()) facts.options.push_back(option_facts(*option, facts.name));
     std::ranges::stable_sort(facts.options, {}, [](const OptionFacts& one) {
       return one.argument ? 0 : one.common ? 2 : 1;
     });

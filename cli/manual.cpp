@@ -10,11 +10,11 @@ namespace limcycle {
 namespace {
 
 std::string page(const CLI::App& program, const std::string& name) {
-  const auto commands = facts_of(program);
-  if (name.empty()) return program_page(commands, build_info::version);
+  const auto all = facts_of(program);
+  if (name.empty()) return program_page(all, build_info::version);
   if (name == "case") return case_page(build_info::version);
   std::vector<std::string> names{"case"};
-  for (const auto& command : commands) {
+  for (const auto& command : all) {
     if (command.name == name) return command_page(command, build_info::version);
     names.push_back(command.name);
   }

@@ -17,12 +17,12 @@
 namespace limcycle {
 namespace {
 
-constexpr std::size_t page_width = 80, comment_column = 26;
+constexpr std::size_t case_width = 80, comment_column = 26;
 
 /// As comment lines.
 std::string commented(const std::string& text) {
   std::string out;
-  std::istringstream lines(wrapped(text, page_width - 2));
+  std::istringstream lines(wrapped(text, case_width - 2));
   for (std::string line; std::getline(lines, line);) out += "# " + line + '\n';
   return out;
 }
@@ -30,7 +30,7 @@ std::string commented(const std::string& text) {
 /// A comment behind a label, indented under itself, so that no line of it looks like a key.
 std::string labelled(const std::string& label, const std::string& text) {
   constexpr std::size_t indent = 10;
-  const std::string body = wrapped(text, page_width - 2, indent);
+  const std::string body = wrapped(text, case_width - 2, indent);
   std::string out;
   std::istringstream lines(label + std::string(indent - label.size(), ' ') + body.substr(indent));
   for (std::string line; std::getline(lines, line);) out += "# " + line + '\n';
@@ -41,11 +41,11 @@ std::string labelled(const std::string& label, const std::string& text) {
 std::string assignment(const std::string& line, const std::string& comment) {
   const std::size_t own = display_width(line);
   if (own + 2 > comment_column) {
-    if (own + 4 + display_width(comment) <= page_width) return line + "  # " + comment + '\n';
+    if (own + 4 + display_width(comment) <= case_width) return line + "  # " + comment + '\n';
     return commented(comment) + line + '\n';
   }
   std::string out;
-  std::istringstream lines(wrapped(comment, page_width - comment_column - 4));
+  std::istringstream lines(wrapped(comment, case_width - comment_column - 4));
   for (std::string part; std::getline(lines, part);)
     out += (out.empty() ? line + std::string(comment_column - own, ' ') + "# "
                         : std::string(comment_column, ' ') + "#   ") +
@@ -113,15 +113,15 @@ std::string optional_section(const CaseSection& section, bool active, const std:
 }
 
 /// The parts of the wanted loop, in the order in which a case tells them.
-struct Part {
+struct NewPart {
   std::string section, typical_group;
   const CatalogueEntry* entry;
 };
 
-std::vector<Part> parts_of(const NewCase& wanted, const std::vector<CatalogueEntry>& all) {
+std::vector<NewPart> parts_of(const NewCase& wanted, const std::vector<CatalogueEntry>& all) {
   // What stands before or behind a controller may need the rate of its signal: then it must have one.
   const bool guarded = !wanted.element.empty() || !wanted.error.empty();
-  std::vector<Part> parts{
+  std::vector<NewPart> parts{
       {"loop.plant", wanted.friction.empty() ? "lone plant" : "plant", &entry_of(all, {"plant"}, wanted.plant)},
       {"loop.controller", guarded ? "guarded controller" : "controller",
        &entry_of(all, {"controller"}, wanted.controller)}};
@@ -137,14 +137,14 @@ std::vector<Part> parts_of(const NewCase& wanted, const std::vector<CatalogueEnt
 }
 
 /// The number that a first look at the spread is about: of the law or element rather than of the plant.
-std::string first_number(const std::vector<Part>& parts) {
+std::string first_number(const std::vector<NewPart>& parts) {
   for (auto part = parts.rbegin(); part != parts.rend(); ++part)
     for (const auto& parameter : part->entry->parameters)
       if (parameter.type == "number" && parameter.required) return part->section + "." + parameter.key;
   return {};
 }
 
-std::string other_kinds(const Part& part, const std::vector<CatalogueEntry>& all) {
+std::string other_kinds(const NewPart& part, const std::vector<CatalogueEntry>& all) {
   std::string kinds;
   for (const auto& entry : all)
     if (entry.group == part.entry->group && entry.kind != part.entry->kind)
@@ -171,7 +171,7 @@ std::string new_case(const NewCase& wanted) {
   text += fmt::format("title = \"{}\"\n", title);
   for (const CaseSection& section : case_sections())
     if (section.name == "loop") text += optional_section(section, true, {});
-  for (const Part& part : parts)
+  for (const NewPart& part : parts)
     text += section_of(part.section, *part.entry, part.typical_group, other_kinds(part, all));
   const std::string number = first_number(parts);
   for (const CaseSection& section : case_sections()) {
