@@ -78,7 +78,7 @@ TEST_CASE("report: each case gives a page of less than 3 MB, complete and self-c
     CHECK(page.size() < largest_report);
     const std::string markup = without_scripts(page);
     CHECK(markup_fault(markup) == "");
-    CHECK(markup.find("http://") == std::string::npos);
+    CHECK_FALSE(std::regex_search(markup, std::regex("(src|href)\\s*=\\s*\"(?!data:|#)")));
     CHECK(page.find("could not be computed") == std::string::npos);
     ++pages;
   }
@@ -243,7 +243,7 @@ TEST_CASE("report: a loop that rests and one with a dead time say what does not 
 
 TEST_CASE("report: interrupted, it writes what is there and says so") {
   const Scratch scratch;
-  const std::string command = "timeout -s INT 1 " + quoted(LIMCYCLE_PROGRAM) + " report " +
+  const std::string command = "timeout -s INT 4 " + quoted(LIMCYCLE_PROGRAM) + " report " +
                               quoted(shipped("two-mass-drive.toml")) + " -o " + quoted(scratch.file("i.html")) +
                               " --x loop.controller.kp=1:5:200 --y loop.controller.kd=1:9:200 > " +
                               quoted(scratch.file("out")) + " 2> " + quoted(scratch.file("err"));
