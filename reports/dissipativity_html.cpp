@@ -108,7 +108,7 @@ std::string dissipativity_page(const DissipativityReport& report, const Provenan
     body += html_table(counterexample_table(*found), "One cycle of the counter-example");
   }
   for (const auto& figure : dissipativity_figures(report))
-    body += html_picture(experiment_figure(figure), figure.heading);
+    body += html_picture(experiment_figure(figure), figure.heading, experiment_figure_csv(figure));
   if (report.over_all) body += "<h2>Bounds</h2>\n" + html_table(bound_table(report), "Bounds of states and force");
   if (report.loop) body += "<h2>Loop</h2>\n" + html_table(loop_table(report), "What energy says of the loop");
   body += html_notes(report.notes);

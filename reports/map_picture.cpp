@@ -193,7 +193,8 @@ std::string map_page(const MapReport& report, const Provenance& provenance, cons
       html_picture(
           map_picture(report, units),
           "What motions from several starts come to; amplitude and period of the stable cycle that swings most; "
-          "and what each method was worth.");
+          "and what each method was worth.",
+          map_csv(report));
   body += "<h2>What happens</h2>\n" + html_table(happens_table(report), "Points of the map by what happens there");
   if (!report.map.methods.empty())
     body += "<h2>What methods are worth</h2>\n" + html_table(worth_table(report), "Shares of the map, by method");
