@@ -70,6 +70,7 @@ void add_map(CLI::App& program, Action& action);
 void add_margin(CLI::App& program, Action& action);
 void add_precision(CLI::App& program, Action& action);
 void add_predict(CLI::App& program, Action& action);
+void add_report(CLI::App& program, Action& action);
 void add_sensitivity(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);
 void add_status(CLI::App& program, Action& action);

@@ -18,9 +18,9 @@ namespace limcycle {
 namespace {
 
 constexpr void (*commands[])(CLI::App&, Action&) = {
-    add_predict, add_df,          add_simulate,  add_continue, add_margin,
-    add_map,     add_sensitivity, add_precision, add_adequate, add_dissipativity,
-    add_claims,  add_experiment,  add_status,    add_check,    add_laws};
+    add_predict,    add_report,      add_df,        add_simulate, add_continue,      add_margin,
+    add_map,        add_sensitivity, add_precision, add_adequate, add_dissipativity, add_claims,
+    add_experiment, add_status,      add_check,     add_laws};
 
 std::string version_text() {
   return std::string("limcycle ") + build_info::version + " (" + build_info::commit + ", " + build_info::compiler +

@@ -4,6 +4,7 @@
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
+#include "limcycle/cli/precision_of.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/atlas.hpp"
@@ -19,18 +20,6 @@ struct PrecisionFlags : CommonFlags {
   bool families = false;      ///< --families
   bool no_stiffness = false;  ///< --no-stiffness
 };
-
-/// The element whose describing function is asked for: that of a case with [df] or with friction; else null.
-const Element<double>* element_of(const Case& from) {
-  const bool friction = from.element || (from.loop && from.loop->friction);
-  return from.df || friction ? &df_element(from) : nullptr;
-}
-
-std::vector<DfPoint> points_of(const Case& from) {
-  if (from.df) return representative_points(from.df->amplitude, from.df->frequency);
-  const Element<double>* element = element_of(from);
-  return element == nullptr ? std::vector<DfPoint>{} : representative_points(*element);
-}
 
 /// A cycle without a verified reference is no answer, nor is nothing at all. A loop that rests has no such question.
 int exit_code(const PrecisionReport& report) {
@@ -48,7 +37,7 @@ PrecisionReport compute(const Case& from, const PrecisionFlags& flags) {
   options.stiffness = !flags.no_stiffness;
   options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
   catch_interrupts();
-  return precision(from.loop ? &*from.loop : nullptr, element_of(from), points_of(from), options);
+  return precision_of(from, options);
 }
 
 StepperAtlas compute_atlas(const Case& from, const PrecisionFlags& flags) {

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "limcycle/cli/command.hpp"
+#include "limcycle/cli/from_page.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
@@ -19,6 +20,7 @@ namespace {
 struct PredictFlags : CommonFlags {
   std::string html;      ///< --html
   std::string pictures;  ///< --svg
+  std::string from;      ///< --from
   bool require_agreement = false;
 };
 
@@ -44,7 +46,8 @@ int exit_code(const PredictReport& report, bool require_agreement) {
 
 int run(PredictFlags flags) {
   sort_out(flags);
-  const Case from = load_case(flags);
+  const CaseWithPage loaded = load_case_or_page(flags, flags.from);
+  const Case& from = loaded.from;
   const LoopParts& parts = need_loop(from);
   const Units units = units_of(parts);
   Output output(flags);
@@ -68,9 +71,11 @@ int run(PredictFlags flags) {
   }
   if (!flags.pictures.empty()) output.file(flags.pictures, predict_picture(report, units));
   output.text(text);
-  if (output.wants_json()) output.json(predict_json(made, report));
+  const std::string document = predict_json(made, report);
+  if (output.wants_json()) output.json(document);
   if (output.wants_csv()) output.csv(predict_csv(report));
   output.finish();
+  if (report.status != Status::interrupted) compare_with_page(flags, loaded, document);
   if (report.status == Status::interrupted && !flags.quiet)
     std::cerr << "limcycle: interrupted; what was computed until then is written\n";
   return exit_code(report, flags.require_agreement);
@@ -83,6 +88,7 @@ void add_predict(CLI::App& program, Action& action) {
   CLI::App* command = add_command(program, action, "predict",
                                   "Every limit cycle, predicted and checked in the time domain, with a verdict", true,
                                   flags, [flags] { return run(*flags); });
+  add_from_flag(*command, flags->from);
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
   command->add_option("--svg", flags->pictures, "Write a picture to FILE (so does -o FILE.svg)")->type_name("FILE");

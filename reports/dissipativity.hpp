@@ -23,6 +23,9 @@ std::string dissipativity_csv(const DissipativityReport& report);
 std::string dissipativity_page(const DissipativityReport& report, const Provenance& provenance,
                                const std::string& case_text, const std::string& flags);
 
+/// Markup of what was found, under headings of this level (2: h2).
+std::string dissipativity_sections(const DissipativityReport& report, int level);
+
 /// Bounds of the states and of the force, with how they are known.
 Table bound_table(const DissipativityReport& report);
 

@@ -98,23 +98,27 @@ std::vector<ExperimentFigure> dissipativity_figures(const DissipativityReport& r
   return figures;
 }
 
-std::string dissipativity_page(const DissipativityReport& report, const Provenance& provenance,
-                               const std::string& case_text, const std::string& flags) {
-  std::string body;
+std::string dissipativity_sections(const DissipativityReport& report, int level) {
+  const std::string heading = "h" + std::to_string(level);
   Table facts{{{"", "", Align::left}, {"", "", Align::left}}, passivity_facts(report)};
-  body += "<h2>Passivity</h2>\n" + html_table(facts, "What was found");
+  std::string body = html_tag(heading, "Passivity") + html_table(facts, "What was found");
   if (const auto& found = report.passivity.counterexample) {
     body += html_tag("p", found->words);
     body += html_table(counterexample_table(*found), "One cycle of the counter-example");
   }
   for (const auto& figure : dissipativity_figures(report))
     body += html_picture(experiment_figure(figure), figure.heading, experiment_figure_csv(figure));
-  if (report.over_all) body += "<h2>Bounds</h2>\n" + html_table(bound_table(report), "Bounds of states and force");
-  if (report.loop) body += "<h2>Loop</h2>\n" + html_table(loop_table(report), "What energy says of the loop");
-  body += html_notes(report.notes);
+  if (report.over_all)
+    body += html_tag(heading, "Bounds") + html_table(bound_table(report), "Bounds of states and force");
+  if (report.loop) body += html_tag(heading, "Loop") + html_table(loop_table(report), "What energy says of the loop");
+  return body + html_notes(report.notes, level);
+}
+
+std::string dissipativity_page(const DissipativityReport& report, const Provenance& provenance,
+                               const std::string& case_text, const std::string& flags) {
   return html_page({.provenance = provenance,
                     .answer = dissipativity_answer(report),
-                    .body = body,
+                    .body = dissipativity_sections(report, 2),
                     .command = "dissipativity",
                     .flags = flags,
                     .case_text = case_text});

@@ -28,12 +28,15 @@ std::string figure_data(const std::string& json) {
   return safe;
 }
 
-std::string figures_html(const std::vector<Figure>& figures) {
+std::string figures_html(const std::vector<Figure>& figures, bool hint) {
   if (figures.empty()) return "";
-  std::string out =
-      "<p class=\"hint\">Drag a figure to move it, drag with Shift to zoom, click twice for the first view. Keys of a "
-      "focused figure: arrows move, + and − zoom, a shows all, 0 the first view again.</p>\n<noscript><p>The figures "
-      "need JavaScript; the texts under them say what they show.</p></noscript>\n";
+  std::string out;
+  if (hint)
+    out =
+        "<p class=\"hint\">Drag a figure to move it, drag with Shift to zoom, click twice for the first view. Keys of "
+        "a "
+        "focused figure: arrows move, + and − zoom, a shows all, 0 the first view again.</p>\n<noscript><p>The figures "
+        "need JavaScript; the texts under them say what they show.</p></noscript>\n";
   for (const auto& figure : figures) out += figure_html(figure);
   return out;
 }

@@ -83,10 +83,12 @@ Json labels(const Units& units) {
           {"output", with_unit(units.force.empty() ? "element's output" : "force", units.force)}};
 }
 
-/// One curve with the samples that are stuck marked.
-Json curve(const Trace& trace, std::size_t most, double sticking, bool& whole) {
+/// One curve with the samples that are stuck marked. Of a run too long to draw only the first part; a `period` is never
+/// cut, lest its second copy begin where the first was cut.
+Json curve(const Trace& trace, std::size_t most, double sticking, bool period, bool& whole) {
   const auto stuck = stuck_samples(trace, sticking);
-  const Thinned kept = thin(trace, most, stuck);
+  Thinned kept = thin(trace, most, stuck);
+  if (period && !kept.whole) kept = thin(trace, 2 * most, stuck, INFINITY);
   whole = kept.whole;
   Json marks = Json::array();
   for (const std::size_t i : kept.index) marks.push_back(i < stuck.size() && stuck[i] ? 1 : 0);
@@ -104,7 +106,8 @@ Json curve(const Trace& trace, std::size_t most, double sticking, bool& whole) {
 
 Figure time_figure(const Shown& what, const Units& units) {
   bool whole = true;
-  Json run = curve(*what.trace, points_of_cycle, what.cycle ? what.cycle->sticking_fraction : 0.0, whole);
+  Json run = curve(*what.trace, points_of_cycle, what.cycle ? what.cycle->sticking_fraction : 0.0,
+                   what.cycle != nullptr, whole);
   std::string finding = what.cycle ? fmt::format("Over the period of {} s", with_digits(what.cycle->period, 4))
                                    : fmt::format("In the {}{}", what.name, whole ? "" : " (its first part)");
   finding += " y moves " + between(what.trace->y, units.y);
@@ -125,14 +128,14 @@ Figure phase_figure(const PredictReport& report, const Units& units) {
   for (std::size_t i = 0; i < report.cycles.size(); ++i) {
     const auto& cycle = report.cycles[i];
     if (!drawable(cycle.trace)) continue;
-    Json one = curve(cycle.trace, points_of_cycle, cycle.sticking_fraction, whole);
+    Json one = curve(cycle.trace, points_of_cycle, cycle.sticking_fraction, true, whole);
     one["name"] = fmt::format("limit cycle {}", i);
     one["stable"] = cycle.stable.value_or(true);
     cycles.push_back(std::move(one));
   }
   for (const auto& outcome : report.outcomes) {
     if (!drawable(outcome.trace)) continue;
-    Json one = curve(outcome.trace, points_of_run, 0.0, whole);
+    Json one = curve(outcome.trace, points_of_run, 0.0, false, whole);
     all_whole = all_whole && whole;
     one["name"] = "from " + outcome.start + (whole ? "" : " (first part)");
     runs.push_back(std::move(one));
@@ -156,7 +159,8 @@ Figure phase_figure(const PredictReport& report, const Units& units) {
 
 Figure loop_figure(const Shown& what, const Units& units) {
   bool whole = true;
-  const Json run = curve(*what.trace, points_of_cycle, what.cycle ? what.cycle->sticking_fraction : 0.0, whole);
+  const Json run = curve(*what.trace, points_of_cycle, what.cycle ? what.cycle->sticking_fraction : 0.0,
+                         what.cycle != nullptr, whole);
   const std::string output = units.force.empty() ? "output" : "force";
   return {"loop", "Hysteresis: " + output + " against displacement and rate",
           fmt::format("The element's {} lies {}, while its input moves {} and its rate {}{}.", output,

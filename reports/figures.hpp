@@ -22,7 +22,8 @@ std::vector<Figure> predict_figures(const PredictReport& report, const Units& un
 /// JSON text as it may stand inside a script element of a page: without '<'.
 std::string figure_data(const std::string& json);
 
-/// Markup of figures, which the script of the page draws. Without scripts their findings remain.
-std::string figures_html(const std::vector<Figure>& figures);
+/// Markup of figures, which the script of the page draws. Without scripts their findings remain. `hint`: with a line on
+/// how to move them, once a page is enough.
+std::string figures_html(const std::vector<Figure>& figures, bool hint = true);
 
 }  // namespace limcycle

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "limcycle/reports/case_in_page.hpp"
 #include "limcycle/reports/figure_numbers.hpp"
 #include "limcycle/reports/page/page.hpp"
 
@@ -47,7 +48,12 @@ std::string origin(const HtmlPage& page) {
   const auto entry = [](const std::string& name, const std::string& value) {
     return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html_escaped(value));
   };
-  std::string out = "<h2>Where this comes from</h2>\n<p>To make it again:</p>\n" + html_tag("pre", command) + "<dl>\n";
+  std::string out =
+      "<h2 id=\"origin\">Where this comes from</h2>\n<p>To make it again:</p>\n" + html_tag("pre", command);
+  if (!page.case_text.empty())
+    out += "<p>The same prediction from this page alone, which holds the case:</p>\n" +
+           html_tag("pre", "limcycle predict --from PAGE.html");
+  out += "<dl>\n";
   out += entry("program",
                fmt::format("limcycle {} ({})", from.version, from.commit.empty() ? "commit unknown" : from.commit));
   out += entry("built with", fmt::format("{}, {}", from.compiler, from.build_type));
@@ -161,9 +167,9 @@ std::string html_picture(const std::string& svg, const std::string& caption, con
   return out + "</figure>\n";
 }
 
-std::string html_notes(const std::vector<std::string>& notes) {
+std::string html_notes(const std::vector<std::string>& notes, int level) {
   if (notes.empty()) return "";
-  std::string out = "<h2>Notes</h2>\n<ul>\n";
+  std::string out = html_tag("h" + std::to_string(level), "Notes") + "<ul>\n";
   for (const auto& note : notes) out += html_tag("li", note);
   return out + "</ul>\n";
 }
@@ -183,6 +189,8 @@ std::string html_page(const HtmlPage& page) {
   for (const auto& sentence : page.worth) out += "<p class=\"worth\">" + html_escaped(sentence) + "</p>\n";
   out += "</header>\n<main id=\"results\" tabindex=\"-1\">\n" + page.body + "</main>\n<footer>\n" + origin(page) +
          "</footer>\n";
+  if (!page.case_text.empty()) out += case_element(page.provenance, page.case_text, page.command, page.flags);
+  if (!page.result.empty()) out += result_element(page.result);
   for (const auto& script : page.scripts) out += "<script>" + script + "</script>\n";
   return out + "</body>\n</html>\n";
 }

@@ -25,8 +25,8 @@ std::string html_table(const Table& table, const std::string& caption);
 /// picture.
 std::string html_picture(const std::string& svg, const std::string& caption, const std::string& csv = "");
 
-/// Heading and list; nothing without notes.
-std::string html_notes(const std::vector<std::string>& notes);
+/// Heading (h2, or another level) and list; nothing without notes.
+std::string html_notes(const std::vector<std::string>& notes, int level = 2);
 
 /// What a page is made of.
 struct HtmlPage {
@@ -37,10 +37,12 @@ struct HtmlPage {
   std::string command;               ///< that makes it again: "predict"; its case and overrides are added
   std::string flags{};               ///< of that command, as they are typed
   std::string case_text;             ///< the case file as read; empty: left out
+  std::string result{};              ///< JSON document for programs; empty: none
   std::vector<std::string> scripts{std::string(page_script())};  ///< the page's own last
 };
 
-/// A self-contained page: it asks nothing of the network (its own policy forbids it) and tells where it comes from.
+/// A self-contained page that holds its case and its result for programs (case_in_page.hpp): it asks nothing of the
+/// network (its own policy forbids it) and tells where it comes from.
 std::string html_page(const HtmlPage& page);
 
 }  // namespace limcycle

@@ -29,6 +29,9 @@ std::string map_csv(const MapReport& report);
 /// What happens, the amplitude, and what each method was worth, as SVG.
 std::string map_picture(const MapReport& report, const Units& units);
 
+/// Markup of picture and tables, under headings of this level (2: h2).
+std::string map_sections(const MapReport& report, const Units& units, int level);
+
 std::string map_page(const MapReport& report, const Provenance& provenance, const std::string& case_text,
                      const Units& units, const std::string& flags);
 

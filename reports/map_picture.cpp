@@ -186,21 +186,28 @@ std::string map_picture(const MapReport& report, const Units& units) {
                      report.map.y.path + " over " + report.map.x.path, body);
 }
 
-std::string map_page(const MapReport& report, const Provenance& provenance, const std::string& case_text,
-                     const Units& units, const std::string& flags) {
+std::string map_sections(const MapReport& report, const Units& units, int level) {
+  const std::string heading = "h" + std::to_string(level);
   std::string body =
-      "<h2>The map</h2>\n" +
+      html_tag(heading, "The map") +
       html_picture(
           map_picture(report, units),
           "What motions from several starts come to; amplitude and period of the stable cycle that swings most; "
           "and what each method was worth.",
           map_csv(report));
-  body += "<h2>What happens</h2>\n" + html_table(happens_table(report), "Points of the map by what happens there");
+  body +=
+      html_tag(heading, "What happens") + html_table(happens_table(report), "Points of the map by what happens there");
   if (!report.map.methods.empty())
-    body += "<h2>What methods are worth</h2>\n" + html_table(worth_table(report), "Shares of the map, by method");
+    body +=
+        html_tag(heading, "What methods are worth") + html_table(worth_table(report), "Shares of the map, by method");
+  return body;
+}
+
+std::string map_page(const MapReport& report, const Provenance& provenance, const std::string& case_text,
+                     const Units& units, const std::string& flags) {
   return html_page({.provenance = provenance,
                     .answer = map_answer(report),
-                    .body = body,
+                    .body = map_sections(report, units, 2),
                     .command = "map",
                     .flags = flags,
                     .case_text = case_text});

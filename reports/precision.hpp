@@ -40,6 +40,9 @@ std::string precision_json(const Provenance& provenance, const PrecisionReport& 
 /// One row a point of a chart or of the stiffness study, told apart by the first column.
 std::string precision_csv(const PrecisionReport& report);
 
+/// Markup of charts and tables, under headings of this level (2: h2); the figures need the page's scripts.
+std::string precision_sections(const PrecisionReport& report, const Units& units, int level);
+
 std::string precision_page(const PrecisionReport& report, const Provenance& provenance, const std::string& case_text,
                            const Units& units);
 

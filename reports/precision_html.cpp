@@ -72,20 +72,20 @@ Figure stiffness_figure(const StiffnessStudy& study) {
                      "CPU time (s)", series);
 }
 
-std::string chart_html(const WorkChart& chart) {
-  const std::string heading = chart.question == "cycle" ? "The cycle" : "The describing function";
-  std::string out = "<h2>" + heading + "</h2>\n" + html_tag("p", reference_in_words(chart));
+std::string chart_html(const WorkChart& chart, const std::string& heading) {
+  std::string out = html_tag(heading, chart.question == "cycle" ? "The cycle" : "The describing function") +
+                    html_tag("p", reference_in_words(chart));
   if (chart.points.empty()) return out;
   if (chart.question == "cycle") out += html_tag("p", conditions());
   out += html_table(method_table(chart), "CPU time that each method needs for an error");
-  return out + figures_html({chart_figure(chart)}) + "<details><summary>All settings</summary>\n" +
+  return out + figures_html({chart_figure(chart)}, heading == "h2") + "<details><summary>All settings</summary>\n" +
          html_table(point_table(chart), "Every method with every setting") + "</details>\n";
 }
 
 }  // namespace
 
-std::string precision_page(const PrecisionReport& report, const Provenance& provenance, const std::string& case_text,
-                           const Units& units) {
+std::string precision_sections(const PrecisionReport& report, const Units& units, int level) {
+  const std::string heading = "h" + std::to_string(level);
   std::string body;
   if (report.cycle)
     body += html_tag(
@@ -93,18 +93,22 @@ std::string precision_page(const PrecisionReport& report, const Provenance& prov
                          with_error(report.cycle->cycle.period, report.cycle->error),
                          Units::attach(with_error(report.cycle->cycle.amplitude, report.cycle->error), units.y)));
   for (const auto* chart : {&report.cycle_chart, &report.df_chart})
-    if (*chart) body += chart_html(**chart);
+    if (*chart) body += chart_html(**chart, heading);
   if (!report.stiffness.points.empty()) {
-    body += "<h2>Stiffness</h2>\n" +
+    body += html_tag(heading, "Stiffness") +
             html_table(stiffness_table(report.stiffness), "CPU time where the stepper is right, else what it is") +
             figures_html({stiffness_figure(report.stiffness)}) + "<ul>\n";
     for (const auto& note : report.stiffness.notes) body += html_tag("li", note);
     body += "</ul>\n";
   }
-  body += html_notes(report.notes);
+  return body + html_notes(report.notes, level);
+}
+
+std::string precision_page(const PrecisionReport& report, const Provenance& provenance, const std::string& case_text,
+                           const Units& units) {
   return html_page({.provenance = provenance,
                     .answer = precision_answer(report),
-                    .body = body,
+                    .body = precision_sections(report, units, 2),
                     .command = "precision",
                     .case_text = case_text,
                     .scripts = {std::string(plotly_script()), std::string(page_script())}});

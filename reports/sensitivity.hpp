@@ -24,6 +24,9 @@ std::string sensitivity_csv(const SensitivityReport& report);
 std::string sensitivity_page(const SensitivityReport& report, const Provenance& provenance,
                              const std::string& case_text, const Units& units, const std::string& flags);
 
+/// Markup of what was found, under headings of this level (2: h2) and below; nothing where nothing was found.
+std::string sensitivity_sections(const SensitivityReport& report, const Units& units, int level);
+
 /// What a reader must know: notes of the study, and numbers without a derivative.
 std::vector<std::string> sensitivity_notes(const SensitivityReport& report);
 

@@ -35,7 +35,8 @@ std::string outcome_in_words(const Simulation& run) {
   return fmt::format("It comes to {}.", to_string(run.outcome));
 }
 
-/// What is zero to the last bit is not part of the motion and left out.
+}  // namespace
+
 Table energy_table(const EnergyBalance& energy) {
   Table table{{{"energy", "", Align::left}, {"", "", Align::left}, {"J", ""}}, {}};
   const auto add = [&](const char* what, const char* where, double value) {
@@ -59,8 +60,6 @@ Table energy_table(const EnergyBalance& energy) {
   add("dissipated", "at switches, by impulses", energy.impulses);
   return table;
 }
-
-}  // namespace
 
 std::string energy_in_words(const EnergyBalance& energy) {
   if (!energy.checks()) return "The law does not tell the energy that it stores, so that there is no balance to check.";

@@ -27,6 +27,9 @@ std::string simulate_text(const std::string& title, const Simulation& run,
                           const std::optional<Agreement>& second = std::nullopt,
                           const std::optional<EnergyBalance>& energy = std::nullopt);
 
+/// Where the energy of a run came from and went to. What is zero to the last bit is not part of the motion and left out.
+Table energy_table(const EnergyBalance& energy);
+
 /// Whether the energy of a run balances, one sentence; begins with "Warning" where it does not.
 std::string energy_in_words(const EnergyBalance& energy);
 

@@ -58,7 +58,8 @@ async function savePicture(svg, name, format) {
   const image = new Image();
   image.src = url;
   await image.decode();
-  const canvas = element("canvas", {width: 2 * width, height: 2 * height});
+  const scale = Math.max(2, 1200 / width);  // a small picture is to be legible too
+  const canvas = element("canvas", {width: Math.ceil(scale * width), height: Math.ceil(scale * height)});
   canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
   URL.revokeObjectURL(url);
   save(fileName(name, "png"), await new Promise((done) => canvas.toBlob(done, "image/png")), "image/png");

@@ -20,6 +20,7 @@ p, li, summary, figcaption { overflow-wrap: anywhere; }
 .answer { font-size: 1.15rem; margin: 0.5rem 0; max-width: 52rem; }
 .worth { margin: 0.25rem 0; color: var(--ink); max-width: 52rem; }
 .scroll { overflow-x: auto; }
+nav ul { display: flex; flex-wrap: wrap; gap: 0.25rem 1.25rem; list-style: none; padding: 0; } nav a { display: inline-block; color: var(--one); }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin-top: 0.5rem; }
 caption { text-align: left; color: var(--soft); padding-bottom: 0.25rem; }
 caption span { position: sticky; left: 0; display: inline-block; max-width: min(52rem, 100vw - 2rem); }
@@ -59,12 +60,13 @@ button[aria-pressed="true"] { background: var(--ink); color: var(--paper); }
 .hint { color: var(--soft); font-size: 0.9rem; }
 footer { padding-bottom: 3rem; }
 @media (pointer: coarse), (max-width: 40rem) { button { min-height: 2.75rem; min-width: 2.75rem; }
-  .slider input { height: 2.75rem; } summary { min-height: 2.75rem; padding: 0.6rem 0; } .skip { min-height: 2.75rem; } }
+  .slider input { height: 2.75rem; } summary { min-height: 2.75rem; padding: 0.6rem 0; } .skip { min-height: 2.75rem; }
+  nav a { min-height: 2.75rem; min-width: 2.75rem; padding: 0.6rem 0; } }
 @media (max-width: 40rem) { .plot { height: 22rem; } .plot.tall { height: 30rem; } .plot[data-figure="loop"] { height: 32rem; }
   dl { grid-template-columns: 1fr; } main, header, footer { padding: 0 0.75rem; } }
 @media (prefers-reduced-motion: reduce) { * { scroll-behavior: auto !important; transition: none !important; animation: none !important; } }
 :root.print .plot { width: 17cm; height: 8.5cm; } :root.print .plot.tall { height: 10cm; }
-@media print { .hint, .tools, .sliders .slider, .sliders legend, .skip { display: none; } :focus-visible { outline: none; }
+@media print { nav, .hint, .tools, .sliders .slider, .sliders legend, .skip { display: none; } :focus-visible { outline: none; }
   figure, table, tr, pre, dl { break-inside: avoid; }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; } h1, h2, h3, caption, summary { break-after: avoid; }
   .scroll { overflow: visible; } .picture svg { max-width: 100%; height: auto; } table { max-width: 100%; font-size: 0.8rem; }

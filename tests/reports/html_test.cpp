@@ -198,3 +198,17 @@ TEST_CASE("a report without traces or curves has no figures but is a page") {
   CHECK_FALSE(holds(text, "<details"));
   CHECK(holds(text, "This loop hunts"));
 }
+
+TEST_CASE("a period that is too long to draw well is drawn whole all the same: it is shown twice") {
+  auto report = sample::hunting();
+  auto& trace = report.cycles[0].trace;
+  for (std::size_t i = 0; i < trace.t.size(); ++i) {
+    trace.rate[i] = std::sin(400.0 * trace.t[i]);
+    trace.y[i] = std::cos(400.0 * trace.t[i]);
+  }
+  for (const auto& figure : predict_figures(report, {})) {
+    const auto data = Json::parse(figure.data);
+    if (figure.id == "time") CHECK(data["run"]["t"].back().get<double>() == Approx(trace.t.back()));
+    if (figure.id == "phase") CHECK(data["cycles"][0]["t"].back().get<double>() == Approx(trace.t.back()));
+  }
+}

@@ -1,0 +1,16 @@
+#include "limcycle/cli/precision_of.hpp"
+
+namespace limcycle {
+
+PrecisionReport precision_of(const Case& from, const PrecisionOptions& options) {
+  const bool friction = from.element || (from.loop && from.loop->friction);
+  const Element<double>* element = from.df || friction ? &df_element(from) : nullptr;
+  std::vector<DfPoint> points;
+  if (from.df)
+    points = representative_points(from.df->amplitude, from.df->frequency);
+  else if (element != nullptr)
+    points = representative_points(*element);
+  return precision(from.loop ? &*from.loop : nullptr, element, points, options);
+}
+
+}  // namespace limcycle

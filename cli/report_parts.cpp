@@ -1,0 +1,210 @@
+#include "limcycle/cli/report_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "limcycle/analysis/study/hunting_map.hpp"
+#include "limcycle/analysis/study/local_sensitivity.hpp"
+#include "limcycle/analysis/sweep.hpp"
+#include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cases/loop_variation.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/parameter_range.hpp"
+#include "limcycle/cli/precision_of.hpp"
+#include "limcycle/cli/threshold.hpp"
+
+namespace limcycle {
+namespace {
+
+/// Everything that a part is computed from.
+struct ReportQuestion {
+  const Case& from;
+  const Loop& loop;
+  const ReportWishes& wishes;
+  const CommonFlags& flags;
+  const PredictReport& predicted;
+};
+
+const Cycle* largest_stable_cycle(const PredictReport& report) {
+  const Cycle* best = nullptr;
+  for (const Cycle& cycle : report.cycles)
+    if (cycle.stable == true && (best == nullptr || cycle.amplitude > best->amplitude)) best = &cycle;
+  return best;
+}
+
+ReportPart<SensitivityReport> sensitivity_part(const ReportQuestion& ask) {
+  SensitivityReport report;
+  const auto numbers = loop_numbers(ask.from);
+  if (const Cycle* cycle = largest_stable_cycle(ask.predicted)) report.cycle = *cycle;
+  if (report.cycle && ask.loop.delay == 0.0)
+    report.local = local_sensitivities(ask.loop, *report.cycle, numbers, interrupted);
+  else if (report.cycle)
+    report.notes.emplace_back("the delay: derivatives of a cycle are not computed for loops with one");
+  report.predicted = predicted_sensitivities(ask.loop, ask.predicted.search, numbers, report.notes, interrupted);
+  if (!report.local.empty() || !report.predicted.empty()) return {std::move(report), {}};
+  if (report.cycle)
+    return {{},
+            "The loop has a dead time: the derivatives of its limit cycle are not computed for such loops, and the "
+            "describing function predicts nothing that could move."};
+  return {{}, "There is no stable limit cycle, and the describing function predicts none: nothing here could move."};
+}
+
+HuntingMap empty_map(const ReportWishes& wishes) {
+  HuntingMap map;
+  map.x = map_axis("--x", wishes.x);
+  map.y = map_axis("--y", wishes.y);
+  map.methods = names_of({true, false, false});
+  map.points.resize(map.size());
+  return map;
+}
+
+ReportPart<MapReport> map_part(const ReportQuestion& ask, const std::function<void(double)>& progress) {
+  MapReport report{empty_map(ask.wishes), {}, {}};
+  HuntingMap& map = report.map;
+  report.x_unit = number_at(ask.from, "--x", map.x.path).unit;
+  report.y_unit = number_at(ask.from, "--y", map.y.path).unit;
+  PredictOptions options = ask.from.predict;
+  options.methods = {true, false, false};
+  options.accuracy = std::max(options.accuracy, 1e-6);  // far below the 5 % that count
+  options.stop = interrupted;
+  const std::string paths[] = {map.x.path, map.y.path};
+  const LoopVariation variation(ask.from, "--x, --y", paths);
+  SweepOptions sweep;
+  sweep.threads = ask.flags.threads;
+  sweep.stop = interrupted;
+  sweep.progress = [&](std::size_t done, std::size_t total) {
+    progress(static_cast<double>(done) / static_cast<double>(total));
+  };
+  run_each(
+      map.size(),
+      [&](std::size_t k) {
+        MapPoint point;
+        point.methods.resize(map.methods.size());
+        const double values[] = {map.x_of(k), map.y_of(k)};
+        if (const auto loop = variation.loop(values)) point = map_point(*loop, options);
+        if (!interrupted()) map.points[k] = std::move(point);
+      },
+      sweep);
+  if (map.known() == 0) return {{}, "Interrupted before a point of the map was computed."};
+  return {std::move(report), {}};
+}
+
+/// The run of [simulate], or one period from a point of the limit cycle.
+std::optional<SimulateOptions> run_to_count(const ReportQuestion& ask, std::string& which) {
+  if (ask.from.simulate) {
+    which = "the run of [simulate]";
+    return ask.from.simulate;
+  }
+  const Cycle* cycle = largest_stable_cycle(ask.predicted);
+  if (cycle == nullptr) return std::nullopt;
+  const auto names = state_names(ask.loop);
+  if (names.size() != cycle->start.x.size()) return std::nullopt;
+  SimulateOptions options;
+  options.duration = cycle->period;
+  for (std::size_t i = 0; i < names.size(); ++i) options.initial[names[i]] = cycle->start.x[i];
+  which = "one period from a point of the limit cycle";
+  return options;
+}
+
+ReportPart<CountedRun> energy_part(const ReportQuestion& ask) {
+  if (!has_energy(*ask.from.loop))
+    return {{}, "The loop has neither friction nor a mechanical plant: there is no energy to count."};
+  CountedRun counted;
+  auto options = run_to_count(ask, counted.which);
+  if (!options)
+    return {{},
+            "The case has no [simulate] section, and the loop no stable limit cycle to follow: nothing was run "
+            "whose energy could be counted."};
+  EnergyAudit audit(*ask.from.loop, ask.loop, options->rtol);
+  options->stop = interrupted;
+  options->watch = [&](LoopField& field, March& march, const std::vector<Mode>& modes) {
+    audit.step(field, march, modes);
+  };
+  counted.run = simulate(ask.loop, *options);
+  counted.energy = audit.balance();
+  if (counted.run.status != Status::converged)
+    return {{},
+            "The run whose energy was to be counted did not reach its end: " +
+                (counted.run.why.empty() ? std::string(to_string(counted.run.status)) : counted.run.why) + "."};
+  return {std::move(counted), {}};
+}
+
+ReportPart<DissipativityReport> dissipativity_part(const ReportQuestion& ask) {
+  const LoopParts& parts = *ask.from.loop;
+  if (!parts.friction && !parts.element)
+    return {{}, "The loop holds neither friction nor an element in series: there is no law to ask."};
+  DissipativityOptions options;
+  options.speed = ask.from.dissipativity.speed;
+  options.passivity.top_speed = ask.from.dissipativity.top_speed;
+  options.passivity.seed = ask.flags.seed;
+  options.passivity.stop = interrupted;
+  options.predict = ask.from.predict;
+  return {dissipativity(parts, options), {}};
+}
+
+ReportPart<PrecisionReport> precision_part(const ReportQuestion& ask) {
+  PrecisionOptions options;
+  options.cycle.predict = ask.from.predict;
+  options.cycle.predict.stop = options.work.stop = interrupted;
+  options.stiffness = false;
+  PrecisionReport report = precision_of(ask.from, options);
+  if (report.cycle_chart || report.df_chart) return {std::move(report), {}};
+  return {{}, "There is neither a limit cycle nor a friction law to measure methods by."};
+}
+
+/// One part, whatever becomes of it.
+template <class Result>
+ReportPart<Result> attempted(bool wanted, const std::string& why_not, auto&& compute) {
+  if (!wanted) return {{}, why_not};
+  if (interrupted()) return {{}, "Interrupted before this was computed."};
+  try {
+    return compute();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return {{}, std::string("This could not be computed: ") + error.what() + "."};
+  }
+}
+
+}  // namespace
+
+void check_wishes(const Case& from, const ReportWishes& wishes) {
+  if (wishes.x.empty() != wishes.y.empty())
+    throw refusal(wishes.x.empty() ? "--y " + wishes.y : "--x " + wishes.x, "a map needs both --x and --y");
+  if (wishes.x.empty()) return;
+  const HuntingMap map = empty_map(wishes);
+  number_at(from, "--x", map.x.path);
+  number_at(from, "--y", map.y.path);
+  if (map.x.path == map.y.path) throw std::invalid_argument("--x and --y name the same parameter");
+}
+
+LoopReport report_parts(const Case& from, const ReportWishes& wishes, const CommonFlags& flags, Progress& progress) {
+  LoopReport report;
+  report.loop = *from.loop;
+  const Loop loop = build_loop(report.loop);
+  PredictOptions options = from.predict;
+  options.stop = interrupted;
+  options.progress = [&](double fraction, std::string_view what) { progress.show(0.3 * fraction, what); };
+  report.predict = predict(loop, options);
+  const ReportQuestion ask{from, loop, wishes, flags, report.predict};
+  const std::string left_out = "Left out by --quick.";
+  progress.show(0.3, "what moves the cycle");
+  report.sensitivity = attempted<SensitivityReport>(!wishes.quick, left_out, [&] { return sensitivity_part(ask); });
+  progress.show(0.4, "where the energy goes");
+  report.energy = attempted<CountedRun>(true, "", [&] { return energy_part(ask); });
+  progress.show(0.45, "what energy can prove");
+  report.dissipativity =
+      attempted<DissipativityReport>(!wishes.quick, left_out, [&] { return dissipativity_part(ask); });
+  report.map = attempted<MapReport>(
+      !wishes.x.empty(), "No map was asked for: --x PATH=FROM:TO:N and --y PATH=FROM:TO:N draw one.",
+      [&] { return map_part(ask, [&](double fraction) { progress.show(0.5 + 0.25 * fraction, "the map"); }); });
+  progress.show(0.75, "speed against accuracy");
+  report.precision = attempted<PrecisionReport>(!wishes.quick, left_out, [&] { return precision_part(ask); });
+  report.interrupted = interrupted();
+  return report;
+}
+
+}  // namespace limcycle
