@@ -73,7 +73,8 @@ std::string atlas_page(const StepperAtlas& atlas, const Provenance& provenance, 
       "<h2>What became of every run</h2>\n" +
       html_picture(atlas_picture(atlas),
                    "Each square is a run: of a stepper, at a tolerance or step, at a stiffness before sliding. "
-                   "What became of it is its colour and its letter.");
+                   "What became of it is its colour and its letter.",
+                   atlas_csv(atlas));
   std::vector<std::string> laws;
   for (const auto& one : atlas.references)
     if (std::ranges::find(laws, one.law) == laws.end()) laws.push_back(one.law);

@@ -13,7 +13,8 @@ std::string continue_page(const ContinueReport& report, const Provenance& proven
     body += "<h2>Bifurcation diagram</h2>\n" +
             html_picture(continue_picture(report, units),
                          "Amplitude and period of every limit cycle that was followed, over " + report.path +
-                             "; stable parts solid, unstable ones dashed.");
+                             "; stable parts solid, unstable ones dashed.",
+                         continue_csv(report));
     Table table = event_table(report, units);
     table.columns.push_back({"what happens", "", Align::left});
     std::size_t row = 0;

@@ -107,7 +107,7 @@ std::string dissipativity_sections(const DissipativityReport& report, int level)
     body += html_table(counterexample_table(*found), "One cycle of the counter-example");
   }
   for (const auto& figure : dissipativity_figures(report))
-    body += html_picture(experiment_figure(figure), figure.heading);
+    body += html_picture(experiment_figure(figure), figure.heading, experiment_figure_csv(figure));
   if (report.over_all)
     body += html_tag(heading, "Bounds") + html_table(bound_table(report), "Bounds of states and force");
   if (report.loop) body += html_tag(heading, "Loop") + html_table(loop_table(report), "What energy says of the loop");

@@ -33,6 +33,9 @@ std::string experiment_picture(const std::vector<Experiment>& experiments);
 /// One figure as an SVG.
 std::string experiment_figure(const ExperimentFigure& figure);
 
+/// Its curves, one point a line: panel, curve, x, y.
+std::string experiment_figure_csv(const ExperimentFigure& figure);
+
 /// The numbers, one row a measurement.
 Table experiment_table(const Experiment& one);
 

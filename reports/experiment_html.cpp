@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "limcycle/reports/experiment.hpp"
+#include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/html_parts.hpp"
+#include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
@@ -34,7 +38,7 @@ std::string one_html(const Experiment& one, bool several) {
   out += findings_html(one) + claims_html(one);
   for (const auto& figure : one.figures) {
     if (figure.panels.empty()) continue;
-    out += html_picture(experiment_figure(figure), figure.heading);
+    out += html_picture(experiment_figure(figure), figure.heading, experiment_figure_csv(figure));
   }
   if (!one.rows.empty())
     out += "<details><summary>Numbers</summary>\n" + html_table(experiment_table(one), "Numbers of " + one.name) +
@@ -43,6 +47,19 @@ std::string one_html(const Experiment& one, bool several) {
 }
 
 }  // namespace
+
+std::string experiment_figure_csv(const ExperimentFigure& figure) {
+  const auto with_unit = [](const std::string& name, const std::string& unit) {
+    return unit.empty() ? name : name + " (" + unit + ")";
+  };
+  std::string out =
+      csv_line({"panel", "curve", with_unit(figure.x, figure.x_unit), with_unit(figure.y, figure.y_unit)});
+  for (const auto& panel : figure.panels)
+    for (const auto& curve : panel.curves)
+      for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
+        out += csv_line({panel.title, curve.name, shortest(curve.x[i]), shortest(curve.y[i])});
+  return out;
+}
 
 std::string experiment_page(const std::vector<Experiment>& experiments, const Provenance& provenance,
                             const std::string& flags) {

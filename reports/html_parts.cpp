@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "limcycle/reports/case_in_page.hpp"
+#include "limcycle/reports/figure_numbers.hpp"
 #include "limcycle/reports/page/page.hpp"
 
 namespace limcycle {
@@ -154,11 +155,16 @@ std::string html_table(const Table& table, const std::string& caption) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string html_picture(const std::string& svg, const std::string& caption) {
+std::string html_picture(const std::string& svg, const std::string& caption, const std::string& csv) {
+  constexpr std::size_t most_rows = 500'000;  // bytes
   if (svg.empty()) return "";
   std::string out = "<figure>\n<div class=\"picture scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" +
                     html_escaped("Picture: " + caption) + "\">\n" + with_own_style(svg) + "</div>\n";
-  return out + "<figcaption>" + html_escaped(caption) + "</figcaption>\n</figure>\n";
+  if (svg.find(">" + html_escaped(caption) + "</text>") == std::string::npos)
+    out += "<figcaption>" + html_escaped(caption) + "</figcaption>\n";
+  if (!csv.empty() && csv.size() <= most_rows)
+    out += "<script type=\"application/json\" class=\"rows\">" + figure_text(csv) + "</script>\n";
+  return out + "</figure>\n";
 }
 
 std::string html_notes(const std::vector<std::string>& notes, int level) {

@@ -20,8 +20,10 @@ std::string html_tag(const std::string& name, const std::string& text);
 std::string html_table(const Table& table, const std::string& caption);
 
 /// A picture (SVG text) of the program in a page: a figure with its caption, in a box that scrolls by itself and stays
-/// light where the page is dark. Rules of its style hold for this picture only. Empty without a picture.
-std::string html_picture(const std::string& svg, const std::string& caption);
+/// light where the page is dark. Rules of its style hold for this picture only. A caption that the picture shows itself
+/// is not repeated. `csv`: its data, which the page then offers as a file (not above half a megabyte). Empty without a
+/// picture.
+std::string html_picture(const std::string& svg, const std::string& caption, const std::string& csv = "");
 
 /// Heading (h2, or another level) and list; nothing without notes.
 std::string html_notes(const std::vector<std::string>& notes, int level = 2);

@@ -193,7 +193,8 @@ std::string map_sections(const MapReport& report, const Units& units, int level)
       html_picture(
           map_picture(report, units),
           "What motions from several starts come to; amplitude and period of the stable cycle that swings most; "
-          "and what each method was worth.");
+          "and what each method was worth.",
+          map_csv(report));
   body +=
       html_tag(heading, "What happens") + html_table(happens_table(report), "Points of the map by what happens there");
   if (!report.map.methods.empty())

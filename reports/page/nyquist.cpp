@@ -99,14 +99,15 @@ Object.assign(draw, {
       traces.push({name, ...put(own.flatMap(circle)), mode: "lines", line: line("three", 1.2, dash), hovertemplate: hover,
         customdata: own.flatMap((c) => circle(c).map(() => "error disc (" + kind + ") of " + frequencyWords(c.w)))});
     }
+    plot.marked = traces.length;  // the crosses stay on top
+    traces.push({name: "at the sliders", ...marks(d, choice), mode: "lines+markers", line: line("ink", 1, "dot"),
+      marker: {color: [colour("one"), colour("two")], size: 13, symbol: ["circle", "square"], line: {color: colour("ink"), width: 2}},
+      hovertemplate: "%{text}<extra></extra>", text: ["G at the sliders", "−1/N at the sliders"]});
     if (d.roots.length > 0) {
       traces.push({name: "1 + N G = 0", ...put(d.roots.map((r) => [r.re, r.im])), mode: "markers",
         marker: {color: colour("ink"), size: 11, symbol: "x"}, hovertemplate: hover,
         customdata: d.roots.map((r) => amplitudeWords(d, r.A) + ", " + frequencyWords(r.w) + ": " + r.verdict)});
     }
-    traces.push({name: "at the sliders", ...marks(d, choice), mode: "lines+markers", line: line("ink", 1, "dot"),
-      marker: {color: [colour("one"), colour("two")], size: 13, symbol: ["circle", "square"], line: {color: colour("ink"), width: 2}},
-      hovertemplate: "%{text}<extra></extra>", text: ["G at the sliders", "−1/N at the sliders"]});
     return [traces, layout(choice.polar
       ? {xaxis: axis("phase (degrees)", {range: [-370, 10], dtick: isNarrow() ? 90 : 45}), yaxis: axis("size", {type: "log", dtick: 1})}
       : {xaxis: axis("real part", {range: d.window.re}), yaxis: axis("imaginary part", {range: d.window.im, scaleanchor: "x"})})];
@@ -124,14 +125,14 @@ function isInView(plot, x, y) {
 function sayChoice(d, plot) {
   const at = lookUp(d, plot.choice), seen = marks(d, plot.choice);
   const hidden = ["G", "−1/N"].filter((_, i) => !isInView(plot, seen.x[i], seen.y[i]));
-  const off = size(at.distance);
+  const off = size(at.distance), rounded = at.distance.map((part) => Math.abs(part) < 1e-6 ? 0 : part);  // of seven digits
   const worth = !Number.isFinite(off) ? "" : off < 1e-3 ? " (a predicted oscillation)" : "";
   let more = "";
   if (at.between) more += " N is interpolated between what was computed at ω = " + digits(at.between[0]) + " and " + digits(at.between[1]) + " rad/s.";
   if (d.small_motions) more += " G is that of small motions.";
   if (hidden.length > 0) more += " " + hidden.join(" and ") + (hidden.length > 1 ? " lie" : " lies") + " outside the view.";
   return {at, text: frequencyWords(at.frequency) + ", " + amplitudeWords(d, at.amplitude) + ": G = " + inWords(at.G) + ", −1/N = " + inWords(at.z)
-    + ", 1 + N G = " + inWords(at.distance) + ", of size " + digits(off) + worth + "." + more};
+    + ", 1 + N G = " + inWords(rounded) + ", of size " + (off < 1e-6 ? "less than 1e-6" : digits(off)) + worth + "." + more};
 }
 
 // Sliders for ω and A, a readout, and buttons; what changes is announced when it has settled.
@@ -156,7 +157,7 @@ function nyquistControls(plot) {
     }
     if (move) {
       const {x, y} = marks(d, plot.choice);
-      Plotly.restyle(plot, {x: [x], y: [y]}, [plot.data.length - 1]);
+      Plotly.restyle(plot, {x: [x], y: [y]}, [plot.marked]);
     }
     const said = sayChoice(d, plot);
     readout.textContent = said.text;

@@ -97,6 +97,8 @@ function addSaving() {
     const name = svg.closest("figure")?.querySelector("svg .title, h2, h3, h4")?.textContent ?? svg.getAttribute("aria-label") ?? "figure " + (i + 1);
     const own = tools("Figure: " + name, button("SVG", "Save as SVG: " + name, () => savePicture(svg, name, "svg")),
       button("PNG", "Save as PNG: " + name, () => savePicture(svg, name, "png")));
+    const held = svg.closest("figure")?.querySelector("script.rows");
+    if (held) own.append(button("CSV", "Save the data as CSV: " + name, () => save(fileName(name, "csv"), JSON.parse(held.textContent), "text/csv")));
     (svg.closest(".scroll, .picture") ?? svg).after(own);
   });
   document.querySelectorAll("main table").forEach((table) => {

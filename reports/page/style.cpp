@@ -33,7 +33,7 @@ th { color: var(--soft); font-weight: 600; }
 figure { margin: 1rem 0 2rem; }
 .plot { width: 100%; height: 26rem; border: 1px solid var(--line); overflow: hidden; }
 .plot.tall { height: 34rem; }
-.picture { background: #ffffff; color-scheme: light; padding: 0.25rem; }
+.picture { width: fit-content; max-width: 100%; background: #ffffff; color-scheme: light; padding: 0.25rem; }
 .picture svg { display: block; }
 figcaption { color: var(--soft); margin-top: 0.4rem; max-width: 52rem; }
 pre { background: var(--box); border: 1px solid var(--line); padding: 0.75rem; overflow-x: auto; font-size: 0.85rem;

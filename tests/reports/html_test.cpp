@@ -108,6 +108,9 @@ TEST_CASE("the style of a picture rules that picture only") {
   CHECK_FALSE(holds(html_picture(other, "x"), name));
   CHECK(html_picture("", "x").empty());
   CHECK(holds(html_picture("<svg><path/></svg>", "x"), "<svg><path/></svg>"));
+  CHECK_FALSE(holds(html_picture("<svg><text>a &lt; b</text></svg>", "a < b"), "<figcaption>"));
+  CHECK(holds(html_picture("<svg/>", "x", "a\n</script>\n"), "class=\"rows\">\"a\\n\\u003c/script>\\n\"</script>"));
+  CHECK_FALSE(holds(html_picture("<svg/>", "x", std::string(600000, 'a')), "rows"));
 }
 
 TEST_CASE("each figure says in words what it shows") {

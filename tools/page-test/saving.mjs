@@ -47,11 +47,17 @@ async function checkCsv(tab, name, content, button) {
     const button = [...document.querySelectorAll('.tools button')][i], tools = button.closest('.tools');
     const plot = tools.closest('figure')?.querySelector('.plot');
     if (plot) return { id: plot.dataset.figure, data: JSON.parse(document.getElementById('data-' + plot.dataset.figure).textContent) };
+    const rows = tools.closest('figure')?.querySelector('script.rows');
+    if (rows) return { text: JSON.parse(rows.textContent) };
     const near = tools.previousElementSibling, table = near.matches('table') ? near : near.querySelector('table');
     return { cells: [...table.querySelectorAll('tr')].map((row) => [...row.children].map((cell) => cell.textContent.trim())) };
   }, button);
   if (from.cells) {
     if (JSON.stringify(from.cells) !== JSON.stringify(rows)) tab.blame(`${name}: other cells than the table`);
+    return;
+  }
+  if (from.text !== undefined) {
+    if (from.text !== content.toString('utf8') || rows.length < 2) tab.blame(`${name}: other rows than the page holds`);
     return;
   }
   const right = rowsOf(from.id, from.data);
@@ -67,8 +73,8 @@ export async function checkSaving(tab) {
     of: one.closest('.tools').getAttribute('aria-label') })).filter((one) => ['SVG', 'PNG', 'CSV', 'JSON'].includes(one.kind)));
   const owed = await tab.ask(() => ({ plots: document.querySelectorAll('.plot').length, tables: document.querySelectorAll('main table').length,
     pictures: [...document.querySelectorAll('main svg[role=img]')].filter((svg) => !svg.closest('.plot')).length,
-    result: document.querySelectorAll('#result').length }));
-  for (const [kind, right] of [['SVG', owed.plots + owed.pictures], ['PNG', owed.plots + owed.pictures], ['CSV', owed.plots + owed.tables], ['JSON', owed.result]]) {
+    rows: document.querySelectorAll('figure script.rows').length, result: document.querySelectorAll('#result').length }));
+  for (const [kind, right] of [['SVG', owed.plots + owed.pictures], ['PNG', owed.plots + owed.pictures], ['CSV', owed.plots + owed.rows + owed.tables], ['JSON', owed.result]]) {
     const there = buttons.filter((one) => one.kind === kind).length;
     if (there !== right) tab.blame(`${there} buttons ${kind}, ${right} are due`);
   }

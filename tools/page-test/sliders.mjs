@@ -32,7 +32,7 @@ async function checkAt(tab, data, w, a) {
       input.value = value;
       input.dispatchEvent(new Event('input', { bubbles: true }));
     }
-    const plot = document.querySelector('.plot[data-figure=nyquist]'), mark = plot.data[plot.data.length - 1];
+    const plot = document.querySelector('.plot[data-figure=nyquist]'), mark = plot.data.find((trace) => trace.name === 'at the sliders');
     return { text: document.getElementById('readout-nyquist').textContent, x: mark.x, y: mark.y, G: plot.calcdata.length,
       words: document.getElementById('nyquist-w').getAttribute('aria-valuetext') };
   }, w, a);
@@ -49,7 +49,7 @@ async function checkAt(tab, data, w, a) {
   const rounding = 2e-3 * (1 + Math.hypot(...NG));
   const said = complexIn(seen.text, 'N G');
   if (Math.hypot(said[0] - distance[0], said[1] - distance[1]) > rounding) tab.blame(`${where}: 1 + N G is said to be ${said}, is ${distance}`);
-  const saidSize = read(seen.text.match(/of size ([\d.e-]*\d)/)?.[1] ?? 'nothing');
+  const saidSize = read(seen.text.match(/of size (?:less than )?([\d.e-]*\d)/)?.[1] ?? 'nothing');
   if (!(Math.abs(saidSize - size) <= rounding)) tab.blame(`${where}: its size is said to be ${saidSize}, is ${size}`);
   if (!close(read(seen.text.match(/ω = ([\d.e-]+) rad/)?.[1] ?? ''), data.G.w[w], 1e-3)) tab.blame(`${where}: wrong frequency: '${seen.text}'`);
   if (!close(read(seen.text.match(/A = ([\d.e-]+)/)?.[1] ?? ''), data.family.A[a], 1e-3)) tab.blame(`${where}: wrong amplitude: '${seen.text}'`);
