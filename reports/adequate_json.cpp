@@ -52,7 +52,7 @@ std::string adequate_json(const Provenance& provenance, const AdequateReport& re
   top["notes"] = report.notes;
   top["why"] = report.why;
   top["status"] = to_string(report.status);
-  return json_document("adequate", provenance, top.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document("adequate", provenance, json_text(top));
 }
 
 std::string adequate_csv(const AdequateReport& report) {

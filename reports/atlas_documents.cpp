@@ -56,7 +56,7 @@ std::string atlas_json(const Provenance& provenance, const StepperAtlas& atlas) 
   top["right_within"] = atlas_right;
   top["rough_within"] = atlas_rough;
   top["status"] = to_string(atlas.status);
-  return json_document("precision", provenance, top.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document("precision", provenance, json_text(top));
 }
 
 std::string atlas_csv(const StepperAtlas& atlas) {

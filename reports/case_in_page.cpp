@@ -99,7 +99,7 @@ std::string case_element(const Provenance& provenance, const std::string& case_t
                   {"sha256", provenance.sha256},
                   {"overrides", provenance.overrides},
                   {"text", case_text}};
-  return beginning_of("case") + figure_data(data.dump(-1, ' ', false, Json::error_handler_t::replace)) + "</script>\n";
+  return beginning_of("case") + figure_data(json_text(data)) + "</script>\n";
 }
 
 std::string result_element(const std::string& document) {

@@ -43,7 +43,7 @@ std::string document(const Provenance& provenance, const List& list, Json (*obje
   Json top;
   top["claims"] = Json::array();
   for (const auto& one : list) top["claims"].push_back(object(one));
-  return json_document("claims", provenance, top.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document("claims", provenance, json_text(top));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ std::string continue_json(const Provenance& provenance, const ContinueReport& re
   }
   top["notes"] = report.found.notes;
   top["status"] = to_string(report.found.status);
-  return json_document("continue", provenance, top.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document("continue", provenance, json_text(top));
 }
 
 std::string continue_csv(const ContinueReport& report) {

@@ -173,7 +173,7 @@ std::string dissipativity_json(const Provenance& provenance, const Dissipativity
   top["loop"] = loop_json(report);
   top["notes"] = report.notes;
   top["status"] = to_string(report.status);
-  return json_document("dissipativity", provenance, top.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document("dissipativity", provenance, json_text(top));
 }
 
 std::string dissipativity_csv(const DissipativityReport& report) {

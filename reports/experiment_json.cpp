@@ -57,22 +57,20 @@ Json experiment_object(const Experiment& one) {
           {"figures", std::move(figures)}};
 }
 
-std::string dumped(const Json& top) { return top.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 }  // namespace
 
 std::string experiment_list_json(const Provenance& provenance, const std::vector<ExperimentEntry>& entries) {
   Json top;
   top["experiments"] = Json::array();
   for (const auto& entry : entries) top["experiments"].push_back({{"name", entry.name}, {"title", entry.title}});
-  return json_document("experiment", provenance, dumped(top));
+  return json_document("experiment", provenance, json_text(top));
 }
 
 std::string experiment_json(const Provenance& provenance, const std::vector<Experiment>& experiments) {
   Json top;
   top["experiments"] = Json::array();
   for (const auto& one : experiments) top["experiments"].push_back(experiment_object(one));
-  return json_document("experiment", provenance, dumped(top));
+  return json_document("experiment", provenance, json_text(top));
 }
 
 std::string experiment_csv(const std::vector<Experiment>& experiments) {

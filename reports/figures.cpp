@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/figure_numbers.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/multipliers.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/nyquist_figure.hpp"
@@ -116,9 +116,9 @@ Figure time_figure(const Shown& what, const Units& units) {
                            between(what.trace->output, units.force));
   if (what.cycle && what.cycle->sticking_fraction > 0.0)
     finding += fmt::format("; it sticks for {} of the time", as_percent(what.cycle->sticking_fraction));
-  return {
-      "time", what.cycle ? "One period in time, twice" : "Simulation in time", finding + ".",
-      figure_text({{"run", run}, {"labels", labels(units)}, {"name", what.name}, {"repeat", what.cycle != nullptr}})};
+  return {"time", what.cycle ? "One period in time, twice" : "Simulation in time", finding + ".",
+          figure_data(json_text(
+              {{"run", run}, {"labels", labels(units)}, {"name", what.name}, {"repeat", what.cycle != nullptr}}))};
 }
 
 Figure phase_figure(const PredictReport& report, const Units& units) {
@@ -154,7 +154,7 @@ Figure phase_figure(const PredictReport& report, const Units& units) {
   if (!cycles.empty() && !runs.empty()) finding += "; the first view is on the cycles";
   if (!all_whole) finding += "; of long simulations only the first part is drawn";
   return {"phase", "Phase plane", finding + ".",
-          figure_text({{"cycles", cycles}, {"runs", runs}, {"labels", labels(units)}})};
+          figure_data(json_text({{"cycles", cycles}, {"runs", runs}, {"labels", labels(units)}}))};
 }
 
 Figure loop_figure(const Shown& what, const Units& units) {
@@ -167,7 +167,7 @@ Figure loop_figure(const Shown& what, const Units& units) {
                       between(what.trace->output, units.force), between(what.trace->input, units.input),
                       between(what.trace->velocity, units.input.empty() ? "1/s" : units.input + "/s"),
                       whole ? "" : " (only the first part is drawn)"),
-          figure_text({{"run", run}, {"labels", labels(units)}, {"name", what.name}})};
+          figure_data(json_text({{"run", run}, {"labels", labels(units)}, {"name", what.name}}))};
 }
 
 }  // namespace

@@ -1,13 +1,9 @@
 #include "limcycle/reports/frame.hpp"
 
-#include <nlohmann/json.hpp>
+#include "limcycle/reports/json_values.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string replaced(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json head(const std::string& command, const Provenance& provenance) {
   const auto text_or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
@@ -34,12 +30,12 @@ std::string framed(const Json& top) {
   bool first = true;
   for (const auto& [key, value] : top.items()) {
     text += std::exchange(first, false) ? "\n  " : ",\n  ";
-    text += replaced(key) + ": ";
+    text += json_text(key) + ": ";
     if (!value.is_array() || value.empty() || !value.front().is_structured()) {
-      text += replaced(value);
+      text += json_text(value);
       continue;
     }
-    for (std::size_t i = 0; i < value.size(); ++i) text += (i == 0 ? "[\n    " : ",\n    ") + replaced(value[i]);
+    for (std::size_t i = 0; i < value.size(); ++i) text += (i == 0 ? "[\n    " : ",\n    ") + json_text(value[i]);
     text += "\n  ]";
   }
   return text;

@@ -52,7 +52,7 @@ Json energy_json(const EnergyBalance& energy) {
 }
 
 std::string text_of(const std::string& command, const Provenance& provenance, const Json& body) {
-  return json_document(command, provenance, body.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document(command, provenance, json_text(body));
 }
 
 Json cycle_json(const Cycle& cycle) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace limcycle {
@@ -17,6 +19,20 @@ inline Json numbers(const std::vector<double>& values) {
   Json list = Json::array();
   for (const double value : values) list.push_back(number(value));
   return list;
+}
+
+/// A number of a figure: seven digits are more than a screen can show.
+inline Json rounded(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 7).ptr;
+  std::from_chars(text, end, value);
+  return value;
+}
+
+/// On one line; bytes that are not UTF-8 are replaced.
+inline std::string json_text(const Json& document) {
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 template <class T>

@@ -49,7 +49,7 @@ std::string margin_json(const Provenance& provenance, const MarginReport& report
                                   {"frequency", number(report.balance->frequency)}};
   top["notes"] = report.notes;
   top["status"] = to_string(report.status);
-  return json_document("margin", provenance, top.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document("margin", provenance, json_text(top));
 }
 
 std::string margin_csv(const MarginReport& report) {

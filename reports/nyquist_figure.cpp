@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "limcycle/reports/figure_numbers.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/nyquist_window.hpp"
 
@@ -152,12 +152,12 @@ Figure nyquist_figure(const PredictReport& report, const Units& units) {
         "this loop G changes with the amplitude. The crosses stand at";
   if (!crossings.places.empty()) finding += crossings.words + "." + about_discs;
   return {"nyquist", "Nyquist plot and describing function", finding,
-          figure_text({{"G", response_curve(report.nyquist)},
-                       {"small_motions", !crossings.on_curve},
-                       {"family", family_curves(report, units.input)},
-                       {"roots", crossings.roots},
-                       {"discs", discs},
-                       {"window", {{"re", {box.re_from, box.re_to}}, {"im", {box.im_from, box.im_to}}}}})};
+          figure_data(json_text({{"G", response_curve(report.nyquist)},
+                                 {"small_motions", !crossings.on_curve},
+                                 {"family", family_curves(report, units.input)},
+                                 {"roots", crossings.roots},
+                                 {"discs", discs},
+                                 {"window", {{"re", {box.re_from, box.re_to}}, {"im", {box.im_from, box.im_to}}}}}))};
 }
 
 }  // namespace limcycle

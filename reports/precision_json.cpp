@@ -75,7 +75,7 @@ std::string precision_json(const Provenance& provenance, const PrecisionReport& 
   top["notes"] = report.notes;
   for (const auto& note : report.stiffness.notes) top["notes"].push_back(note);
   top["status"] = to_string(report.status);
-  return json_document("precision", provenance, top.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document("precision", provenance, json_text(top));
 }
 
 std::string precision_csv(const PrecisionReport& report) {

@@ -38,7 +38,7 @@ std::string status_json(const Provenance& provenance, const std::string& file, c
                   {"rate", activity.rate() > 0.0 ? number(activity.rate()) : Json(nullptr)},
                   {"seconds_left", number(seconds_left(sweep))},
                   {"columns", columns}};
-  return json_document("status", made, body.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return json_document("status", made, json_text(body));
 }
 
 }  // namespace limcycle

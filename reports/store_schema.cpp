@@ -17,7 +17,7 @@ static_assert(std::numeric_limits<double>::is_iec559, "rows are stored as IEEE d
 
 /// A list as one text, of which a reader of the database can make something.
 std::string list_text(const std::vector<std::string>& list) {
-  return Json(list).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(Json(list));
 }
 
 struct IdentityField {

@@ -25,7 +25,7 @@ Figure work_figure(const std::string& id, const std::string& heading, const std:
     }
     data["series"].push_back(std::move(out));
   }
-  return {id, heading, finding, figure_data(data.dump(-1, ' ', false, Json::error_handler_t::replace))};
+  return {id, heading, finding, figure_data(json_text(data))};
 }
 
 }  // namespace limcycle
