@@ -1,5 +1,7 @@
 #include "limcycle/reports/figures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,7 @@
 #include "limcycle/reports/nyquist_figure.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "limcycle/reports/json_values.hpp"
