@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "limcycle/cli/ranks.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -70,6 +72,7 @@ bool colours_wanted(std::string_view when, int descriptor) {
   const char* const refused = std::getenv("NO_COLOR");
   const char* const terminal = std::getenv("TERM");
   if (refused != nullptr && *refused != '\0') return false;
+  if (was_launched()) return false;  // mpirun gives its processes terminals and passes on what they write there
   return terminal != nullptr && *terminal != '\0' && std::string_view(terminal) != "dumb" && isatty(descriptor) == 1;
 }
 

@@ -5,7 +5,7 @@
 namespace limcycle {
 
 /// Whether what goes to a file descriptor gets colours. `when`: "always", "never", or "auto": on a terminal, unless
-/// NO_COLOR is set and not empty (no-color.org) or TERM is dumb or not set.
+/// NO_COLOR is set and not empty (no-color.org), TERM is dumb or not set, or mpirun started the program.
 bool colours_wanted(std::string_view when, int descriptor);
 
 /// What --color says on a command line, known before it is parsed, so that also what is wrong with it has its colour.

@@ -76,6 +76,7 @@ void forget_sent() {
 int rank() { return rank_state().rank; }
 int rank_count() { return rank_state().count; }
 Isa isa_of_ranks() { return rank_state().isa; }
+bool was_launched() { return launcher_number({"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"}, -1) >= 0; }
 
 #ifdef LIMCYCLE_MPI
 

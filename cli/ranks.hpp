@@ -26,6 +26,9 @@ int rank();        ///< 0 .. rank_count()-1
 int rank_count();  ///< 1 where the program runs by itself
 bool built_for_ranks();
 
+/// Whether mpirun or the like started this process, be it the only one: what is then a terminal need not be a person's.
+bool was_launched();
+
 /// "rank 3 on node17".
 std::string rank_name();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "limcycle/reports/number.hpp"
@@ -52,7 +53,7 @@ std::string outcome_in_words(const Simulation& run, const Units& units) {
 Table energy_table(const EnergyBalance& energy) {
   Table table{{{"energy", "", Align::left}, {"", "", Align::left}, {"J", ""}}, {}};
   const auto add = [&](const char* what, const char* where, double value) {
-    if (value == 0.0) return;
+    if (std::abs(value) <= std::numeric_limits<double>::epsilon() * energy.turnover) return;  // nothing, but rounding
     const bool first =
         table.rows.empty() || std::ranges::none_of(table.rows, [&](const auto& row) { return row[0] == what; });
     table.rows.push_back({first ? what : "", where, with_digits(value, run_digits)});

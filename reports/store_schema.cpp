@@ -16,9 +16,7 @@ constexpr std::int64_t store_application = 0x4C435357;  // "LCSW"
 static_assert(std::numeric_limits<double>::is_iec559, "rows are stored as IEEE doubles");
 
 /// A list as one text, of which a reader of the database can make something.
-std::string list_text(const std::vector<std::string>& list) {
-  return json_text(Json(list));
-}
+std::string list_text(const std::vector<std::string>& list) { return json_text(Json(list)); }
 
 struct IdentityField {
   const char* key;

@@ -27,7 +27,7 @@ std::string simulate_text(const std::string& title, const Simulation& run,
                           const std::optional<Agreement>& second = std::nullopt,
                           const std::optional<EnergyBalance>& energy = std::nullopt, const Units& units = {});
 
-/// Where the energy of a run came from and went to. What is zero to the last bit is not part of the motion and left out.
+/// Where the energy of a run came from and went to, without what is zero but for rounding.
 Table energy_table(const EnergyBalance& energy);
 
 /// Whether the energy of a run balances, one sentence; begins with "Warning" where it does not.

@@ -216,8 +216,9 @@ std::string_view to_string(Outcome outcome) {
 
 Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options) {
   if (loop.delay > 0.0)
-    throw std::invalid_argument("settle: the loop has a dead time, which a simulation from a state does not know; take "
-                                "in_time_domain() of it");
+    throw std::invalid_argument(
+        "settle: the loop has a dead time, which a simulation from a state does not know; take "
+        "in_time_domain() of it");
   return Settling(loop, start, options).run();
 }
 

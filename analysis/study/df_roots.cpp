@@ -116,7 +116,7 @@ class RootStudy {
 
   /// Those in the box, each once: two branches meet where one turns into the other, and a second element is searched
   /// from both sides.
-  std::vector<Root> without_doubles(std::vector<Root> roots) const {
+  std::vector<Root> without_doubles(const std::vector<Root>& roots) const {
     const auto near = [](double a, double b) { return std::abs(a / b - 1.0) < 1e-7; };
     std::vector<Root> kept;
     for (const Root& root : roots) {

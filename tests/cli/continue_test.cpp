@@ -61,9 +61,10 @@ TEST_CASE("continue: text, documents, page and diagram of a branch with a fold")
   CHECK_THAT(svg, StartsWith("<svg ") && Contains("class=\"stable\"") && Contains("class=\"unstable\"") &&
                       Contains("class=\"fold\""));
   const auto page = scratch.get("r.html");
-  CHECK_THAT(page, StartsWith("<!DOCTYPE html>") && Contains(svg.substr(0, 200)) && Contains("limcycle continue ") &&
+  const auto curves = svg.substr(svg.find("</style>"));  // the picture's style has a scope of its own in a page
+  CHECK_THAT(page, StartsWith("<!DOCTYPE html>") && Contains(curves) && Contains("limcycle continue ") &&
                        Contains("--set loop.element.dead_zone=0.05"));
-  CHECK(page.find("<script") == std::string::npos);
+  CHECK(page.size() < 500'000);  // without the library that draws figures
 }
 
 TEST_CASE("continue: the coefficient of the cubic of van der Pol only scales its cycle") {

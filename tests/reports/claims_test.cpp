@@ -84,5 +84,5 @@ TEST_CASE("claims: the page folds each claim and opens those that are not as exp
   CHECK_THAT(page, Contains("<details id=\"A1\"><summary>A1: holds") && Contains("<details id=\"A3\" open>") &&
                        Contains("It &lt;is&gt; so &amp; stays so") && Contains("</html>"));
   CHECK_THAT(page, Contains("limcycle claims A"));
-  CHECK(page.find("<script") == std::string::npos);
+  CHECK(page.size() < 500'000);  // without the library that draws figures
 }

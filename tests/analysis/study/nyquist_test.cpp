@@ -47,7 +47,7 @@ TEST_CASE("Nyquist picture: both curves have points at a root, and 1 + N G = 0 h
   CHECK(std::is_sorted(picture.frequency.begin(), picture.frequency.end()));
 }
 
-TEST_CASE("Nyquist picture: one member where N does not depend on frequency; interrupted, it ends early") {
+TEST_CASE("Nyquist picture: one member where N does not depend on frequency, and interrupted it ends early") {
   const auto loop = test::forward(test::relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0});
   const SearchBox box{1e-3, 10.0, 0.01, 100.0};
   CHECK(nyquist_picture(loop, box).minus_inverse_N.size() == 1);
