@@ -27,7 +27,7 @@ CaseSection search() {
 CaseSection predict() {
   return {"predict",
           "How cycles are predicted and found.",
-          {{"methods", "[\"describing-function\", \"composite-describing-function\", \"harmonic-balance\"]",
+          {{"methods", R"(["describing-function", "composite-describing-function", "harmonic-balance"])",
             "which predict", "all three"},
            {"starts", "4", "simulations from different displacements", "4"},
            {"accuracy", "1e-8", "relative, of period and amplitude of a cycle", "1e-8"}}};
@@ -50,7 +50,7 @@ CaseSection simulate() {
 
 CaseSection df() {
   return {"df",
-          "The table of `limcycle df`. An axis is a list, or {from, to, points, spacing = \"log\" or \"linear\"}.",
+          R"(The table of `limcycle df`. An axis is a list, or {from, to, points, spacing = "log" or "linear"}.)",
           {{"amplitude", "{ from = 1e-6, to = 1.0, points = 13 }", "axis, of the element's input, m", "", true},
            {"frequency", "[1.0]", "axis, rad/s", "", true},
            {"bias", "[0.0]", "axis; of friction a mean velocity, m/s, else of the input", "[0]"},

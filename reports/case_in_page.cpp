@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view schema_of_case = "limcycle/";
 constexpr int newest_schema = 1;
 
-std::string beginning_of(const std::string& id) { return "<script type=\"application/json\" id=\"" + id + "\">"; }
+std::string beginning_of(const std::string& id) { return R"(<script type="application/json" id=")" + id + "\">"; }
 
 /// What stands in the script element with an id; the element must be there at most once.
 std::string element_text(std::string_view page, const std::string& id) {
@@ -54,7 +54,7 @@ void check_result(std::string_view page, const Json& from) {
   const Json named = result.value("case", Json::object()), made = result.value("provenance", Json::object());
   const auto same = [&](const char* key) {  // what is empty is null in a document
     const Json one = named.value(key, Json()), other = from.value(key, Json());
-    return one == other || (one.is_null() && other == "");
+    return one == other || (one.is_null() && other.is_string() && other.get_ref<const std::string&>().empty());
   };
   if (!same("sha256") || !same("file") || made.value("overrides", Json()) != from.value("overrides", Json()))
     throw PageError("was altered: its case is not the one of its result");

@@ -163,7 +163,7 @@ std::string html_picture(const std::string& svg, const std::string& caption, con
   if (svg.find(">" + html_escaped(caption) + "</text>") == std::string::npos)
     out += "<figcaption>" + html_escaped(caption) + "</figcaption>\n";
   if (!csv.empty() && csv.size() <= most_rows)
-    out += "<script type=\"application/json\" class=\"rows\">" + figure_data(json_text(csv)) + "</script>\n";
+    out += R"(<script type="application/json" class="rows">)" + figure_data(json_text(csv)) + "</script>\n";
   return out + "</figure>\n";
 }
 

@@ -138,10 +138,13 @@ std::vector<NewPart> parts_of(const NewCase& wanted, const std::vector<Catalogue
 
 /// The number that a first look at the spread is about: of the law or element rather than of the plant.
 std::string first_number(const std::vector<NewPart>& parts) {
-  for (auto part = parts.rbegin(); part != parts.rend(); ++part)
-    for (const auto& parameter : part->entry->parameters)
-      if (parameter.type == "number" && parameter.required) return part->section + "." + parameter.key;
-  return {};
+  std::string last;
+  for (const auto& part : parts) {
+    const auto& own = part.entry->parameters;
+    const auto found = std::ranges::find_if(own, [](const auto& one) { return one.type == "number" && one.required; });
+    if (found != own.end()) last = part.section + "." + found->key;
+  }
+  return last;
 }
 
 std::string other_kinds(const NewPart& part, const std::vector<CatalogueEntry>& all) {
