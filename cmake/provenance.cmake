@@ -1,11 +1,17 @@
 # What a result must say about the binary that made it: version, commit, compiler, flags.
-find_package(Git QUIET)
-set(LIMCYCLE_COMMIT "unknown")
-if(GIT_FOUND AND EXISTS ${PROJECT_SOURCE_DIR}/.git)
-  execute_process(COMMAND ${GIT_EXECUTABLE} -C ${PROJECT_SOURCE_DIR} describe --always --dirty --abbrev=12 --exclude=*
-    OUTPUT_VARIABLE LIMCYCLE_COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/.git/HEAD)
-endif()
 set(LIMCYCLE_COMPILER "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}")
 configure_file(${PROJECT_SOURCE_DIR}/cmake/build_info.hpp.in ${PROJECT_BINARY_DIR}/generated/build_info.hpp @ONLY)
 target_include_directories(limcycle PRIVATE ${PROJECT_BINARY_DIR}/generated)
+
+# The commit is that of the tree when the program is built, which may be long after it was configured. It is written
+# now too, for tools that read sources without building them.
+find_package(Git QUIET)
+set(commit_source ${PROJECT_BINARY_DIR}/generated/commit.cpp)
+set(write_commit ${CMAKE_COMMAND} -D GIT=${GIT_EXECUTABLE} -D SOURCE=${PROJECT_SOURCE_DIR} -D OUTPUT=${commit_source}
+  -P ${PROJECT_SOURCE_DIR}/cmake/commit.cmake)
+execute_process(COMMAND ${write_commit})
+add_custom_target(limcycle_commit COMMAND ${write_commit} BYPRODUCTS ${commit_source} VERBATIM
+  COMMENT "The commit of the tree")
+add_dependencies(limcycle limcycle_commit)
+target_sources(limcycle PRIVATE ${commit_source})
+set_source_files_properties(${commit_source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
