@@ -42,16 +42,15 @@ std::string quoted_in_shell(const std::string& text) {
 }
 
 std::string bash_offer(const OptionFacts& option) {
-  const std::string words = fmt::format("words='{}'", words_of(option.choices));
   switch (offer_of(option)) {
     case Offer::words:
-      return words;
+      return fmt::format("words='{}'", words_of(option.choices));
     case Offer::files:
       return "files='*'";
     case Offer::cases:
       return "files='*.toml'";
     case Offer::cases_and_words:
-      return words + " files='*.toml'";
+      return fmt::format("words='{}' files='*.toml'", words_of(option.choices));
     case Offer::nothing:
       break;
   }

@@ -92,7 +92,7 @@ class RootStudy {
       note_doubts(found, box);
     }
     if (balance_.has_second()) add_roots_from_second(box, options, roots);
-    return without_doubles(std::move(roots));
+    return without_doubles(roots);
   }
 
   /// The search over the amplitude of the second element's input: that of the main element follows from it.
