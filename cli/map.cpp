@@ -54,29 +54,16 @@ std::string flags_text(const HuntingMap& map, const MapFlags& flags) {
   return text;
 }
 
-PredictOptions point_options(const Case& from, const MapFlags& flags, const Methods& methods) {
-  PredictOptions options = from.predict;
-  options.methods = methods;
-  options.accuracy = std::max(from.predict.accuracy, 1e-6);  // far below the 5 % that count
+SweptRows sweep_map(const Case& from, const HuntingMap& map, const MapFlags& flags, const Methods& methods) {
+  PredictOptions options = map_options(from, methods);
   if (flags.starts > 0) options.starts = flags.starts;
-  options.stop = interrupted;
-  return options;
-}
-
-SweptRows sweep_map(const Case& from, HuntingMap& map, const MapFlags& flags, const Methods& methods) {
-  const PredictOptions options = point_options(from, flags, methods);
   const auto columns = map_columns(map.methods);
   const std::string paths[] = {map.x.path, map.y.path};
   const LoopVariation variation(from, "--x, --y", paths);
   SweepTask task{map.size(), columns.size(), 1, {}};
   task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) -> std::size_t {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      MapPoint point;
-      const double values[] = {map.x_of(points[i]), map.y_of(points[i])};
-      if (const auto loop = variation.loop(values))
-        point = map_point(*loop, options);
-      else
-        point.methods.resize(map.methods.size());
+      const MapPoint point = point_of(map, points[i], variation, options);
       if (interrupted()) return i;
       std::ranges::copy(to_row(point), rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
     }
@@ -92,21 +79,14 @@ int run(MapFlags flags) {
   if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   const Units units = units_of(need_loop(from));
-  MapReport report;
-  report.map.x = map_axis("--x", flags.x);
-  report.map.y = map_axis("--y", flags.y);
-  report.x_unit = number_at(from, "--x", report.map.x.path).unit;
-  report.y_unit = number_at(from, "--y", report.map.y.path).unit;
-  if (report.map.x.path == report.map.y.path) throw std::invalid_argument("--x and --y name the same parameter");
   const Methods methods = chosen_methods(flags.methods);
-  report.map.methods = names_of(methods);
+  MapReport report = map_of(from, flags.x, flags.y, methods);
   Output output(flags);
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.picture);
 
   const SweptRows swept = sweep_map(from, report.map, flags, methods);
   const std::size_t columns = swept.rows.size() / report.map.size();
-  report.map.points.resize(report.map.size());
   for (std::size_t k = 0; k < report.map.size(); ++k)
     if (swept.known[k])
       report.map.points[k] =

@@ -8,11 +8,12 @@
 
 #include "limcycle/analysis/study/hunting_map.hpp"
 #include "limcycle/analysis/study/local_sensitivity.hpp"
+#include "limcycle/analysis/study/verdicts.hpp"
 #include "limcycle/analysis/sweep.hpp"
 #include "limcycle/cases/case_numbers.hpp"
 #include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/interrupt.hpp"
-#include "limcycle/cli/parameter_range.hpp"
+#include "limcycle/cli/map_of.hpp"
 #include "limcycle/cli/precision_of.hpp"
 #include "limcycle/cli/threshold.hpp"
 
@@ -28,17 +29,10 @@ struct ReportQuestion {
   const PredictReport& predicted;
 };
 
-const Cycle* largest_stable_cycle(const PredictReport& report) {
-  const Cycle* best = nullptr;
-  for (const Cycle& cycle : report.cycles)
-    if (cycle.stable == true && (best == nullptr || cycle.amplitude > best->amplitude)) best = &cycle;
-  return best;
-}
-
 ReportPart<SensitivityReport> sensitivity_part(const ReportQuestion& ask) {
   SensitivityReport report;
   const auto numbers = loop_numbers(ask.from);
-  if (const Cycle* cycle = largest_stable_cycle(ask.predicted)) report.cycle = *cycle;
+  if (const Cycle* cycle = largest_stable(ask.predicted.cycles)) report.cycle = *cycle;
   if (report.cycle && ask.loop.delay == 0.0)
     report.local = local_sensitivities(ask.loop, *report.cycle, numbers, interrupted);
   else if (report.cycle)
@@ -52,24 +46,12 @@ ReportPart<SensitivityReport> sensitivity_part(const ReportQuestion& ask) {
   return {{}, "There is no stable limit cycle, and the describing function predicts none: nothing here could move."};
 }
 
-HuntingMap empty_map(const ReportWishes& wishes) {
-  HuntingMap map;
-  map.x = map_axis("--x", wishes.x);
-  map.y = map_axis("--y", wishes.y);
-  map.methods = names_of({true, false, false});
-  map.points.resize(map.size());
-  return map;
-}
+constexpr Methods methods_of_map{true, false, false};
 
 ReportPart<MapReport> map_part(const ReportQuestion& ask, const std::function<void(double)>& progress) {
-  MapReport report{empty_map(ask.wishes), {}, {}};
+  MapReport report = map_of(ask.from, ask.wishes.x, ask.wishes.y, methods_of_map);
   HuntingMap& map = report.map;
-  report.x_unit = number_at(ask.from, "--x", map.x.path).unit;
-  report.y_unit = number_at(ask.from, "--y", map.y.path).unit;
-  PredictOptions options = ask.from.predict;
-  options.methods = {true, false, false};
-  options.accuracy = std::max(options.accuracy, 1e-6);  // far below the 5 % that count
-  options.stop = interrupted;
+  const PredictOptions options = map_options(ask.from, methods_of_map);
   const std::string paths[] = {map.x.path, map.y.path};
   const LoopVariation variation(ask.from, "--x, --y", paths);
   SweepOptions sweep;
@@ -81,10 +63,7 @@ ReportPart<MapReport> map_part(const ReportQuestion& ask, const std::function<vo
   run_each(
       map.size(),
       [&](std::size_t k) {
-        MapPoint point;
-        point.methods.resize(map.methods.size());
-        const double values[] = {map.x_of(k), map.y_of(k)};
-        if (const auto loop = variation.loop(values)) point = map_point(*loop, options);
+        MapPoint point = point_of(map, k, variation, options);
         if (!interrupted()) map.points[k] = std::move(point);
       },
       sweep);
@@ -98,7 +77,7 @@ std::optional<SimulateOptions> run_to_count(const ReportQuestion& ask, std::stri
     which = "the run of [simulate]";
     return ask.from.simulate;
   }
-  const Cycle* cycle = largest_stable_cycle(ask.predicted);
+  const Cycle* cycle = largest_stable(ask.predicted.cycles);
   if (cycle == nullptr) return std::nullopt;
   const auto names = state_names(ask.loop);
   if (names.size() != cycle->start.x.size()) return std::nullopt;
@@ -175,10 +154,7 @@ void check_wishes(const Case& from, const ReportWishes& wishes) {
   if (wishes.x.empty() != wishes.y.empty())
     throw refusal(wishes.x.empty() ? "--y " + wishes.y : "--x " + wishes.x, "a map needs both --x and --y");
   if (wishes.x.empty()) return;
-  const HuntingMap map = empty_map(wishes);
-  number_at(from, "--x", map.x.path);
-  number_at(from, "--y", map.y.path);
-  if (map.x.path == map.y.path) throw std::invalid_argument("--x and --y name the same parameter");
+  map_of(from, wishes.x, wishes.y, methods_of_map);
 }
 
 LoopReport report_parts(const Case& from, const ReportWishes& wishes, const CommonFlags& flags, Progress& progress) {

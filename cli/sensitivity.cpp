@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/study/local_sensitivity.hpp"
 #include "limcycle/analysis/study/sensitivity.hpp"
+#include "limcycle/analysis/study/verdicts.hpp"
 #include "limcycle/cases/case_numbers.hpp"
 #include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
@@ -58,12 +59,11 @@ std::optional<Cycle> main_cycle(const Loop& loop, const Case& from, std::vector<
   options.nyquist = false;
   options.accuracy = std::min(from.predict.accuracy, 1e-9);
   options.stop = interrupted;
-  std::optional<Cycle> best;
-  for (const Cycle& cycle : predict(loop, options).cycles)
-    if (cycle.stable == true && (!best || cycle.amplitude > best->amplitude)) best = cycle;
-  if (best && loop.delay > 0.0)
-    notes.emplace_back("the delay: derivatives of a cycle are not computed for loops with one");
-  return best;
+  const PredictReport found = predict(loop, options);
+  const Cycle* best = largest_stable(found.cycles);
+  if (best == nullptr) return std::nullopt;
+  if (loop.delay > 0.0) notes.emplace_back("the delay: derivatives of a cycle are not computed for loops with one");
+  return *best;
 }
 
 /// Every number times every factor, all others as they are.

@@ -27,9 +27,8 @@ Worth worth_of(const std::string& method, const PredictReport& report) {
                                [&](const Prediction& p) { return p.method == method && p.verdict == kind; });
   };
   if (verdict(Verdict::wrong)) return Worth::wrong;
-  const bool complete = std::ranges::find(report.incomplete, method) == report.incomplete.end();
   if (std::ranges::any_of(report.missed, [&](const Missed& m) { return m.method == method; }))
-    return complete ? Worth::missed : Worth::undecided;
+    return searched_completely(report, method) ? Worth::missed : Worth::undecided;
   if (verdict(Verdict::biased)) return Worth::biased;
   if (verdict(Verdict::undecided)) return Worth::undecided;
   // Nothing predicted is right only where it is known that nothing oscillates.

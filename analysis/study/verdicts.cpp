@@ -81,4 +81,15 @@ std::string_view to_string(Verdict verdict) {
   }
 }
 
+bool searched_completely(const PredictReport& report, const std::string& method) {
+  return std::ranges::find(report.incomplete, method) == report.incomplete.end();
+}
+
+const Cycle* largest_stable(const std::vector<Cycle>& cycles) {
+  const Cycle* found = nullptr;
+  for (const Cycle& cycle : cycles)
+    if (cycle.stable == true && (found == nullptr || cycle.amplitude > found->amplitude)) found = &cycle;
+  return found;
+}
+
 }  // namespace limcycle

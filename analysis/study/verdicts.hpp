@@ -18,4 +18,10 @@ void compare(Prediction& prediction, const std::vector<Cycle>& cycles, std::size
 std::vector<Missed> missed_by(const std::string& method, const std::vector<Cycle>& cycles,
                               const std::vector<Prediction>& predictions);
 
+/// Whether the method looked everywhere where it was to look, so that what it did not find it misses.
+bool searched_completely(const PredictReport& report, const std::string& method);
+
+/// The stable cycle of largest amplitude, or null.
+const Cycle* largest_stable(const std::vector<Cycle>& cycles);
+
 }  // namespace limcycle

@@ -19,14 +19,6 @@ struct Computed {
   bool exists = true;  ///< false: it was looked for, and there is no such thing
 };
 
-/// The stable limit cycle of largest amplitude, or null.
-const Cycle* stable_cycle(const PredictReport& report) {
-  const Cycle* found = nullptr;
-  for (const auto& cycle : report.cycles)
-    if (cycle.stable.value_or(false) && (found == nullptr || cycle.amplitude > found->amplitude)) found = &cycle;
-  return found;
-}
-
 /// Whether every start came to something that was recognised.
 bool all_decided(const PredictReport& report) {
   return !report.outcomes.empty() && std::ranges::none_of(report.outcomes, [](const OutcomeOfStart& one) {

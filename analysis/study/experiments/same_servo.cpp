@@ -44,8 +44,7 @@ std::string verdict_on(const PredictReport& report, const std::string& method, d
     words += (words.empty() ? "" : ", ") + std::string(to_string(one.verdict));
   }
   const bool missed = std::ranges::any_of(report.missed, [&](const Missed& m) { return m.method == method; });
-  const bool complete = std::ranges::find(report.incomplete, method) == report.incomplete.end();
-  if (words.empty() && !complete) words = "finds none, its search incomplete";
+  if (words.empty() && !searched_completely(report, method)) words = "finds none, its search incomplete";
   if (words.empty()) words = missed ? "predicts none and misses it" : "predicts none";
   return words;
 }
