@@ -1,18 +1,26 @@
 #include "limcycle/cli/interrupt.hpp"
 
+#include <time.h>
+
 #include <atomic>
 #include <csignal>
 
 namespace limcycle {
 namespace {
 
-std::atomic<bool> asked{false};      // by anyone
-std::atomic<bool> signalled{false};  // by the user
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+std::atomic<bool> asked{false};                // by anyone
+std::atomic<long long> signalled{0};           // when, by the user; nanoseconds, 0: not yet
+constexpr long long one_wish = 1'000'000'000;  // signals that come this soon after the first say the same
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<long long>::is_always_lock_free,
+              "a signal handler may only touch lock-free atomics");
 
 extern "C" void ask(int signal) {
   asked = true;
-  if (!signalled.exchange(true)) return;
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);  // of POSIX, and safe in a handler
+  const long long at = 1'000'000'000LL * now.tv_sec + now.tv_nsec;
+  long long first = 0;
+  if (signalled.compare_exchange_strong(first, at) || at - first < one_wish) return;
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
@@ -26,7 +34,7 @@ void catch_interrupts() {
 
 void interrupt() { asked.store(true, std::memory_order_relaxed); }
 
-bool interrupted_by_signal() { return signalled.load(std::memory_order_relaxed); }
+bool interrupted_by_signal() { return signalled.load(std::memory_order_relaxed) != 0; }
 
 bool interrupted() { return asked.load(std::memory_order_relaxed); }
 

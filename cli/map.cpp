@@ -5,12 +5,11 @@
 #include <iostream>
 
 #include "limcycle/analysis/study/hunting_map.hpp"
-#include "limcycle/cases/case_numbers.hpp"
 #include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/map_of.hpp"
 #include "limcycle/cli/output.hpp"
-#include "limcycle/cli/parameter_range.hpp"
 #include "limcycle/cli/sweep.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/models/assemble.hpp"

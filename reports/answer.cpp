@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/study/verdicts.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {

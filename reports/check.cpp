@@ -66,7 +66,7 @@ std::string check_json(const Provenance& provenance, const CheckSummary& summary
                   {"slowest_pole", or_null(summary.slowest_pole)},
                   {"stable", or_null(summary.stable)},
                   {"search", search}};
-  return json_document("check", provenance, body.dump());
+  return json_document("check", provenance, json_text(body));
 }
 
 std::string check_csv(const Provenance& provenance, const CheckSummary& summary) {

@@ -77,7 +77,7 @@ std::optional<Figure> harmonics_figure(const PredictReport& report, const Units&
                               {"amplitude", std::move(amplitude)}});
     finding += (&curve == &curves.front() ? "" : "; ") + finding_of(curve);
   }
-  return Figure{"harmonics", "Harmonics", finding + ".", figure_data(data.dump())};
+  return Figure{"harmonics", "Harmonics", finding + ".", figure_data(json_text(data))};
 }
 
 }  // namespace limcycle

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "limcycle/reports/frame.hpp"
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string heading(const std::string& group) {
   if (group == "friction") return "Friction laws ([loop.friction], or [loop.element])";
@@ -177,7 +175,7 @@ std::string laws_json(const Provenance& provenance, const std::vector<CatalogueE
                     {"features", features_json(entry)},
                     {"parameters", parameters}});
   }
-  return json_document("laws", provenance, Json{{"laws", laws}}.dump());
+  return json_document("laws", provenance, json_text({{"laws", laws}}));
 }
 
 std::string laws_csv(const std::vector<CatalogueEntry>& entries) {

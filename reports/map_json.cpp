@@ -47,7 +47,7 @@ std::string map_json(const Provenance& provenance, const MapReport& report) {
                      {"methods", report.map.methods},
                      {"known", report.map.known()},
                      {"points", points}};
-  return json_document("map", provenance, body.dump());
+  return json_document("map", provenance, json_text(body));
 }
 
 std::string map_csv(const MapReport& report) {

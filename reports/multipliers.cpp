@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t widest = 48;  // columns of the ones shown
 constexpr double negligible = 1e-6;
@@ -74,7 +72,7 @@ std::optional<Figure> multiplier_figure(const PredictReport& report) {
                 "Neighbouring motions return to a limit cycle if all its multipliers lie inside the circle. Size of "
                 "the largest:" +
                     words + ".",
-                Json{{"cycles", cycles}}.dump()};
+                json_text({{"cycles", cycles}})};
 }
 
 }  // namespace limcycle

@@ -226,7 +226,7 @@ std::string sensitivity_json(const Provenance& provenance, const SensitivityRepo
                      {"share_without_answer", report.global ? number(share) : Json(nullptr)},
                      {"without_answer", without},
                      {"notes", report.notes}};
-  return json_document("sensitivity", provenance, body.dump());
+  return json_document("sensitivity", provenance, json_text(body));
 }
 
 std::string sensitivity_csv(const SensitivityReport& report) {

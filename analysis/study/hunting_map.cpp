@@ -7,6 +7,7 @@
 #include "limcycle/analysis/study/composite_balance.hpp"
 #include "limcycle/analysis/study/loop_balance.hpp"
 #include "limcycle/analysis/study/method_names.hpp"
+#include "limcycle/analysis/study/verdicts.hpp"
 
 namespace limcycle {
 namespace {

@@ -9,22 +9,8 @@ using limcycle::test::Ran;
 using limcycle::test::run;
 using limcycle::test::Scratch;
 using limcycle::test::shipped;
+using limcycle::test::squeezed;
 using Json = nlohmann::ordered_json;
-
-namespace {
-
-/// One space for any run of white space, as wrapped cells read.
-std::string squeezed(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    if (c != ' ' && c != '\n')
-      out += c;
-    else if (!out.ends_with(' '))
-      out += ' ';
-  return out;
-}
-
-}  // namespace
 
 TEST_CASE("check tells what the default case holds") {
   const Ran ran = run({"check", shipped("pid-lugre.toml")});

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "limcycle/tests/cli/golden.hpp"
-#include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/cli/started.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -46,20 +46,18 @@ TEST_CASE("df: a long table is summarised, its CSV is whole") {
 
 TEST_CASE("df: an interrupt keeps what was computed") {
   const Scratch scratch;
-  // Hours of work, stopped after two seconds.
-  const std::string command =
-      "timeout -s INT 2 " + quoted(LIMCYCLE_PROGRAM) + " df " + quoted(shipped("df-lugre.toml")) +
-      " --set 'df.amplitude={from=1e-6, to=0.1, points=900}'" +
-      " --set 'df.frequency={from=0.1, to=1000.0, points=900}' --set df.accuracy=1e-10 --set "
-      "'df.method=\"quadrature\"' --json " +
-      quoted(scratch.file("r.json")) + " > " + quoted(scratch.file("out")) + " 2> " + quoted(scratch.file("err"));
-  CHECK(WEXITSTATUS(std::system(command.c_str())) == 124);  // timeout says that it had to interrupt
+  const auto ran =
+      run_interrupted({"df", shipped("df-lugre.toml"), "--set", "df.amplitude={from=1e-6, to=0.1, points=900}", "--set",
+                       "df.frequency={from=0.1, to=1000.0, points=900}", "--set", "df.accuracy=1e-10", "--set",
+                       "df.method=\"quadrature\"", "--json", scratch.file("r.json")},
+                      1.0);  // of hours
+  CHECK(ran.code == 0);
   const auto document = Json::parse(scratch.get("r.json"));
   CHECK(document["status"] == "interrupted");
   CHECK(document["points"].size() > 0);
   CHECK(document["points"].size() < 900 * 900);
-  CHECK_THAT(scratch.get("err"), Contains("interrupted"));
-  CHECK_THAT(scratch.get("out"), Contains("of 810000 points"));
+  CHECK_THAT(ran.err, Contains("interrupted"));
+  CHECK_THAT(ran.out, Contains("of 810000 points"));
 }
 
 TEST_CASE("df: the same numbers for any number of threads, and from a store that was interrupted and gone on with") {

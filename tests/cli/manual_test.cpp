@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <cctype>
 #include <sstream>
 
 #include "limcycle/reports/catalogue.hpp"
@@ -8,12 +7,14 @@
 using limcycle::test::quoted;
 using limcycle::test::run;
 using limcycle::test::Scratch;
+using limcycle::test::squeezed;
 
 namespace {
 
-const std::vector<std::string> commands{"new",      "check",         "laws",   "predict",     "simulate", "df",
-                                        "margin",   "continue",      "map",    "sensitivity", "status",   "precision",
-                                        "adequate", "dissipativity", "claims", "experiment",  "manual",   "completion"};
+const std::vector<std::string> commands{"new",         "check",      "laws",      "predict",   "simulate",
+                                        "df",          "report",     "margin",    "continue",  "map",
+                                        "sensitivity", "status",     "precision", "adequate",  "dissipativity",
+                                        "claims",      "experiment", "manual",    "completion"};
 
 std::string page(const std::string& name) {
   const auto ran = run(name.empty() ? std::vector<std::string>{"manual"} : std::vector<std::string>{"manual", name});
@@ -31,17 +32,6 @@ std::string warnings(const std::string& text, std::string& printed) {
   CHECK(std::system(command.c_str()) == 0);
   printed = scratch.get("printed");
   return scratch.get("warnings");
-}
-
-/// One space for any run of white space; hyphens at the ends of lines are left in.
-std::string squeezed(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    if (std::isspace(static_cast<unsigned char>(c)) == 0)
-      out += c;
-    else if (!out.ends_with(' '))
-      out += ' ';
-  return out;
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/cli/started.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -82,14 +82,10 @@ TEST_CASE("precision: a loop without cycle and without friction cannot be answer
 TEST_CASE("precision: Ctrl-C ends it soon and keeps what was computed") {
   const Scratch scratch;
   const std::string json = scratch.file("r.json");
-  const std::string command = "timeout --preserve-status -s INT 2 " + quoted(LIMCYCLE_PROGRAM) + " precision " +
-                              quoted(shipped("pid-lugre.toml")) + " --json " + quoted(json) + " > " +
-                              quoted(scratch.file("out")) + " 2> " + quoted(scratch.file("err"));
-  const int status = std::system(command.c_str());
-  REQUIRE(WIFEXITED(status));
+  const auto ran = run_interrupted({"precision", shipped("pid-lugre.toml"), "--json", json}, 0.5);
+  CHECK(ran.code == 0);
   const auto document = Json::parse(scratch.get("r.json"));
-  CHECK(WEXITSTATUS(status) == 0);
-  CHECK_THAT(scratch.get("err"), Contains("interrupted"));
+  CHECK_THAT(ran.err, Contains("interrupted"));
   CHECK(document["status"] == "interrupted");
 }
 

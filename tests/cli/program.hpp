@@ -1,6 +1,7 @@
 #pragma once
 #include <sys/wait.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -60,6 +61,17 @@ inline Ran run(const std::vector<std::string>& arguments, const std::string& red
       (redirect.empty() ? " > " + quoted(scratch.file("out")) : ' ' + redirect) + " 2> " + quoted(scratch.file("err"));
   const int status = std::system((command + " < /dev/null").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), scratch.get("out"), scratch.get("err")};
+}
+
+/// One space for any run of white space, as wrapped cells and lines read.
+inline std::string squeezed(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    if (std::isspace(static_cast<unsigned char>(c)) == 0)
+      out += c;
+    else if (!out.ends_with(' '))
+      out += ' ';
+  return out;
 }
 
 inline std::string shipped(const std::string& name) { return std::string(LIMCYCLE_SOURCE_DIR) + "/cases/" + name; }

@@ -1,14 +1,10 @@
-#include <fcntl.h>
-#include <signal.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <thread>
 
 #include "limcycle/reports/store.hpp"
-#include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/cli/started.hpp"
 
 // The program under mpirun. Where there is none, or where it was built without MPI, it must refuse to be started as
 // several processes, and that is what is tested then.
@@ -38,31 +34,12 @@ Words map_of(const std::string& kd, const std::string& Fs) {
 }
 
 /// mpirun with so many ranks, in the background.
-class RankedJob {
+class RankedJob : public Started {
  public:
-  RankedJob(const Scratch& scratch, int ranks, const Words& arguments, const Words& before = {}) : scratch_(scratch) {
-    const Words words = Words{"mpirun", "--allow-run-as-root", "--oversubscribe", "-n", std::to_string(ranks)} +
-                        before + Words{LIMCYCLE_PROGRAM} + arguments;
-    const std::string out = scratch.file("ranks.out"), err = scratch.file("ranks.err");
-    pid_ = fork();
-    if (pid_ != 0) return;
-    std::vector<char*> all;
-    for (const auto& word : words) all.push_back(const_cast<char*>(word.c_str()));
-    all.push_back(nullptr);
-    dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
-    dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), STDOUT_FILENO);
-    dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), STDERR_FILENO);
-    setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // Open MPI frees little at the end
-    execvp(all.front(), all.data());
-    _exit(127);
-  }
-  ~RankedJob() {
-    if (pid_ > 0) kill(pid_, SIGKILL);
-  }
-  RankedJob(const RankedJob&) = delete;
-  RankedJob& operator=(const RankedJob&) = delete;
-
-  pid_t pid() const { return pid_; }
+  RankedJob(const Scratch& scratch, int ranks, const Words& arguments, const Words& before = {})
+      : Started(scratch, Words{"env", "ASAN_OPTIONS=detect_leaks=0",  // Open MPI frees little at the end
+                               "mpirun", "--allow-run-as-root", "--oversubscribe", "-n", std::to_string(ranks)} +
+                             before + Words{LIMCYCLE_PROGRAM} + arguments) {}
 
   /// Process ids of the ranks.
   std::vector<pid_t> ranks() const {
@@ -73,24 +50,12 @@ class RankedJob {
       std::ifstream in(entry.path() / "stat");
       const std::string text{std::istreambuf_iterator<char>(in), {}};
       const auto end = text.rfind(')');  // the name may hold anything; then: state, parent
-      if (end != std::string::npos && end + 4 < text.size() && std::atoi(text.c_str() + end + 4) == pid_)
+      if (end != std::string::npos && end + 4 < text.size() && std::atoi(text.c_str() + end + 4) == pid())
         found.push_back(std::atoi(name.c_str()));
     }
     std::ranges::sort(found);
     return found;
   }
-
-  Ran wait() {
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    pid_ = -1;
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), scratch_.get("ranks.out"),
-            scratch_.get("ranks.err")};
-  }
-
- private:
-  const Scratch& scratch_;
-  pid_t pid_ = -1;
 };
 
 Ran run_ranks(int ranks, const Words& arguments, const Words& before = {}) {

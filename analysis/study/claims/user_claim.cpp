@@ -7,6 +7,7 @@
 #include "limcycle/analysis/energy/threshold.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/claims/run_claims.hpp"
+#include "limcycle/analysis/study/verdicts.hpp"
 
 namespace limcycle {
 namespace {
@@ -29,7 +30,7 @@ bool all_decided(const PredictReport& report) {
 Computed of_cycle(const std::string& quantity, const ClaimPoint& point, const PredictOptions& options) {
   const PredictReport report = predict(*point.loop, options);
   if (report.status == Status::interrupted) return {.status = report.status};
-  const Cycle* cycle = stable_cycle(report);
+  const Cycle* cycle = largest_stable(report.cycles);
   const bool decided = all_decided(report);
   if (quantity == "hunts") {
     if (cycle == nullptr && !decided) return {.status = Status::incomplete};

@@ -6,6 +6,7 @@
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
 #include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/analysis/study/verdicts.hpp"
 
 namespace limcycle {
 namespace {
