@@ -150,8 +150,9 @@ std::string worth_of(const std::string& method, const PredictReport& report, con
   const auto missed = static_cast<std::size_t>(
       std::count_if(report.missed.begin(), report.missed.end(), [&](const auto& one) { return one.method == method; }));
   const std::string subject = capital(method_in_words(method)) + " ";
+  const bool complete = searched_completely(report, method);
   const std::string which = report.cycles.size() == 1 ? "it" : counted(missed, "limit cycle");
-  if (own.empty() && !searched_completely(report, method))
+  if (own.empty() && !complete)
     return subject + "found no limit cycle, but its search was not complete" +
            (missed > 0 ? ": it may have overlooked " + which + "." : ".");
   if (own.empty() && missed == 0) {
