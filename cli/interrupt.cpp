@@ -1,9 +1,8 @@
 #include "limcycle/cli/interrupt.hpp"
 
-#include <time.h>
-
 #include <atomic>
 #include <csignal>
+#include <ctime>
 
 namespace limcycle {
 namespace {

@@ -40,8 +40,8 @@ class Started {
   bool works_and_catches(int signal, double seconds) const {
     double since = -1.0;
     for (int tries = 0; tries < 30'000; ++tries) {
-      const std::string caught = after(proc("status"), "SigCgt:");
-      if (caught.empty()) return false;
+      const std::string status = proc("status"), caught = after(status, "SigCgt:");
+      if (caught.empty() || after(status, "State:").starts_with("\tZ")) return false;
       if (since < 0.0 && (std::stoull(caught, nullptr, 16) >> (signal - 1) & 1) != 0) since = computed();
       if (since >= 0.0 && computed() >= since + seconds) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
