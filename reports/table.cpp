@@ -8,7 +8,7 @@
 namespace limcycle {
 namespace {
 
-constexpr std::string_view gap = "  ";
+constexpr std::string_view column_gap = "  ";
 
 /// Next code point of a UTF-8 text; a byte that does not belong there is its own.
 char32_t next_code_point(std::string_view& text) {
@@ -64,7 +64,7 @@ std::vector<std::size_t> widths_of(const Cells& cells) {
 }
 
 std::size_t total(const std::vector<std::size_t>& widths) {
-  std::size_t sum = widths.empty() ? 0 : gap.size() * (widths.size() - 1);
+  std::size_t sum = widths.empty() ? 0 : column_gap.size() * (widths.size() - 1);
   for (const std::size_t width : widths) sum += width;
   return sum;
 }
@@ -79,7 +79,7 @@ std::string straight(const std::vector<Column>& columns, const Cells& cells, std
   std::string out;
   for (std::size_t r = 0; r < cells.size(); ++r) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (i > 0) out += gap;
+      if (i > 0) out += column_gap;
       out += padded(cells[r][i], widths[i], columns[i].align);
     }
     end_line(out);
@@ -98,15 +98,15 @@ std::string turned(const Table& table, std::size_t width) {
     for (std::size_t r = from; r < table.rows.size(); ++r) {
       std::size_t own = 0;
       for (const auto& cell : table.rows[r]) own = std::max(own, display_width(cell));
-      if (r > from && sum + gap.size() + own > width) break;
-      sum += gap.size() + own;
+      if (r > from && sum + column_gap.size() + own > width) break;
+      sum += column_gap.size() + own;
       widths.push_back(own);
     }
     if (from > 0) out += '\n';
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       out += padded(label(table.columns[i]), first, Align::left);
       for (std::size_t k = 0; k < widths.size(); ++k)
-        out += std::string(gap) + padded(cleaned(table.rows[from + k][i]), widths[k], table.columns[i].align);
+        out += std::string(column_gap) + padded(cleaned(table.rows[from + k][i]), widths[k], table.columns[i].align);
       end_line(out);
     }
     from += widths.size();
@@ -196,7 +196,7 @@ std::string Table::with_last_wrapped(std::size_t width) const {
   for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
     std::size_t widest = std::max(display_width(columns[i].heading), display_width(columns[i].unit) + 2);
     for (const auto& row : rows) widest = std::max(widest, display_width(row.at(i)));
-    before += widest + gap.size();
+    before += widest + column_gap.size();
   }
   const std::size_t left = std::max<std::size_t>(20, width - std::min(width, before));
   for (const auto& row : rows) {

@@ -8,7 +8,7 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::VectorXcd;
 
-constexpr int level = 2;  // of the quadrature: a start need not be exact
+constexpr int quadrature_level = 2;  // a start need not be exact
 
 /// Harmonics of the inputs, turned in phase; only odd ones for a half-wave symmetric motion.
 std::vector<VectorXcd> turned_inputs(const HarmonicGuess& guess, bool half_wave) {
@@ -36,7 +36,7 @@ VectorXcd filled_input(const Loop& loop, const BalancePoint& point, Index k, dou
   const int orders = static_cast<int>(main.size()) - 1;
   const PrescribedHarmonics motion(main, point.frequency, mean_rate, half_wave);
   ElementHarmonics answer(loop.elements.back());
-  const HarmonicResponse W = answer(motion, orders, level, 1e-9);
+  const HarmonicResponse W = answer(motion, orders, quadrature_level, 1e-9);
   VectorXcd result = VectorXcd::Zero(main.size());
   for (int n = 1; n <= orders && W.status == Status::converged; n += half_wave ? 2 : 1)
     result(n) = loop.element_response(n * point.frequency)(k, last) * W.harmonics(n);

@@ -27,9 +27,9 @@ TEST_CASE("holding forces: break-away of every law, from its own switches or its
     CHECK(holding_forces(law).high == Approx(1.5).epsilon(1e-8));
     CHECK(holding_forces(law).low == Approx(-1.5).epsilon(1e-8));
   }
-  Coulomb<double> uneven = coulomb(1.5, 1.0);
-  uneven.Fs_minus = 1.2;
-  CHECK(holding_forces(uneven).low == Approx(-1.2).epsilon(1e-12));
+  Coulomb<double> one_sided = coulomb(1.5, 1.0);
+  one_sided.Fs_minus = 1.2;
+  CHECK(holding_forces(one_sided).low == Approx(-1.2).epsilon(1e-12));
   CHECK(stopping_forces(coulomb(1.5, 1.0)).high == Approx(1.0).epsilon(1e-12));
   CHECK(stopping_forces(stribeck(1.5, 1.0, 1e-3)).high == Approx(1.5).epsilon(1e-8));
   for (const std::string_view kind : {"karnopp", "quinn", "awrejcewicz", "xiong", "gms", "elasto-plastic", "leuven"})

@@ -17,7 +17,8 @@ const std::vector<double> one{1.0};
 template <class A, class B>
 double difference(const A& a, const B& b, double L, double v, MarchSteps steps = {}) {
   steps.displacement = std::min(steps.displacement, 0.02 * L);
-  LawMarch first(a, steps), second(b, steps);
+  LawMarch first(a, steps);
+  LawMarch second(b, steps);
   std::mt19937 random(8);
   std::uniform_real_distribution<double> u(0.0, 1.0);
   double worst = 0.0, direction = 1.0;
@@ -135,9 +136,9 @@ TEST_CASE("xiong and kikuuwe with one element are one law but for the lag of the
 TEST_CASE("dahl and slow lugre: minor loops contract by exp(-sigma0 (x2 - x1)/Fs) each half cycle (claim D4)") {
   const auto check = [](const auto& law, double Fs, double sigma0) {
     LawMarch march(law, {0.01 * Fs / sigma0, infinite, infinite});
-    const double L = Fs / sigma0, way = 0.7 * L, v = 1e-12;
-    const double top = Fs * std::tanh(0.5 * way / L), factor = std::exp(-way / L);
-    march.slide(2.0 * L, 2.0 * L / v);
+    const double depth = Fs / sigma0, way = 0.7 * depth, v = 1e-12;
+    const double top = Fs * std::tanh(0.5 * way / depth), factor = std::exp(-way / depth);
+    march.slide(2.0 * depth, 2.0 * depth / v);
     double left = march.force() - top;
     CHECK(left == Approx(Fs * (1.0 - std::exp(-2.0)) - top).epsilon(1e-6));
     for (int half = 1; half <= 10; ++half) {
