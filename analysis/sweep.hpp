@@ -2,8 +2,8 @@
 /// One engine under everything that asks the same question at many points: maps, sensitivity, tables, experiments.
 ///
 /// Who computes is apart from who keeps: rows go to a sink as their blocks finish, one call at a time, and the sink may
-/// be a vector, the store of a file (reports/store.hpp) or the writer of a job on several machines, which hands out the
-/// same blocks (SweepBlocks) to whoever asks next.
+/// be a vector, the store of a file (reports/store/store.hpp) or the writer of a job on several machines, which hands
+/// out the same blocks (SweepBlocks) to whoever asks next.
 #pragma once
 #include <atomic>
 #include <cstddef>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "limcycle/bench/measure.hpp"
-#include "limcycle/reports/store.hpp"
+#include "limcycle/reports/store/store.hpp"
 
 namespace {
 

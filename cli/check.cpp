@@ -1,4 +1,4 @@
-#include "limcycle/reports/check.hpp"
+#include "limcycle/reports/case_files/check.hpp"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include "limcycle/analysis/study/claims/run_claims.hpp"
 #include "limcycle/analysis/study/experiments/experiment.hpp"
 #include "limcycle/analysis/study/hunting_map.hpp"
-#include "limcycle/reports/catalogue.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
 
 namespace limcycle {
 namespace {

@@ -1,4 +1,4 @@
-#include "limcycle/reports/laws.hpp"
+#include "limcycle/reports/case_files/laws.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

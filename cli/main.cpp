@@ -16,7 +16,7 @@
 #include "limcycle/cli/rank_job.hpp"
 #include "limcycle/cli/rank_sweep.hpp"
 #include "limcycle/cli/ranks.hpp"
-#include "limcycle/reports/store.hpp"
+#include "limcycle/reports/store/store.hpp"
 
 namespace limcycle {
 namespace {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "limcycle/cli/roff.hpp"
-#include "limcycle/reports/case_format.hpp"
-#include "limcycle/reports/catalogue.hpp"
-#include "limcycle/reports/laws.hpp"
-#include "limcycle/reports/new_case.hpp"
+#include "limcycle/reports/case_files/case_format.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
+#include "limcycle/reports/case_files/laws.hpp"
+#include "limcycle/reports/case_files/new_case.hpp"
 
 namespace limcycle {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/output.hpp"
-#include "limcycle/reports/catalogue.hpp"
-#include "limcycle/reports/new_case.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
+#include "limcycle/reports/case_files/new_case.hpp"
 
 namespace limcycle {
 namespace {

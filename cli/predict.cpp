@@ -9,9 +9,9 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/csv.hpp"
+#include "limcycle/reports/figures/picture.hpp"
 #include "limcycle/reports/html.hpp"
 #include "limcycle/reports/json.hpp"
-#include "limcycle/reports/picture.hpp"
 #include "limcycle/reports/text.hpp"
 
 namespace limcycle {

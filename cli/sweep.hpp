@@ -4,7 +4,7 @@
 
 #include "limcycle/analysis/sweep.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/reports/store.hpp"
+#include "limcycle/reports/store/store.hpp"
 
 namespace limcycle {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "limcycle/reports/adequate.hpp"
+#include "limcycle/reports/figures/plotly.hpp"
+#include "limcycle/reports/figures/work_figures.hpp"
 #include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/page/page.hpp"
-#include "limcycle/reports/plotly.hpp"
 #include "limcycle/reports/precision.hpp"
-#include "limcycle/reports/work_figures.hpp"
 
 namespace limcycle {
 namespace {

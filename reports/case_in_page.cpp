@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/figures.hpp"
+#include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/json_values.hpp"
 
 namespace limcycle {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "limcycle/models/assemble.hpp"
-#include "limcycle/reports/block_diagram.hpp"
-#include "limcycle/reports/block_words.hpp"
+#include "limcycle/reports/figures/block_diagram.hpp"
+#include "limcycle/reports/figures/block_words.hpp"
 
 namespace limcycle {
 

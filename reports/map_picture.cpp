@@ -4,10 +4,10 @@
 #include <cmath>
 #include <functional>
 
+#include "limcycle/reports/figures/svg_parts.hpp"
 #include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/map.hpp"
 #include "limcycle/reports/number.hpp"
-#include "limcycle/reports/svg_parts.hpp"
 
 namespace limcycle {
 namespace {

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "limcycle/analysis/study/precision.hpp"
-#include "limcycle/reports/figures.hpp"
+#include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "limcycle/reports/answer.hpp"
+#include "limcycle/reports/figures/multipliers.hpp"
 #include "limcycle/reports/html_parts.hpp"
-#include "limcycle/reports/multipliers.hpp"
 #include "limcycle/reports/text.hpp"
 
 namespace limcycle {

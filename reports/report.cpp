@@ -5,14 +5,14 @@
 #include <algorithm>
 
 #include "limcycle/reports/answer.hpp"
-#include "limcycle/reports/block_diagram.hpp"
 #include "limcycle/reports/dissipativity.hpp"
-#include "limcycle/reports/figures.hpp"
-#include "limcycle/reports/harmonics_figure.hpp"
+#include "limcycle/reports/figures/block_diagram.hpp"
+#include "limcycle/reports/figures/figures.hpp"
+#include "limcycle/reports/figures/harmonics_figure.hpp"
+#include "limcycle/reports/figures/plotly.hpp"
 #include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/page/page.hpp"
-#include "limcycle/reports/plotly.hpp"
 #include "limcycle/reports/precision.hpp"
 #include "limcycle/reports/predict_sections.hpp"
 #include "limcycle/reports/sensitivity.hpp"

@@ -5,9 +5,9 @@
 #include <functional>
 #include <numeric>
 
+#include "limcycle/reports/figures/svg_parts.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/sensitivity.hpp"
-#include "limcycle/reports/svg_parts.hpp"
 
 namespace limcycle {
 namespace {

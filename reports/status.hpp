@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "limcycle/reports/provenance.hpp"
-#include "limcycle/reports/store.hpp"
+#include "limcycle/reports/store/store.hpp"
 
 namespace limcycle {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "limcycle/reports/answer.hpp"
-#include "limcycle/reports/multipliers.hpp"
+#include "limcycle/reports/figures/multipliers.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {

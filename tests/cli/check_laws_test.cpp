@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limcycle/cases/case.hpp"
-#include "limcycle/reports/catalogue.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/tests/cli/program.hpp"
 
 using limcycle::test::Ran;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "limcycle/reports/catalogue.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/tests/cli/program.hpp"
 

@@ -2,8 +2,8 @@
 #include <sstream>
 
 #include "limcycle/cases/case.hpp"
-#include "limcycle/reports/catalogue.hpp"
-#include "limcycle/reports/new_case.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
+#include "limcycle/reports/case_files/new_case.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/tests/cli/program.hpp"
 

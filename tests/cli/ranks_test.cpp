@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "limcycle/reports/store.hpp"
+#include "limcycle/reports/store/store.hpp"
 #include "limcycle/tests/cli/started.hpp"
 
 // The program under mpirun. Where there is none, or where it was built without MPI, it must refuse to be started as

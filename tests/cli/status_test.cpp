@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "limcycle/reports/store.hpp"
+#include "limcycle/reports/store/store.hpp"
 #include "limcycle/tests/cli/program.hpp"
-#include "limcycle/tests/reports/store_samples.hpp"
+#include "limcycle/tests/reports/store/store_samples.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;

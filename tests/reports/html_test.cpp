@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "limcycle/reports/figures.hpp"
+#include "limcycle/reports/figures/figures.hpp"
+#include "limcycle/reports/figures/plotly.hpp"
 #include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
-#include "limcycle/reports/plotly.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
 
 using namespace limcycle;

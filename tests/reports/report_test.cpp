@@ -5,8 +5,8 @@
 #include <regex>
 
 #include "limcycle/reports/case_in_page.hpp"
-#include "limcycle/reports/harmonics_figure.hpp"
-#include "limcycle/reports/plotly.hpp"
+#include "limcycle/reports/figures/harmonics_figure.hpp"
+#include "limcycle/reports/figures/plotly.hpp"
 #include "limcycle/tests/reports/markup.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
 

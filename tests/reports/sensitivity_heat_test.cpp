@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "limcycle/reports/figures/svg_parts.hpp"
 #include "limcycle/reports/sensitivity.hpp"
-#include "limcycle/reports/svg_parts.hpp"
 
 using namespace limcycle;
 using Catch::Matchers::Contains;

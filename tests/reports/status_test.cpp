@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "limcycle/reports/number.hpp"
-#include "limcycle/tests/reports/store_samples.hpp"
+#include "limcycle/tests/reports/store/store_samples.hpp"
 
 using namespace limcycle;
 using Catch::Matchers::Contains;

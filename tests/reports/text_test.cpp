@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "limcycle/reports/answer.hpp"
-#include "limcycle/reports/multipliers.hpp"
+#include "limcycle/reports/figures/multipliers.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
 
 using namespace limcycle;

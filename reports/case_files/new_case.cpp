@@ -1,0 +1,189 @@
+#include "limcycle/reports/case_files/new_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "limcycle/reports/case_files/case_format.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
+#include "limcycle/reports/case_files/laws.hpp"
+#include "limcycle/reports/case_files/typical_values.hpp"
+#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/table.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr std::size_t case_width = 80, comment_column = 26;
+
+/// As comment lines.
+std::string commented(const std::string& text) {
+  std::string out;
+  std::istringstream lines(wrapped(text, case_width - 2));
+  for (std::string line; std::getline(lines, line);) out += "# " + line + '\n';
+  return out;
+}
+
+/// A comment behind a label, indented under itself, so that no line of it looks like a key.
+std::string labelled(const std::string& label, const std::string& text) {
+  constexpr std::size_t indent = 10;
+  const std::string body = wrapped(text, case_width - 2, indent);
+  std::string out;
+  std::istringstream lines(label + std::string(indent - label.size(), ' ') + body.substr(indent));
+  for (std::string line; std::getline(lines, line);) out += "# " + line + '\n';
+  return out;
+}
+
+/// "key = value   # what it is", the comment wrapped beside the value, or above a value that is too long.
+std::string assignment(const std::string& line, const std::string& comment) {
+  const std::size_t own = display_width(line);
+  if (own + 2 > comment_column) {
+    if (own + 4 + display_width(comment) <= case_width) return line + "  # " + comment + '\n';
+    return commented(comment) + line + '\n';
+  }
+  std::string out;
+  std::istringstream lines(wrapped(comment, case_width - comment_column - 4));
+  for (std::string part; std::getline(lines, part);)
+    out += (out.empty() ? line + std::string(comment_column - own, ' ') + "# "
+                        : std::string(comment_column, ' ') + "#   ") +
+           part + '\n';
+  return out;
+}
+
+const CatalogueEntry& entry_of(const std::vector<CatalogueEntry>& all, std::initializer_list<const char*> groups,
+                               const std::string& kind) {
+  for (const char* group : groups)
+    for (const auto& entry : all)
+      if (entry.group == group && entry.kind == kind) return entry;
+  throw std::invalid_argument("no " + std::string(*groups.begin()) + " '" + kind + "'");
+}
+
+/// A value for an optional key, as a case would write it: its default, or where that is none something to try.
+std::string default_in_toml(const ParameterEntry& parameter, const CatalogueEntry& entry, const std::string& group) {
+  if (!parameter.default_name.empty()) return '"' + parameter.default_name + '"';
+  if (!parameter.default_from.empty())
+    return std::string(typical_value(group, entry.kind, parameter.default_from).value);
+  if (parameter.type != "number") return "[]";
+  const std::string text = shortest(parameter.default_value.value_or(0.0));
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string comment_of(const ParameterEntry& parameter, const TypicalValue& typical) {
+  std::string text = parameter.unit == "1" ? parameter.meaning : parameter.unit + ", " + parameter.meaning;
+  if (!parameter.choices.empty()) text += fmt::format(": {}", fmt::join(parameter.choices, ", "));
+  const bool told = parameter.meaning.find("default") != std::string::npos;
+  if (!parameter.required && !told) text += "; default " + default_text(parameter);
+  if (!typical.usual.empty())
+    text += (typical.usual.starts_with("here ") ? "; " : "; usual: ") + std::string(typical.usual);
+  return text;
+}
+
+std::string parameter_line(const ParameterEntry& parameter, const CatalogueEntry& entry, const std::string& group) {
+  const TypicalValue typical = typical_value(group, entry.kind, parameter.key);
+  const bool active = parameter.required || (!typical.value.empty() && !typical.only_to_try);
+  const std::string value =
+      typical.value.empty() ? default_in_toml(parameter, entry, group) : std::string(typical.value);
+  return assignment(fmt::format("{}{} = {}", active ? "" : "# ", parameter.key, value), comment_of(parameter, typical));
+}
+
+/// A section of the loop. `typical_group`: where its values are found; `others`: comment on the other kinds.
+std::string section_of(const std::string& section, const CatalogueEntry& entry, const std::string& typical_group,
+                       const std::string& others) {
+  std::string text = "\n[" + section + "]\n" + labelled("equation", entry.equation);
+  if (!entry.source.empty()) text += labelled("source", entry.source);
+  text += others + fmt::format("kind = \"{}\"\n", entry.kind);
+  for (const auto& parameter : entry.parameters) text += parameter_line(parameter, entry, typical_group);
+  return text;
+}
+
+/// An optional section, as it is or as a comment.
+std::string optional_section(const CaseSection& section, bool active, const std::string& parameters) {
+  const std::string mark = active ? "" : "# ";
+  std::string text = "\n" + commented(std::string(section.meaning)) + mark + fmt::format("[{}]\n", section.name);
+  for (const auto& key : section.keys) {
+    std::string value(key.value), comment(key.meaning);
+    if (section.name == "sensitivity" && key.key == "parameters") value = parameters;
+    if (!key.default_value.empty()) comment += fmt::format("; default {}", key.default_value);
+    text += assignment(fmt::format("{}{} = {}", key.required ? mark : "# ", key.key, value), comment);
+  }
+  return text;
+}
+
+/// The parts of the wanted loop, in the order in which a case tells them.
+struct NewPart {
+  std::string section, typical_group;
+  const CatalogueEntry* entry;
+};
+
+std::vector<NewPart> parts_of(const NewCase& wanted, const std::vector<CatalogueEntry>& all) {
+  // What stands before or behind a controller may need the rate of its signal: then it must have one.
+  const bool guarded = !wanted.element.empty() || !wanted.error.empty();
+  std::vector<NewPart> parts{
+      {"loop.plant", wanted.friction.empty() ? "lone plant" : "plant", &entry_of(all, {"plant"}, wanted.plant)},
+      {"loop.controller", guarded ? "guarded controller" : "controller",
+       &entry_of(all, {"controller"}, wanted.controller)}};
+  if (!wanted.friction.empty())
+    parts.push_back({"loop.friction", "friction", &entry_of(all, {"friction"}, wanted.friction)});
+  if (!wanted.element.empty()) {
+    const CatalogueEntry& entry = entry_of(all, {"element", "friction"}, wanted.element);
+    parts.push_back({"loop.element", entry.group, &entry});
+  }
+  if (!wanted.error.empty())
+    parts.push_back({"loop.error", "error element", &entry_of(all, {"error element", "element"}, wanted.error)});
+  return parts;
+}
+
+/// The number that a first look at the spread is about: of the law or element rather than of the plant.
+std::string first_number(const std::vector<NewPart>& parts) {
+  std::string last;
+  for (const auto& part : parts) {
+    const auto& own = part.entry->parameters;
+    const auto found = std::ranges::find_if(own, [](const auto& one) { return one.type == "number" && one.required; });
+    if (found != own.end()) last = part.section + "." + found->key;
+  }
+  return last;
+}
+
+std::string other_kinds(const NewPart& part, const std::vector<CatalogueEntry>& all) {
+  std::string kinds;
+  for (const auto& entry : all)
+    if (entry.group == part.entry->group && entry.kind != part.entry->kind)
+      kinds += (kinds.empty() ? "" : ", ") + entry.kind;
+  return kinds.empty() ? kinds : labelled("others", kinds);
+}
+
+}  // namespace
+
+std::string new_case(const NewCase& wanted) {
+  const auto all = catalogue();
+  const auto parts = parts_of(wanted, all);
+  std::string title = "New case: " + wanted.plant + ", " + wanted.controller;
+  for (const auto* kind : {&wanted.friction, &wanted.element, &wanted.error})
+    title += kind->empty() ? "" : ", " + *kind;
+
+  std::string text = commented(
+      "A case of limcycle, made by `limcycle new`. It works as it is: put your own numbers in place of these. Keys "
+      "behind "
+      "a # may be left out; what stands there is their default, or something to try. SI units, angles in rad, "
+      "frequencies in rad/s; a rotary drive is the same file in N m and rad. `limcycle check FILE` tells what is "
+      "wrong, "
+      "`limcycle predict FILE` whether the loop hunts, `limcycle laws KIND` all about one kind.");
+  text += fmt::format("title = \"{}\"\n", title);
+  for (const CaseSection& section : case_sections())
+    if (section.name == "loop") text += optional_section(section, true, {});
+  for (const NewPart& part : parts)
+    text += section_of(part.section, *part.entry, part.typical_group, other_kinds(part, all));
+  const std::string number = first_number(parts);
+  for (const CaseSection& section : case_sections()) {
+    if (section.name.empty() || section.name == "loop" || section.name == "claim") continue;
+    const bool spreadable = section.name != "sensitivity" || !number.empty();
+    text +=
+        optional_section(section, wanted.all && spreadable, fmt::format("[{{ path = \"{}\", factor = 1.2 }}]", number));
+  }
+  return text;
+}
+
+}  // namespace limcycle

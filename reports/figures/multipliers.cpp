@@ -1,0 +1,78 @@
+#include "limcycle/reports/figures/multipliers.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "limcycle/reports/json_values.hpp"
+#include "limcycle/reports/number.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr std::size_t widest = 48;  // columns of the ones shown
+constexpr double negligible = 1e-6;
+constexpr int shown_digits = 3;
+
+std::string in_words(std::complex<double> value, bool pair) {
+  std::string real = with_digits(value.real(), shown_digits);
+  if (value.imag() == 0.0) return real;
+  const std::string imaginary = with_digits(std::abs(value.imag()), shown_digits) + "j";
+  return real + (pair ? " ± " : value.imag() < 0.0 ? " - " : " + ") + imaginary;
+}
+
+}  // namespace
+
+std::string multipliers_in_words(const std::vector<std::complex<double>>& multipliers) {
+  std::string out;
+  std::size_t i = 0;
+  while (i < multipliers.size()) {
+    const auto value = multipliers[i];
+    if (std::abs(value) < negligible) break;
+    const bool pair = value.imag() != 0.0 && i + 1 < multipliers.size() &&
+                      std::abs(multipliers[i + 1] - std::conj(value)) <= 1e-9 * std::abs(value);
+    const std::string own = (out.empty() ? "" : ", ") + in_words(value, pair);
+    if (!out.empty() && display_width(out) + display_width(own) > widest) break;
+    out += own;
+    i += pair ? 2 : 1;
+  }
+  if (i == multipliers.size()) return out;
+  const std::size_t left = multipliers.size() - i;
+  const bool small = std::abs(multipliers[i]) < negligible;
+  return out + (out.empty() ? "" : ", ") + fmt::format("{} {}", left, small ? "below 1e-06" : "smaller");
+}
+
+Table multiplier_table(const PredictReport& report) {
+  Table table{{{"#", "", Align::left}, {"over", "s"}, {"largest first", "", Align::left}}, {}};
+  for (std::size_t i = 0; i < report.cycles.size(); ++i) {
+    const Cycle& cycle = report.cycles[i];
+    if (!cycle.multipliers.empty())
+      table.rows.push_back({std::to_string(i), with_digits(cycle.period, 4), multipliers_in_words(cycle.multipliers)});
+  }
+  return table;
+}
+
+std::optional<Figure> multiplier_figure(const PredictReport& report) {
+  Json cycles = Json::array();
+  std::string words;
+  for (std::size_t i = 0; i < report.cycles.size(); ++i) {
+    const Cycle& cycle = report.cycles[i];
+    if (cycle.multipliers.empty()) continue;
+    Json re = Json::array(), im = Json::array();
+    for (const auto& value : cycle.multipliers) {
+      re.push_back(value.real());  // what is not finite becomes null
+      im.push_back(value.imag());
+    }
+    cycles.push_back({{"name", fmt::format("limit cycle {}", i)}, {"re", re}, {"im", im}});
+    words += fmt::format("{} {} of limit cycle {}", words.empty() ? "" : ",",
+                         with_digits(std::abs(cycle.multipliers.front()), shown_digits), i);
+  }
+  if (cycles.empty()) return std::nullopt;
+  return Figure{"multipliers", "Floquet multipliers and the unit circle",
+                "Neighbouring motions return to a limit cycle if all its multipliers lie inside the circle. Size of "
+                "the largest:" +
+                    words + ".",
+                json_text({{"cycles", cycles}})};
+}
+
+}  // namespace limcycle
