@@ -1,0 +1,145 @@
+// Does docs/schema/case.json accept what the program accepts, and refuse with it what can be told of one value?
+//   node tests/case_schema_test.mjs PROGRAM [--all]
+// Cases of the repository, cases of `limcycle new` and every form of a section have to pass. Then they are spoiled in one
+// place each, and the program says of some hundred (--all: of each) whether it refuses too.
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { parse as parse_toml, stringify } from 'smol-toml';
+import { forms, spoiled } from './case_schema_forms.mjs';
+
+const [program, all] = process.argv.slice(2);
+const root = new URL('..', import.meta.url).pathname;
+const sample = 400;
+
+const schema = JSON.parse(readFileSync(join(root, 'docs/schema/case.json'), 'utf8'));
+const Ajv = createRequire(import.meta.url)('ajv/dist/2020').default;
+const ajv = new Ajv({ allErrors: true, strict: true, strictTypes: false, strictRequired: false, allowUnionTypes: true });
+const follows = ajv.compile(schema);
+
+// Integers of TOML are BigInt, so that a case is written again with the types that it was read with.
+const parse = (text) => parse_toml(text, { integersAsBigInt: true });
+const written = (document) => stringify(document, { numbersAsFloat: true });
+
+/// A case as JSON has it.
+function plain(value) {
+  if (typeof value === 'bigint') return Number(value);
+  if (Array.isArray(value)) return value.map(plain);
+  if (value === null || typeof value !== 'object') return value;
+  return Object.fromEntries(Object.entries(value).map(([key, one]) => [key, plain(one)]));
+}
+
+const errors = (document) => (follows(plain(document)) ? [] : follows.errors);
+const sentence = (error) => `${error.instancePath || '/'} ${error.message} ${JSON.stringify(error.params)}`;
+
+const folder = mkdtempSync(join(tmpdir(), 'case_schema_'));
+process.on('exit', () => rmSync(folder, { recursive: true }));
+let calls = 0;
+
+function run(...argv) {
+  ++calls;
+  const { status, stdout, stderr } = spawnSync(program, argv, { encoding: 'utf8' });
+  if (status !== 0 && status !== 2) throw new Error(`exit code ${status} of ${program} ${argv.join(' ')}\n${stderr}`);
+  return { refused: status === 2, stdout, stderr };
+}
+
+/// What the program says against a case; empty: nothing.
+function complaint(text) {
+  const file = join(folder, 'case.toml');
+  writeFileSync(file, text);
+  const { refused, stderr } = run('check', file, '--quiet');
+  return refused ? stderr : '';
+}
+
+const wrong = [];
+const expect = (holds, what) => holds || wrong.push(what);
+
+// ---- what is valid passes
+
+const cases = readdirSync(join(root, 'cases'), { recursive: true }).filter((file) => file.endsWith('.toml')).sort();
+const valid = cases.map((file) => ({ name: `cases/${file}`, text: readFileSync(join(root, 'cases', file), 'utf8') }));
+
+const laws = JSON.parse(run('laws', '--json', '-').stdout).laws;
+const kinds = (group) => laws.filter((law) => law.group === group).map((law) => law.kind);
+const wanted = [
+  ...kinds('plant').flatMap((plant) => kinds('controller').map((controller) => ['--plant', plant, '--controller', controller])),
+  ...kinds('friction').flatMap((kind) => [['--friction', kind], ['--friction', kind, '--all']]),
+  ...kinds('friction').map((kind) => ['--friction', 'none', '--element', kind]),
+  ...kinds('element').map((kind) => ['--element', kind]),
+  ...[...kinds('error element'), 'dead-zone', 'saturation'].map((kind) => ['--error', kind]),
+];
+/// With the optional keys too, which stand there as comments.
+const in_full = (text) => text.replace(/^# (\w+ = [-\d.["{t][^;]*)$/gm, '$1');
+let made = 0;
+for (const argv of wanted) {
+  const { refused, stdout } = run('new', ...argv);
+  if (refused) continue; // these parts make no loop
+  ++made;
+  valid.push({ name: `limcycle new ${argv.join(' ')}`, text: stdout });
+  const full = in_full(stdout);
+  if (full !== stdout && !complaint(full)) valid.push({ name: `limcycle new ${argv.join(' ')}, in full`, text: full });
+}
+const base = run('new').stdout;
+for (const [name, change] of Object.entries(forms)) {
+  const text = change(base);
+  expect(!complaint(text), `the program refuses the form "${name}": ${complaint(text)}`);
+  valid.push({ name, text });
+}
+
+for (const one of valid) {
+  one.document = parse(one.text);
+  expect(errors(one.document).length === 0, `${one.name} is refused: ${errors(one.document).map(sentence)[0]}`);
+}
+for (const { group, kind } of laws) {
+  const seen = valid.some(({ document }) => Object.values(document.loop).some((part) => part.kind === kind));
+  expect(seen, `no case has the ${group} ${kind}`);
+}
+
+// ---- what is spoiled is refused by both
+
+const unique = new Map();
+for (const one of valid)
+  for (const copy of spoiled(one.document)) if (!unique.has(copy.what)) unique.set(copy.what, { ...copy, name: one.name });
+
+/// A fixed order that has nothing to do with what is there.
+function shuffled(text) {
+  let hash = 2166136261;
+  for (const letter of text) hash = Math.imul(hash ^ letter.charCodeAt(0), 16777619);
+  hash = Math.imul(hash ^ (hash >>> 15), 0x2c1b3c6d);
+  return (hash ^ (hash >>> 12)) >>> 0;
+}
+const order = [...unique.values()].sort((a, b) => shuffled(a.what) - shuffled(b.what));
+
+let asked = 0;
+let both = 0;
+for (const { what, make, must, name, place } of all === '--all' ? order : order.slice(0, sample)) {
+  ++asked;
+  const document = make();
+  const found = errors(document);
+  const said = complaint(written(document));
+  both += found.length > 0 && said !== '';
+  if (found.length > 0) expect(said, `the schema refuses and the program accepts: ${what} in ${name}: ${sentence(found[0])}`);
+  else if (said && must(said)) wrong.push(`the program refuses and the schema accepts: ${what} in ${name}: ${said}`);
+  // The words that the program knows are those that the schema knows.
+  const words = said.match(/must be one of (".*")|known: ([a-z, -]+)/);
+  for (const word of words ? (words[1] ?? words[2]).replaceAll('"', '').split(', ') : []) {
+    const there = errors(make(word)).filter((error) => error.instancePath === place && error.keyword === 'enum');
+    expect(there.length === 0, `the schema does not know the word ${word}: ${what}`);
+  }
+}
+
+// ---- no key is forgotten
+
+const keys_of = (node) => (node === null || typeof node !== 'object' ? [] :
+  [...Object.keys(node.properties ?? {}), ...Object.values(node).flatMap(keys_of)]);
+const known = new Set(keys_of(schema));
+for (const file of readdirSync(join(root, 'cases')).filter((name) => /^(read_.*|case)\.cpp$/.test(name)))
+  for (const [, list] of readFileSync(join(root, 'cases', file), 'utf8').matchAll(/allow\(\{([^}]*)\}/g))
+    for (const [, key] of list.matchAll(/"([^"]+)"/g)) expect(known.has(key), `the schema does not know the key ${key} of ${file}`);
+
+for (const what of wrong.slice(0, 20)) console.error(what.trim());
+console.log(`tests/case_schema_test: ${valid.length} cases pass (${cases.length} of the repository, ${made} made anew); ` +
+  `of ${asked} of ${unique.size} spoiled ones both refuse ${both}; ${wrong.length} mistakes, ${calls} calls`);
+process.exit(wrong.length === 0 && cases.length > 0 && made > 0 && both > asked / 2 ? 0 : 1);
