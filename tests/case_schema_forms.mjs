@@ -4,7 +4,8 @@ const also = (text) => (base) => `${base}\n${text}\n`;
 
 /// Name -> a function that gives a case that form. The case is that of `limcycle new`: a mass, pid and lugre.
 export const forms = {
-  'reference: a ramp': (base) => base.replace(/^# reference = .*$/m, 'reference = {kind = "ramp", rate = 0.01}'),
+  'reference: a ramp': (base) =>
+    base.replace(/^# reference = .*$/m, 'load = 0.1\nreference = {kind = "ramp", rate = 0.01}'),
   'integers for numbers': (base) => base.replace(/^mass = .*$/m, 'mass = 2'),
   'signals: constant and step': also(`[simulate]
     duration = 10.0
@@ -75,14 +76,20 @@ export const forms = {
 
 const type_of = (value) => (Array.isArray(value) ? 'list' : typeof value === 'bigint' ? 'number' : typeof value);
 const is_table = (value) => type_of(value) === 'object';
-const copy_of = (value) => structuredClone(value);
 
-// What the schema leaves to the program: states by name, and a formula, which is a text or a number.
+// What the schema leaves to the program: states by name; texts of which it wants more than that they are texts; and a
+// formula may be a number too.
 const states = /^simulate\.initial\b/;
-const formula = /^claim\[\]\.formula$/;
+const free_text = /\.(path|formula)$/;
+const formula = /\.formula$/;
+const always = () => true;
+const never = () => false;
 
-/// Copies of a case that are wrong, or may be, in one place each: `what`, `make()`, `must(said)`: whether the schema has to
-/// refuse if the program says so, and `place`, where it is. make(WORD) has that word in the place.
+/// Whether the program names the range of one number.
+const range_rule = (said) => /must be (>=?|<=?) [-\d.e]+( [^:]*)?$|must be in -?\d+ \.\. \d+/m.test(said);
+
+/// Copies of a case that are wrong, or may be, in one place each: `what`, `make()`, `must(said)`: whether the schema
+/// has to refuse if the program says so, and `place`, where it is. make(VALUE) has that value in the place.
 export function* spoiled(document) {
   for (const { path, label } of places(document)) {
     const value = at(document, path);
@@ -90,23 +97,24 @@ export function* spoiled(document) {
       what: `${label} ${what}`,
       must,
       place: path.map((key) => `/${key}`).join(''),
-      make: (word) => {
-        const copy = copy_of(document);
-        if (word === undefined) change(at(copy, path.slice(0, -1)), path.at(-1));
-        else at(copy, path.slice(0, -1))[path.at(-1)] = word;
+      make: (instead) => {
+        const copy = structuredClone(document);
+        const [holder, key] = [at(copy, path.slice(0, -1)), path.at(-1)];
+        if (instead === undefined) change(holder, key);
+        else holder[key] = instead;
         return copy;
       },
     });
     const put = (wrong) => (holder, key) => { holder[key] = wrong; };
-    const always = () => true;
     if (is_table(value)) {
-      const must = states.test(label) ? () => false : always;
+      const must = states.test(label) ? never : always;
       yield one('has an unknown key', must, (holder, key) => { holder[key].unknown_key = 1n; });
     }
     for (const wrong of ['no-such-word', 12345n, true, {}, [], ['no-such-word'], NaN, Infinity]) {
-      const same = type_of(wrong) === type_of(value) && Number.isFinite(Number(wrong));
-      const must = (same && wrong !== 'no-such-word') || formula.test(label) ? range_rule : always;
-      yield one(`= ${typeof wrong === 'object' ? JSON.stringify(wrong) : wrong}`, free_text(label, wrong) ? () => false : must, put(wrong));
+      const word = wrong === 'no-such-word';
+      const same = type_of(wrong) === type_of(value) && !word && Number.isFinite(Number(wrong));
+      const must = word && free_text.test(label) ? never : same || formula.test(label) ? range_rule : always;
+      yield one(`= ${typeof wrong === 'object' ? JSON.stringify(wrong) : wrong}`, must, put(wrong));
     }
     if (type_of(value) === 'number')
       for (const wrong of [-1, 0, 0.5, 1e9, -1n, 0n]) yield one(`= ${wrong} (${typeof wrong})`, range_rule, put(wrong));
@@ -114,27 +122,26 @@ export function* spoiled(document) {
       yield one('is missing', (said) => / is required/.test(said), (holder, key) => { delete holder[key]; });
   }
   yield {
-    what: 'the file has an unknown key', must: () => true, place: '',
-    make: () => ({ ...copy_of(document), unknown_key: 1n }),
+    what: 'the file has an unknown key',
+    must: always,
+    place: '',
+    make: () => ({ ...structuredClone(document), unknown_key: 1n }),
   };
 }
 
-/// Whether the program names the range of one number.
-const range_rule = (said) => /must be (>=?|<=?) [-\d.e]+( [^:]*)?$|must be in -?\d+ \.\. \d+/m.test(said);
-
-/// A text of which the program wants more than that it is one.
-const free_text = (label, wrong) => wrong === 'no-such-word' && /\.path$|\.formula$/.test(label);
-
 const at = (document, path) => path.reduce((holder, key) => holder[key], document);
 
-/// Every key and the first entry of every list, as a path and in words that name the kinds on the way.
+/// Every key, every table of a list and the first of other entries, as a path and in words that name kinds on the way.
 function* places(node, path = [], label = '') {
   if (Array.isArray(node)) {
-    if (node.length > 0) yield* place(node, 0, path, `${label}[]`);
+    for (let i = 0; i < node.length && (i === 0 || is_table(node[i])); ++i) yield* place(node, i, path, `${label}[]`);
   } else if (is_table(node)) {
     const kind = node.kind ?? node.distribution ?? node.quantity;
     const here = label + (typeof kind === 'string' ? `(${kind})` : '');
-    for (const key of Object.keys(node)) yield* place(node, key, path, here === '' ? key : `${here}.${key}`);
+    for (const key of Object.keys(node)) {
+      const holder = key === 'kind' ? label : here;
+      yield* place(node, key, path, holder === '' ? key : `${holder}.${key}`);
+    }
   }
 }
 function* place(node, key, path, label) {

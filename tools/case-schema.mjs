@@ -23,13 +23,14 @@ function parameter(p) {
   const description = with_unit(p) + (p.default_from === null ? '' : `; default as ${p.default_from}`);
   const more = p.default === null ? {} : { default: p.default };
   const one = { type: 'number', ...bounds(p.range) };
-  const pair = { type: 'array', items: { type: 'number' }, minItems: 2, maxItems: 2 };
+  const number_or_pair = { type: ['number', 'array'], items: { type: 'number' }, minItems: 2, maxItems: 2 };
+  const row = { type: 'array', items: one, ...longest };
   switch (p.type) {
     case 'number': return { ...one, ...more, description };
     case 'choice': return choice(p.choices, description, more);
-    case 'list': return { type: 'array', items: one, ...longest, description };
-    case 'matrix': return { type: 'array', items: { type: 'array', items: one, ...longest }, ...longest, description };
-    case 'complex list': return { type: 'array', items: { ...pair, type: ['number', 'array'] }, ...longest, description };
+    case 'list': return { ...row, description };
+    case 'matrix': return { type: 'array', items: row, ...longest, description };
+    case 'complex list': return { type: 'array', items: number_or_pair, ...longest, description };
   }
   throw new Error(`${p.key} is a ${p.type}, which tools/case-schema.mjs does not know`);
 }
@@ -47,7 +48,7 @@ const group = (description, some) =>
 const friction = of_group('friction');
 const elements = of_group('element');
 // Two of the elements may act on the error too: ErrorElements of models/elements.hpp.
-const on_error = [...of_group('error element'), ...elements.filter(({ kind }) => ['dead-zone', 'saturation'].includes(kind))];
+const both = elements.filter(({ kind }) => ['dead-zone', 'saturation'].includes(kind));
 
 /// JSON in one line, and with what fits into a line of 120 in one.
 function in_line(value) {
@@ -66,20 +67,21 @@ function written(value, indent = '', taken = 0) {
 }
 
 const remark =
-  'Made by tools/case-schema --fix. What this refuses, the program refuses. Rules between values (Fs >= Fc, numbers that ' +
-  'rise, names of states and of numbers, what fits together in a loop) are left to `limcycle check`';
+  'Made by tools/case-schema --fix. What this refuses, the program refuses. Rules between values (Fs >= Fc, numbers ' +
+  'that rise, names of states and of numbers, what fits together in a loop) are left to `limcycle check`';
+const simulate_needs_plant = { simulate: { properties: { loop: { required: ['plant'] } } } };
 
 const schema = {
   $schema: 'https://json-schema.org/draft/2020-12/schema',
   title: 'A case file of limcycle: TOML, read as JSON',
-  ...table(remark, sections, ['loop'], { dependentSchemas: { simulate: { properties: { loop: { required: ['plant'] } } } } }),
+  ...table(remark, sections, ['loop'], { dependentSchemas: simulate_needs_plant }),
   $defs: {
     ...definitions,
     plant: group('From u - F to the position y', of_group('plant')),
     controller: group('From e = r - y to u', of_group('controller')),
     friction: group('Opposes the rubbing velocity of the plant', friction),
     'series-element': group('In series after the controller: plant input = element(u)', [...elements, ...friction]),
-    error: group('On e, before the controller', on_error),
+    error: group('On e, before the controller', [...of_group('error element'), ...both]),
     ...Object.fromEntries(laws.map((law) => [name_of(law), kind_definition(law)])),
   },
 };

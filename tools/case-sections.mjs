@@ -1,8 +1,9 @@
-// The sections of a case file as JSON Schema, for tools/case-schema.mjs: written out after cases/read_*.cpp, as no table
-// of the program lists them. tests/case_schema_test.mjs holds them against the program.
+// The sections of a case file as JSON Schema, for tools/case-schema.mjs: written out after cases/read_*.cpp, as no
+// table of the program lists them. tests/case_schema_test.mjs holds them against the program.
 
 const number = (description, more = {}) => ({ type: 'number', ...more, description });
-const integer = (minimum, maximum, description, more = {}) => ({ type: 'integer', minimum, maximum, ...more, description });
+const integer = (minimum, maximum, description, more = {}) =>
+  ({ type: 'integer', minimum, maximum, ...more, description });
 const text = (description, more = {}) => ({ type: 'string', ...more, description });
 export const choice = (names, description, more = {}) => ({ enum: names, ...more, description });
 const positive = { exclusiveMinimum: 0 };
@@ -26,8 +27,8 @@ function described(meanings) {
   return Object.fromEntries(Object.entries(all).map(([key, set]) => [key, { description: [...set].join('; or ') }]));
 }
 
-/// A table whose `kind` says which of `kinds` (kind -> name of its definition) it follows. By "if" and not by "oneOf": then
-/// a mistake is told as one of that kind. Not every editor looks behind "if": `meanings` is what it shows of a key.
+/// A table whose `kind` says which of `kinds` (kind -> name of its definition) it follows. By "if" and not by "oneOf":
+/// then a mistake is told as one of that kind. Not every editor looks behind "if": `meanings` is what it shows of a key.
 export const by_kind = (description, kinds, meanings, type = 'object') => ({
   type,
   description,
@@ -43,7 +44,8 @@ export const by_kind = (description, kinds, meanings, type = 'object') => ({
 
 const start = number('before which it is 0, s', { minimum: 0, default: 0 });
 const rate = number('slope, 1/s');
-const list = (description) => ({ type: 'array', items: { type: 'number' }, minItems: 1, maxItems: 1_000_000, description });
+const list = (description) =>
+  ({ type: 'array', items: { type: 'number' }, minItems: 1, maxItems: 1_000_000, description });
 const signal_kinds = {
   constant: { value: number('the constant') },
   step: { value: number('height of the step'), start },
@@ -54,7 +56,10 @@ const signal_kinds = {
     rate: number('slope of the flanks, 1/s', positive),
     start,
   },
-  table: { times: list('rising, s'), values: list('one for each of times; straight lines between them, constant beyond') },
+  table: {
+    times: list('rising, s'),
+    values: list('one for each of times; straight lines between them, constant beyond'),
+  },
 };
 const signal_definition = (kind) => [
   `signal-${kind}`,
@@ -62,9 +67,9 @@ const signal_definition = (kind) => [
     ['kind', ...Object.keys(signal_kinds[kind]).filter((key) => key !== 'start')]),
 ];
 const signal_names = Object.fromEntries(Object.keys(signal_kinds).map((kind) => [kind, `signal-${kind}`]));
-const signal = by_kind('A signal of time: a number, or a table', signal_names,
-  Object.values(signal_kinds).flatMap((keys) => Object.entries(keys).map(([key, { description }]) => [key, description])),
-  ['number', 'object']);
+const signal_meanings = Object.values(signal_kinds).flatMap((keys) =>
+  Object.entries(keys).map(([key, { description }]) => [key, description]));
+const signal = by_kind('A signal of time: a number, or a table', signal_names, signal_meanings, ['number', 'object']);
 
 // ---- sections: cases/case.cpp, read_loop.cpp, read_methods.cpp, read_sensitivity.cpp, read_claims.cpp
 
@@ -74,8 +79,8 @@ const loop = table('The loop, or one lone friction or element', {
   friction: ref('friction'),
   element: ref('series-element'),
   error: ref('error'),
-  reference: table('set-point r, in the unit of y: a number, or {kind = "ramp", rate}', { kind: { const: 'ramp' }, rate },
-    ['kind', 'rate'], { type: ['number', 'object'], default: 0 }),
+  reference: table('set-point r, in the unit of y: a number, or {kind = "ramp", rate}',
+    { kind: { const: 'ramp' }, rate }, ['kind', 'rate'], { type: ['number', 'object'], default: 0 }),
   load: number('a constant force on the plant, such as weight, N', { default: 0 }),
 }, [], {
   anyOf: ['friction', 'element', 'error'].map((key) => ({ required: [key] })),
@@ -92,8 +97,13 @@ const axis = (description, range, spacing) =>
     to: number('last value', range),
     points: integer(1, 1_000_000, 'how many'),
     spacing: choice(['log', 'linear'], 'how they are spaced', { default: spacing }),
-  }, ['from', 'to', 'points'],
-  { type: ['number', 'array', 'object'], ...range, items: { type: 'number', ...range }, minItems: 1, maxItems: 1_000_000 });
+  }, ['from', 'to', 'points'], {
+    type: ['number', 'array', 'object'],
+    ...range,
+    items: { type: 'number', ...range },
+    minItems: 1,
+    maxItems: 1_000_000,
+  });
 
 const spread = table('How one number is spread', {
   path: text('which number of the case, such as "loop.friction.Fs"'),
@@ -107,7 +117,10 @@ const spread = table('How one number is spread', {
   dependentSchemas: { factor: { properties: { from: false, to: false } } },
   if: { properties: { distribution: { const: 'normal' } }, required: ['distribution'] },
   then: { properties: { factor: false }, required: ['deviation'] },
-  else: { properties: { mean: false, deviation: false }, anyOf: [{ required: ['from', 'to'] }, { required: ['factor'] }] },
+  else: {
+    properties: { mean: false, deviation: false },
+    anyOf: [{ required: ['from', 'to'] }, { required: ['factor'] }],
+  },
 });
 const spread_list = (description) => ({ type: 'array', items: ref('spread'), minItems: 1, maxItems: 200, description });
 
@@ -199,4 +212,10 @@ export const sections = {
 };
 
 /// What `sections` refer to, but for the kinds.
-export const definitions = { loop, signal, spread, claim, ...Object.fromEntries(Object.keys(signal_kinds).map(signal_definition)) };
+export const definitions = {
+  loop,
+  signal,
+  spread,
+  claim,
+  ...Object.fromEntries(Object.keys(signal_kinds).map(signal_definition)),
+};
