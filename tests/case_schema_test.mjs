@@ -115,7 +115,7 @@ function shuffled(text) {
 const order = [...unique.values()].sort((a, b) => shuffled(a.what) - shuffled(b.what));
 // The keys of kinds come from the tables of the program, sections were written by hand: of these more are asked.
 const of_kind = ({ what }) => /^loop\.\w+\(/.test(what);
-const plain_mistake = ({ what }) => /(= no-such-word|is missing|an unknown key)$/.test(what);
+const plain_mistake = ({ what }) => /(= no-such-word|= -1 \(bigint\)|is missing|an unknown key)$/.test(what);
 const sections = order.filter((one) => !of_kind(one));
 const some = [
   ...order.filter(of_kind).slice(0, sample),

@@ -28,7 +28,7 @@ function described(meanings) {
 }
 
 /// A table whose `kind` says which of `kinds` (kind -> name of its definition) it follows. By "if" and not by "oneOf":
-/// then a mistake is told as one of that kind. Not every editor looks behind "if": `meanings` is what it shows of a key.
+/// then a mistake is told as one of that kind. Not every editor looks behind "if": of a key it shows `meanings`.
 export const by_kind = (description, kinds, meanings, type = 'object') => ({
   type,
   description,
