@@ -65,7 +65,9 @@ const valid = cases.map((file) => ({ name: `cases/${file}`, text: readFileSync(j
 const laws = JSON.parse(run('laws', '--json', '-').stdout).laws;
 const kinds = (group) => laws.filter((law) => law.group === group).map((law) => law.kind);
 const wanted = [
-  ...kinds('plant').flatMap((plant) => kinds('controller').map((one) => ['--plant', plant, '--controller', one])),
+  ...kinds('plant').map((kind) => ['--plant', kind]),
+  ...kinds('plant').map((kind) => ['--plant', kind, '--controller', 'none', '--element', 'relay']),
+  ...kinds('controller').map((kind) => ['--controller', kind]),
   ...kinds('friction').map((kind) => ['--friction', kind]),
   ...kinds('friction').map((kind) => ['--friction', 'none', '--element', kind]),
   ...kinds('element').map((kind) => ['--element', kind]),
