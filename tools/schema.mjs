@@ -14,7 +14,7 @@ export function checker() {
   const commands = new Map();
   for (const file of readdirSync(folder)) {
     ajv.addSchema(JSON.parse(readFileSync(new URL(file, folder), 'utf8')), file);
-    if (file !== 'definitions.json') commands.set(file.replace('.json', ''), file);
+    if (!['definitions.json', 'case.json'].includes(file)) commands.set(file.replace('.json', ''), file);
   }
   return (document) => {
     const file = commands.get(document?.command);

@@ -1,0 +1,88 @@
+// Makes the JSON Schema of case files: kinds and their keys as the program tells them, sections by case-sections.mjs.
+//   limcycle laws --json - | node tools/case-schema.mjs >docs/schema/case.json
+import { readFileSync } from 'node:fs';
+import { by_kind, choice, definitions, sections, table } from './case-sections.mjs';
+
+const laws = JSON.parse(readFileSync(0, 'utf8')).laws;
+const of_group = (group) => laws.filter((law) => law.group === group);
+const name_of = (law) => `${law.group.replace(' ', '-')}-${law.kind}`;
+
+/// As many entries as a list, or rows and columns as a matrix, may have: longest_list of cases/parameters.hpp.
+const longest = { maxItems: 201 };
+
+function bounds({ low, high, low_open, high_open }) {
+  return {
+    ...(low !== null && { [low_open ? 'exclusiveMinimum' : 'minimum']: low }),
+    ...(high !== null && { [high_open ? 'exclusiveMaximum' : 'maximum']: high }),
+  };
+}
+
+const with_unit = ({ meaning, unit }) => meaning + (unit === '1' ? '' : `, ${unit}`);
+
+function parameter(p) {
+  const description = with_unit(p) + (p.default_from === null ? '' : `; default as ${p.default_from}`);
+  const more = p.default === null ? {} : { default: p.default };
+  const one = { type: 'number', ...bounds(p.range) };
+  const number_or_pair = { type: ['number', 'array'], items: { type: 'number' }, minItems: 2, maxItems: 2 };
+  const row = { type: 'array', items: one, ...longest };
+  switch (p.type) {
+    case 'number': return { ...one, ...more, description };
+    case 'choice': return choice(p.choices, description, more);
+    case 'list': return { ...row, description };
+    case 'matrix': return { type: 'array', items: row, ...longest, description };
+    case 'complex list': return { type: 'array', items: number_or_pair, ...longest, description };
+  }
+  throw new Error(`${p.key} is a ${p.type}, which tools/case-schema.mjs does not know`);
+}
+
+const kind_definition = (law) =>
+  table(law.equation, {
+    kind: { const: law.kind },
+    ...Object.fromEntries(law.parameters.map((p) => [p.key, parameter(p)])),
+  }, ['kind', ...law.parameters.filter((p) => p.required).map((p) => p.key)]);
+
+const group = (description, some) =>
+  by_kind(description, Object.fromEntries(some.map((law) => [law.kind, name_of(law)])),
+    some.flatMap((law) => law.parameters.map((p) => [p.key, with_unit(p)])));
+
+const friction = of_group('friction');
+const elements = of_group('element');
+// Two of the elements may act on the error too: ErrorElements of models/elements.hpp.
+const both = elements.filter(({ kind }) => ['dead-zone', 'saturation'].includes(kind));
+
+/// JSON in one line, and with what fits into a line of 120 in one.
+function in_line(value) {
+  if (value === null || typeof value !== 'object') return JSON.stringify(value);
+  if (Array.isArray(value)) return `[${value.map(in_line).join(', ')}]`;
+  return `{${Object.entries(value).map(([key, one]) => `"${key}": ${in_line(one)}`).join(', ')}}`;
+}
+function written(value, indent = '', taken = 0) {
+  const line = in_line(value);
+  if (value === null || typeof value !== 'object' || indent.length + taken + line.length < 120) return line;
+  const inner = `${indent}  `;
+  const [open, close] = Array.isArray(value) ? '[]' : '{}';
+  const entries = Object.entries(value).map(([key, one]) =>
+    Array.isArray(value) ? inner + written(one, inner) : `${inner}"${key}": ${written(one, inner, key.length + 4)}`);
+  return `${open}\n${entries.join(',\n')}\n${indent}${close}`;
+}
+
+const remark =
+  'Made by tools/case-schema --fix. What this refuses, the program refuses. Rules between values (Fs >= Fc, numbers ' +
+  'that rise, names of states and of numbers, what fits together in a loop) are left to `limcycle check`';
+const simulate_needs_plant = { simulate: { properties: { loop: { required: ['plant'] } } } };
+
+const schema = {
+  $schema: 'https://json-schema.org/draft/2020-12/schema',
+  title: 'A case file of limcycle: TOML, read as JSON',
+  ...table(remark, sections, ['loop'], { dependentSchemas: simulate_needs_plant }),
+  $defs: {
+    ...definitions,
+    plant: group('From u - F to the position y', of_group('plant')),
+    controller: group('From e = r - y to u', of_group('controller')),
+    friction: group('Opposes the rubbing velocity of the plant', friction),
+    'series-element': group('In series after the controller: plant input = element(u)', [...elements, ...friction]),
+    error: group('On e, before the controller', [...of_group('error element'), ...both]),
+    ...Object.fromEntries(laws.map((law) => [name_of(law), kind_definition(law)])),
+  },
+};
+console.log(written(schema));

@@ -1,0 +1,221 @@
+// The sections of a case file as JSON Schema, for tools/case-schema.mjs: written out after cases/read_*.cpp, as no
+// table of the program lists them. tests/case_schema_test.mjs holds them against the program.
+
+const number = (description, more = {}) => ({ type: 'number', ...more, description });
+const integer = (minimum, maximum, description, more = {}) =>
+  ({ type: 'integer', minimum, maximum, ...more, description });
+const text = (description, more = {}) => ({ type: 'string', ...more, description });
+export const choice = (names, description, more = {}) => ({ enum: names, ...more, description });
+const positive = { exclusiveMinimum: 0 };
+const accuracy = { minimum: 1e-13, maximum: 0.1 };
+const ref = (name) => ({ $ref: `#/$defs/${name}` });
+
+/// A table that knows these keys, and no other. `more`: keywords beside.
+export const table = (description, properties, required = [], more = {}) => ({
+  type: 'object',
+  description,
+  properties,
+  ...(required.length > 0 && { required }),
+  additionalProperties: false,
+  ...more,
+});
+
+/// Keys with what they mean, from [key, meaning]: a key may mean something else in another kind.
+function described(meanings) {
+  const all = {};
+  for (const [key, meaning] of meanings) (all[key] ??= new Set()).add(meaning);
+  return Object.fromEntries(Object.entries(all).map(([key, set]) => [key, { description: [...set].join('; or ') }]));
+}
+
+/// A table whose `kind` says which of `kinds` (kind -> name of its definition) it follows. By "if" and not by "oneOf":
+/// then a mistake is told as one of that kind. Not every editor looks behind "if": of a key it shows `meanings`.
+export const by_kind = (description, kinds, meanings, type = 'object') => ({
+  type,
+  description,
+  properties: { kind: choice(Object.keys(kinds), 'which'), ...described(meanings) },
+  required: ['kind'],
+  allOf: Object.entries(kinds).map(([kind, name]) => ({
+    if: { type: 'object', properties: { kind: { const: kind } }, required: ['kind'] },
+    then: ref(name),
+  })),
+});
+
+// ---- signals of time: cases/read_signal.cpp
+
+const start = number('before which it is 0, s', { minimum: 0, default: 0 });
+const rate = number('slope, 1/s');
+const list = (description) =>
+  ({ type: 'array', items: { type: 'number' }, minItems: 1, maxItems: 1_000_000, description });
+const signal_kinds = {
+  constant: { value: number('the constant') },
+  step: { value: number('height of the step'), start },
+  ramp: { rate, start },
+  sine: { amplitude: number('height of the sine'), frequency: number('rad/s', positive), start },
+  zigzag: {
+    amplitude: number('height of the peaks', positive),
+    rate: number('slope of the flanks, 1/s', positive),
+    start,
+  },
+  table: {
+    times: list('rising, s'),
+    values: list('one for each of times; straight lines between them, constant beyond'),
+  },
+};
+const signal_definition = (kind) => [
+  `signal-${kind}`,
+  table(`A ${kind} of time`, { kind: { const: kind }, ...signal_kinds[kind] },
+    ['kind', ...Object.keys(signal_kinds[kind]).filter((key) => key !== 'start')]),
+];
+const signal_names = Object.fromEntries(Object.keys(signal_kinds).map((kind) => [kind, `signal-${kind}`]));
+const signal_meanings = Object.values(signal_kinds).flatMap((keys) =>
+  Object.entries(keys).map(([key, { description }]) => [key, description]));
+const signal = by_kind('A signal of time: a number, or a table', signal_names, signal_meanings, ['number', 'object']);
+
+// ---- sections: cases/case.cpp, read_loop.cpp, read_methods.cpp, read_sensitivity.cpp, read_claims.cpp
+
+const loop = table('The loop, or one lone friction or element', {
+  plant: ref('plant'),
+  controller: ref('controller'),
+  friction: ref('friction'),
+  element: ref('series-element'),
+  error: ref('error'),
+  reference: table('set-point r, in the unit of y: a number, or {kind = "ramp", rate}',
+    { kind: { const: 'ramp' }, rate }, ['kind', 'rate'], { type: ['number', 'object'], default: 0 }),
+  load: number('a constant force on the plant, such as weight, N', { default: 0 }),
+}, [], {
+  anyOf: ['friction', 'element', 'error'].map((key) => ({ required: [key] })),
+  if: { maxProperties: 1, anyOf: ['friction', 'element'].map((key) => ({ required: [key] })) },
+  else: { required: ['plant'] },
+});
+
+const interval = (description) =>
+  ({ type: 'array', items: { type: 'number', ...positive }, minItems: 2, maxItems: 2, description });
+
+const axis = (description, range, spacing) =>
+  table(`${description}: a number, a list, or {from, to, points, spacing}`, {
+    from: number('first value', range),
+    to: number('last value', range),
+    points: integer(1, 1_000_000, 'how many'),
+    spacing: choice(['log', 'linear'], 'how they are spaced', { default: spacing }),
+  }, ['from', 'to', 'points'], {
+    type: ['number', 'array', 'object'],
+    ...range,
+    items: { type: 'number', ...range },
+    minItems: 1,
+    maxItems: 1_000_000,
+  });
+
+const spread = table('How one number is spread', {
+  path: text('which number of the case, such as "loop.friction.Fs"'),
+  distribution: choice(['uniform', 'log-uniform', 'normal'], 'how', { default: 'uniform' }),
+  from: number('least value, in the unit of the number'),
+  to: number('largest value, in the unit of the number'),
+  factor: number('in place of from and to: from value/factor to value times factor', { exclusiveMinimum: 1 }),
+  mean: number('of "normal", in the unit of the number; default: the value in the case'),
+  deviation: number('standard deviation of "normal", in the unit of the number', positive),
+}, ['path'], {
+  dependentSchemas: { factor: { properties: { from: false, to: false } } },
+  if: { properties: { distribution: { const: 'normal' } }, required: ['distribution'] },
+  then: { properties: { factor: false }, required: ['deviation'] },
+  else: {
+    properties: { mean: false, deviation: false },
+    anyOf: [{ required: ['from', 'to'] }, { required: ['factor'] }],
+  },
+});
+const spread_list = (description) => ({ type: 'array', items: ref('spread'), minItems: 1, maxItems: 200, description });
+
+const of_df = ['gain.real', 'gain.imag', 'dissipation', 'mean'];
+const quantities = [
+  'period', 'amplitude', 'frequency', 'offset', 'first_harmonic', 'sticking_fraction', 'largest_multiplier', 'cycles',
+  'hunts', ...of_df, 'passive', 'threshold.sigma2', 'state_bound', 'force_bound',
+];
+const claim = table('A claim of your own: quantity comparison formula', {
+  id: text('a word', { pattern: '^[^ \t\n]+$' }),
+  statement: text('for the reader'),
+  source: text('for the reader'),
+  quantity: choice(quantities, 'what it is about'),
+  comparison: choice(['=', '<', '<=', '>', '>='], 'how they compare', { default: '=' }),
+  formula: { type: ['string', 'number'], description: 'over the numbers of the case, such as "4*Fs/(pi*A)"' },
+  tolerance: number('relative, of "="', { minimum: 1e-12, maximum: 10, default: 1e-6 }),
+  expected: choice(['holds', 'fails'], 'the verdict that is expected', { default: 'holds' }),
+  at: table('where a describing function is asked', {
+    amplitude: number("of the element's input", positive),
+    frequency: number('rad/s', positive),
+    bias: number('of the input; of friction a mean velocity, m/s', { default: 0 }),
+  }, ['amplitude', 'frequency']),
+  over: spread_list('numbers that are drawn at random'),
+  random: integer(0, 100_000, 'how often', { default: 10 }),
+}, ['id', 'quantity', 'formula'], {
+  dependentRequired: { random: ['over'] },
+  allOf: [
+    {
+      if: { properties: { quantity: { enum: of_df } }, required: ['quantity'] },
+      then: { required: ['at'] },
+      else: { properties: { at: false } },
+    },
+    {
+      if: { properties: { comparison: { enum: ['<', '<=', '>', '>='] } }, required: ['comparison'] },
+      then: { properties: { tolerance: false } },
+    },
+  ],
+});
+
+export const sections = {
+  title: text("a line for the reader; default: the file's name"),
+  loop: ref('loop'),
+  search: table('Where predictions are looked for', {
+    amplitude: interval("[from, to] of the element's input; with friction of the rubbing displacement, m"),
+    frequency: interval('[from, to], rad/s'),
+  }, ['amplitude', 'frequency']),
+  predict: table('How cycles are predicted and found', {
+    methods: {
+      type: 'array',
+      items: { enum: ['describing-function', 'composite-describing-function', 'harmonic-balance'] },
+      minItems: 1,
+      description: 'which predict; default all',
+    },
+    starts: integer(1, 1000, 'simulations from how many displaced starts', { default: 4 }),
+    accuracy: number('wanted relative error of period and amplitude', { ...accuracy, default: 1e-8 }),
+  }),
+  df: table('Where describing functions are wanted', {
+    amplitude: axis("of the element's input", positive, 'log'),
+    frequency: axis('rad/s', positive, 'log'),
+    bias: axis('of the input; of friction a mean velocity, m/s', {}, 'linear'),
+    harmonics: integer(1, 1000, 'how many are told', { default: 7 }),
+    accuracy: number('wanted relative error of N', { ...accuracy, default: 1e-6 }),
+    method: choice(['auto', 'fft', 'quadrature'], 'how they are computed', { default: 'auto' }),
+  }, ['amplitude', 'frequency']),
+  simulate: table('A run in time', {
+    duration: number('how long, s', positive),
+    initial: {
+      type: 'object',
+      additionalProperties: { type: 'number' },
+      description: 'states to begin from, by the names that `limcycle check` lists; default all 0',
+    },
+    force: ref('signal'),
+    reference: ref('signal'),
+    stepper: choice(['auto', 'exact', 'rodas5p', 'dopri5', 'fehlberg78', 'cash-karp54'], 'how it is computed',
+      { default: 'auto' }),
+    rtol: number('relative tolerance of a step', { ...accuracy, default: 1e-7 }),
+    sample: number('from one row to the next, s; default a thousandth of the duration', positive),
+  }, ['duration']),
+  dissipativity: table('Speeds that a question of energy is about', {
+    speed: number('up to which the force is bounded, m/s', { ...positive, default: 1 }),
+    top_speed: number('of the motions that may take energy out, m/s; default any', positive),
+  }),
+  sensitivity: table('How numbers are spread', {
+    parameters: spread_list('which numbers, and how'),
+    samples: integer(1, 100_000_000, 'base samples of the Sobol study', { default: 1024 }),
+    seed: integer(0, 2147483647, 'of everything random', { default: 0 }),
+  }, ['parameters']),
+  claim: { type: 'array', items: ref('claim'), maxItems: 1000, description: 'Claims of your own' },
+};
+
+/// What `sections` refer to, but for the kinds.
+export const definitions = {
+  loop,
+  signal,
+  spread,
+  claim,
+  ...Object.fromEntries(Object.keys(signal_kinds).map(signal_definition)),
+};
