@@ -27,7 +27,7 @@ Case read_document(const case_file::Document& document) {
     result.simulate = case_file::read_simulate(*simulate, state_names(build_loop(*result.loop)));
   }
   if (const auto energy = top.section("dissipativity")) result.dissipativity = case_file::read_dissipativity(*energy);
-  if (const auto sensitivity = top.section("sensitivity"); sensitivity && result.loop)
+  if (const auto sensitivity = top.section("sensitivity"))
     result.sensitivity = case_file::read_sensitivity(*sensitivity, result);
   if (const auto claims = top.find("claim")) result.claims = case_file::read_claims(*claims, result);
   return result;

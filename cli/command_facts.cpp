@@ -13,30 +13,19 @@
 namespace limcycle {
 namespace {
 
-/// Kinds of a group of the catalogue; an empty group: of all.
-std::vector<std::string> kinds_of(const std::string& group) {
+std::vector<std::string> all_kinds() {
   std::vector<std::string> kinds;
   for (const auto& entry : catalogue())
-    if ((group.empty() || entry.group == group) && std::ranges::find(kinds, entry.kind) == kinds.end())
-      kinds.push_back(entry.kind);
+    if (std::ranges::find(kinds, entry.kind) == kinds.end()) kinds.push_back(entry.kind);
   return kinds;
-}
-
-template <class Names>
-std::vector<std::string> with(std::vector<std::string> first, const Names& more) {
-  for (const auto& one : more) first.emplace_back(one);
-  return first;
 }
 
 /// Words to offer for an option that the parser takes as a free word: whoever runs the command judges it, and suggests.
 std::vector<std::string> words_for(const std::string& command, const std::string& option) {
   const std::string key = command + " " + option;
-  if (key == "laws KIND") return kinds_of("");
-  if (key == "new --plant") return kinds_of("plant");
-  if (key == "new --controller") return kinds_of("controller");
-  if (key == "new --friction" || key == "experiment --law") return kinds_of("friction");
-  if (key == "new --element") return with(kinds_of("element"), kinds_of("friction"));
-  if (key == "new --error") return with({"dead-zone", "saturation"}, kinds_of("error element"));
+  if (key == "laws KIND") return all_kinds();
+  if (command == "new") return kinds_for("loop." + option.substr(2));
+  if (key == "experiment --law") return kinds_for("loop.friction");
   if (key == "map --methods") return names_of({true, true, true});
   if (key == "completion SHELL") return {"bash", "zsh", "fish"};
   std::vector<std::string> names;

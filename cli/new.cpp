@@ -31,11 +31,9 @@ NewCase wanted_case(const NewFlags& flags) {
   return wanted;
 }
 
-/// Refuses a kind that is not in one of those groups of the catalogue.
-void check_kind(const std::string& flag, const std::string& kind, const std::vector<std::string>& groups) {
-  std::vector<std::string> kinds;
-  for (const auto& entry : catalogue())
-    if (std::ranges::find(groups, entry.group) != groups.end()) kinds.push_back(entry.kind);
+/// Refuses a kind that may not stand in the section of the flag's name.
+void check_kind(const std::string& flag, const std::string& kind) {
+  auto kinds = kinds_for("loop." + flag.substr(2));
   if (flag != "--plant" && flag != "--controller") kinds.emplace_back("none");
   if (kind.empty() || std::ranges::find(kinds, kind) != kinds.end()) return;
   throw refusal(flag, "unknown kind '" + kind + "'", suggest(kind, kinds));
@@ -43,11 +41,11 @@ void check_kind(const std::string& flag, const std::string& kind, const std::vec
 
 int run(NewFlags flags) {
   flags.color = "never";  // what may be put into a file by copying
-  check_kind("--plant", flags.plant, {"plant"});
-  check_kind("--controller", flags.controller, {"controller"});
-  check_kind("--friction", flags.friction, {"friction"});
-  check_kind("--element", flags.element, {"element", "friction"});
-  check_kind("--error", flags.error, {"element", "error element"});
+  check_kind("--plant", flags.plant);
+  check_kind("--controller", flags.controller);
+  check_kind("--friction", flags.friction);
+  check_kind("--element", flags.element);
+  check_kind("--error", flags.error);
   const std::string text = new_case(wanted_case(flags));
   try {
     read_case(text, "the new case");

@@ -122,4 +122,17 @@ std::vector<CatalogueEntry> catalogue() {
   return all;
 }
 
+std::vector<std::string> kinds_for(std::string_view section) {
+  std::vector<std::string> kinds;
+  if (section == "loop.error") {
+    ErrorElements::for_each([&]<template <class> class Kind>() { kinds.emplace_back(Kind<double>::kind); });
+    return kinds;
+  }
+  for (const auto& entry : catalogue()) {
+    const bool element = section == "loop.element" && (entry.group == "element" || entry.group == "friction");
+    if (element || section == "loop." + entry.group) kinds.push_back(entry.kind);
+  }
+  return kinds;
+}
+
 }  // namespace limcycle

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "limcycle/models/friction/features.hpp"
@@ -33,5 +34,9 @@ struct CatalogueEntry {
 
 /// All that this version has, from the parameter tables of the models: friction laws, elements, plants, controllers.
 std::vector<CatalogueEntry> catalogue();
+
+/// Kinds that may stand in a section of a case, such as "loop.error"; none for a section that is not a part of the
+/// loop. (Of laws in "loop.element", those that need the applied force are refused with the case.)
+std::vector<std::string> kinds_for(std::string_view section);
 
 }  // namespace limcycle

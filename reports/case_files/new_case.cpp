@@ -147,12 +147,15 @@ std::string first_number(const std::vector<NewPart>& parts) {
   return last;
 }
 
-std::string other_kinds(const NewPart& part, const std::vector<CatalogueEntry>& all) {
-  std::string kinds;
-  for (const auto& entry : all)
-    if (entry.group == part.entry->group && entry.kind != part.entry->kind)
-      kinds += (kinds.empty() ? "" : ", ") + entry.kind;
-  return kinds.empty() ? kinds : labelled("others", kinds);
+std::string other_kinds(const NewPart& part) {
+  auto kinds = kinds_for(part.section);
+  std::erase(kinds, part.entry->kind);
+  if (part.section == "loop.element") {  // one line of words in place of twenty laws
+    const auto laws = kinds_for("loop.friction");
+    std::erase_if(kinds, [&](const auto& kind) { return std::ranges::find(laws, kind) != laws.end(); });
+    kinds.emplace_back("or a friction law that does not need the applied force");
+  }
+  return kinds.empty() ? "" : labelled("others", fmt::format("{}", fmt::join(kinds, ", ")));
 }
 
 }  // namespace
@@ -175,7 +178,7 @@ std::string new_case(const NewCase& wanted) {
   for (const CaseSection& section : case_sections())
     if (section.name == "loop") text += optional_section(section, true, {});
   for (const NewPart& part : parts)
-    text += section_of(part.section, *part.entry, part.typical_group, other_kinds(part, all));
+    text += section_of(part.section, *part.entry, part.typical_group, other_kinds(part));
   const std::string number = first_number(parts);
   for (const CaseSection& section : case_sections()) {
     if (section.name.empty() || section.name == "loop" || section.name == "claim") continue;

@@ -65,6 +65,16 @@ TEST_CASE("new: every element, alone and beside friction, before every plant and
         }
 }
 
+TEST_CASE("new: the kinds that are told beside the chosen one are those that may stand there") {
+  const auto others = [](const std::string& text, const std::string& section) {
+    const auto at = text.find("# others", text.find("[" + section + "]"));
+    return limcycle::test::squeezed(text.substr(at, text.find("kind =", at) - at));
+  };
+  const auto text = limcycle::new_case({"mass", "pid", {}, "relay", "dead-zone", false});
+  CHECK(others(text, "loop.error") == "# others quantizer, saturation ");
+  CHECK(others(text, "loop.element").starts_with("# others saturation, dead-zone, backlash, cubic, or a friction law"));
+}
+
 TEST_CASE("new: every element on the error, and every friction law as an element, where the format has it") {
   for (const auto& plant : kinds_in("plant"))
     for (const auto& controller : kinds_in("controller")) {
