@@ -24,13 +24,15 @@ struct Registers<8> {
   using Bits [[gnu::vector_size(64)]] = std::int64_t;
 };
 
+/// How a * b + c rounds: once where the set has such an instruction (avx2, avx512) and twice where not, or always
+/// twice.
+enum class Products { fused, rounded };
+
 /// N doubles that are computed on together, a Scalar for laws: one instruction each where `set` has registers of that
-/// width. `set` is part of the type so that no function of one source file compiled for it can be taken for that of
-/// another: a source that uses Pack<N, set> is compiled with the options of that set, and holds no other inline code.
-///
-/// a * b + c rounds once where the set has such an instruction (avx2, avx512), twice where not; within one set every
-/// machine rounds alike.
-template <int N, Isa set>
+/// width. `set` and `products` are part of the type so that no function of one source file compiled with them can be
+/// taken for that of another: a source that uses Pack<N, set, products> is compiled with the options of both, and holds
+/// no other inline code. Within one set every machine rounds alike.
+template <int N, Isa set, Products products = Products::fused>
 struct Pack {
   static constexpr int lanes = N;
   using Values = typename Registers<N>::Values;

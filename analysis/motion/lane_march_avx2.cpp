@@ -2,6 +2,6 @@
 
 namespace limcycle {
 
-constinit const LaneKernels avx2_lane_kernels = lane_kernels<Pack<4, Isa::avx2>>();
+constinit const LaneKernels avx2_lane_kernels = lane_kernels<Pack<4, Isa::avx2, Products::rounded>>();
 
 }  // namespace limcycle

@@ -3,6 +3,6 @@
 
 namespace limcycle {
 
-constinit const LaneKernels avx512_lane_kernels = lane_kernels<Twin<Pack<8, Isa::avx512>>>();
+constinit const LaneKernels avx512_lane_kernels = lane_kernels<Twin<Pack<8, Isa::avx512, Products::rounded>>>();
 
 }  // namespace limcycle

@@ -6,8 +6,8 @@
 #include "limcycle/analysis/motion/lane_march.hpp"
 #include "limcycle/analysis/motion/rodas5p_tableau.hpp"
 
-// One function holds a whole step, so that its numbers stay in registers. Under sanitizers, which watch every access,
-// the compiler would need twelve minutes for that; the same source out of line, seconds.
+// One function holds a whole step, so that its numbers stay in registers. Under its sanitizers, which watch every
+// access, GCC would need twelve minutes for that; the same source out of line, seconds.
 #ifdef __SANITIZE_ADDRESS__
 #define LIMCYCLE_LANE_INLINE
 #define LIMCYCLE_LANE_FLATTEN

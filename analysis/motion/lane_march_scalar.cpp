@@ -2,6 +2,6 @@
 
 namespace limcycle {
 
-constinit const LaneKernels scalar_lane_kernels = lane_kernels<Pack<2, Isa::scalar>>();
+constinit const LaneKernels scalar_lane_kernels = lane_kernels<Pack<2, Isa::scalar, Products::rounded>>();
 
 }  // namespace limcycle
