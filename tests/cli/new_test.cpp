@@ -67,7 +67,7 @@ TEST_CASE("new: every element, alone and beside friction, before every plant and
 
 TEST_CASE("new: the kinds that are told beside the chosen one are those that may stand there") {
   const auto others = [](const std::string& text, const std::string& section) {
-    const auto at = text.find("# others", text.find("[" + section + "]"));
+    const auto at = text.find("# others", text.find("\n[" + section + "]\n"));
     return limcycle::test::squeezed(text.substr(at, text.find("kind =", at) - at));
   };
   const auto text = limcycle::new_case({"mass", "pid", {}, "relay", "dead-zone", false});

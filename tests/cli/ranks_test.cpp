@@ -140,13 +140,8 @@ parameters = [
 TEST_CASE("ranks: killed and stopped at any moment, a map goes on where it was, and nothing is computed twice") {
   if (!mpirun_is_here()) return;
   const Scratch scratch;
-#ifdef __SANITIZE_ADDRESS__
-  const Words map = map_of("6", "5");  // where points take long, fewer are enough
-  const std::size_t points = 30;
-#else
   const Words map = map_of("10", "8");
   const std::size_t points = 80;
-#endif
   REQUIRE(run(map + Words{"--threads", "1", "--json", scratch.file("1.json")}).code == 0);
   const std::string store = scratch.file("store");
   const Words again = map + Words{"--threads", "1", "--store", store, "--resume", "--json", scratch.file("n.json")};
