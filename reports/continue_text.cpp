@@ -12,7 +12,7 @@ namespace {
 std::string unit_of(const ContinueReport& report) { return report.unit == "1" ? "" : report.unit; }
 
 /// An event's parameter with the digits that are right; an end of the range is exact.
-std::string place(const BranchEvent& event) {
+std::string event_place(const BranchEvent& event) {
   return std::isnan(event.error) ? with_digits(event.parameter, 4)
                                  : with_error(event.parameter, std::max(event.error, 0.6e-9));
 }
@@ -46,7 +46,7 @@ std::string folds_in_words(const ContinueReport& report) {
   for (const auto& branch : report.found.branches)
     for (const auto& event : branch.events) {
       if (event.type != BranchEvent::Type::fold) continue;
-      out += (out.empty() ? "" : ", ") + Units::attach(place(event), unit_of(report));
+      out += (out.empty() ? "" : ", ") + Units::attach(event_place(event), unit_of(report));
     }
   return out;
 }
@@ -84,7 +84,7 @@ Table event_table(const ContinueReport& report, const Units& units) {
       {}};
   for (const auto& branch : report.found.branches)
     for (const auto& event : branch.events)
-      table.rows.push_back({std::string(to_string(event.type)), place(event), with_digits(event.amplitude, 6),
+      table.rows.push_back({std::string(to_string(event.type)), event_place(event), with_digits(event.amplitude, 6),
                             with_digits(event.period, 6), as_error(event.error)});
   return table;
 }
@@ -119,7 +119,7 @@ std::string continue_text(const std::string& title, const ContinueReport& report
   std::size_t number = 0;
   for (const auto& branch : report.found.branches)
     for (const auto& event : branch.events)
-      out += wrapped(fmt::format("{} at {}: {}.", to_string(event.type), place(event), event.why), 80, 2);
+      out += wrapped(fmt::format("{} at {}: {}.", to_string(event.type), event_place(event), event.why), 80, 2);
   for (const auto& branch : report.found.branches) {
     ++number;
     out += report.found.branches.size() == 1 ? "\nBranch\n" : fmt::format("\nBranch {}\n", number - 1);

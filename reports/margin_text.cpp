@@ -12,7 +12,7 @@ namespace {
 std::string unit_of(const ParameterMargin& one) { return one.parameter.unit == "1" ? "" : one.parameter.unit; }
 
 /// With the digits that are right, at most six.
-std::string place(const MarginSide& side) {
+std::string side_place(const MarginSide& side) {
   if (std::isnan(side.error)) return with_digits(side.value, 3);
   return with_error(side.value, std::max(side.error, 0.6e-5));
 }
@@ -31,7 +31,7 @@ std::string cell(const MarginSide& side, double own) {
     case MarginSide::What::unknown:
       return "?";
     default:
-      return fmt::format("{} ({})", place(side), change(side.value, own));
+      return fmt::format("{} ({})", side_place(side), change(side.value, own));
   }
 }
 
@@ -40,7 +40,7 @@ std::string step(const ParameterMargin& one) {
   const MarginSide& side = *one.nearest();
   const bool raise = std::abs(side.value) > std::abs(one.parameter.value);
   return fmt::format("{} {} from {} to {} ({}{})", raise ? "raise" : "lower", one.parameter.path,
-                     with_digits(one.parameter.value, 4), Units::attach(place(side), unit_of(one)),
+                     with_digits(one.parameter.value, 4), Units::attach(side_place(side), unit_of(one)),
                      change(side.value, one.parameter.value), side.diverges ? ", but it diverges beyond" : "");
 }
 
