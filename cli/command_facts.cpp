@@ -21,10 +21,10 @@ std::vector<std::string> all_kinds() {
 }
 
 /// Words to offer for an option that the parser takes as a free word: whoever runs the command judges it, and suggests.
-std::vector<std::string> words_for(const std::string& command, const std::string& option) {
-  const std::string key = command + " " + option;
+std::vector<std::string> words_for(const std::string& command, const OptionFacts& option) {
+  const std::string key = command + " " + option.name;
   if (key == "laws KIND") return all_kinds();
-  if (command == "new") return kinds_for("loop." + option.substr(2));
+  if (command == "new" && option.value == "KIND") return kinds_for("loop." + option.name.substr(2));
   if (key == "experiment --law") return kinds_for("loop.friction");
   if (key == "map --methods") return names_of({true, true, true});
   if (key == "completion SHELL") return {"bash", "zsh", "fish"};
@@ -74,7 +74,7 @@ OptionFacts option_facts(const CLI::Option& option, const std::string& command) 
   facts.required = option.get_required();
   facts.common =
       option.get_group() == "Options of every command" || facts.name == "--help" || facts.name == "--version";
-  if (facts.choices.empty()) facts.choices = words_for(command, facts.name);
+  if (facts.choices.empty()) facts.choices = words_for(command, facts);
   return facts;
 }
 

@@ -7,9 +7,9 @@
 namespace limcycle {
 namespace {
 
-std::atomic<bool> asked{false};                // by anyone
-std::atomic<long long> signalled{0};           // when, by the user; nanoseconds, 0: not yet
-constexpr long long one_wish = 1'000'000'000;  // signals that come this soon after the first say the same
+std::atomic<bool> asked{false};              // by anyone
+std::atomic<long long> signalled{0};         // when, by the user; nanoseconds, 0: not yet
+constexpr long long second = 1'000'000'000;  // signals that come within it after the first say the same
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<long long>::is_always_lock_free,
               "a signal handler may only touch lock-free atomics");
 
@@ -17,9 +17,9 @@ extern "C" void ask(int signal) {
   asked = true;
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);  // of POSIX, and safe in a handler
-  const long long at = 1'000'000'000LL * now.tv_sec + now.tv_nsec;
+  const long long at = second * now.tv_sec + now.tv_nsec;
   long long first = 0;
-  if (signalled.compare_exchange_strong(first, at) || at - first < one_wish) return;
+  if (signalled.compare_exchange_strong(first, at) || at - first < second) return;
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }

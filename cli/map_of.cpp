@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "limcycle/analysis/study/method_names.hpp"
+#include "limcycle/analysis/study/hunting_map.hpp"
 #include "limcycle/cases/case_numbers.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/parameter_range.hpp"
