@@ -11,9 +11,9 @@ namespace {
 /// Largest integer up to which every integer is a double.
 constexpr std::int64_t exact_integers = std::int64_t{1} << 53;
 
-const Value::List& list_of(const Place& place, const std::string& expected, std::size_t most) {
+const Value::List& list_of(const Place& place, std::string_view expected, std::size_t most) {
   const auto* list = place.value.as<Value::List>();
-  if (list == nullptr) throw place.wrong_type(expected);
+  if (list == nullptr) throw place.wrong_type(std::string(expected));
   if (list->size() > most)
     throw place.document.error(place.value, place.path,
                                fmt::format("must have at most {} entries, found {}", most, list->size()));
