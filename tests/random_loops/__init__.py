@@ -1,0 +1,1 @@
+"""The net: random loops, an independent checker, rewritings."""

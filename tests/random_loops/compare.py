@@ -1,0 +1,130 @@
+"""The program's answer to one loop against what the checker finds."""
+
+import re
+from dataclasses import dataclass, field
+
+from .attractor import Attractor
+from .truth import Truth
+
+PERIOD = 2e-3  # relative, of periods and amplitudes that have to agree
+FACTORS = (0.0113, 0.137, 0.91, 4.3)  # of the typical length: the checker's own starts
+
+
+@dataclass
+class Verdict:
+    """right, undecided, wrong, missed, late or failed; and why."""
+
+    kind: str
+    why: list = field(default_factory=list)
+    undecided_starts: int = 0
+    starts: int = 0
+
+
+def cycles_of(document):
+    """Cycles of predict as attractors, with their stability."""
+    listed = []
+    for cycle in document["cycles"]:
+        one = Attractor("cycle", cycle["period"], cycle["amplitude"], cycle["offset"])
+        one.stable = cycle["stable"]
+        one.multipliers = [complex(*m) for m in cycle["multipliers"]]
+        listed.append(one)
+    return listed
+
+
+def matches(one, other):
+    """Whether two cycles have the same period and amplitude; the mean is another thing than the middle."""
+    return abs(one.period / other.period - 1.0) < PERIOD and abs(one.amplitude / other.amplitude - 1.0) < PERIOD
+
+
+def displacement(start):
+    """The displacement that the name of a start tells, or None."""
+    found = re.fullmatch(r"(?:y displaced by|from y\(0\) =|y\(0\) =) ([-+.0-9e]+)(?: .*)?", start)
+    return float(found.group(1)) if found else None
+
+
+def judge(case, answer):
+    """The verdict on one answer of predict."""
+    if answer.late:
+        return Verdict("late", [f"no answer within the limit ({answer.seconds:.1f} s of CPU time)"])
+    if answer.document is None:
+        return Verdict("failed", [answer.message or f"exit code {answer.code}"])
+    document = answer.document
+    outcomes = document["outcomes"]
+    undecided = [o for o in outcomes if o["outcome"] == "undecided"]
+    truth = Truth(case)
+    listed = cycles_of(document)
+    why, missed = _checked(case, truth, listed, document)
+    verdict = Verdict("right", why, len(undecided), len(outcomes))
+    if why:
+        verdict.kind = "wrong"
+    elif missed and not undecided:
+        verdict.kind, verdict.why = "missed", missed
+    elif undecided or not outcomes:
+        verdict.kind = "undecided"
+        verdict.why = sorted({o.get("why", "") for o in undecided}) + missed
+    return verdict
+
+
+def _checked(case, truth, listed, document):
+    """(what is wrong, what was missed)."""
+    why, missed = [], []
+    scale = truth.scale()
+    sizes = [factor * scale for factor in FACTORS]
+    stable = [cycle for cycle in listed if cycle.stable]
+    reference = truth.model.reference
+    sizes = [0.93 * cycle.amplitude for cycle in stable] + sizes
+    found = truth.attractors([reference + size for size in sizes] + [reference - sizes[-2]])
+    for cycle in stable:
+        if not any(one.kind == "cycle" and matches(one, cycle) for one in found):
+            if not _reached(truth, cycle):
+                text = f"stable cycle T = {cycle.period:.8g}, A = {cycle.amplitude:.6g} not found; found {_texts(found)}"
+                if not truth.out_of_time() and all(one.kind != "unknown" for one in truth.found.values()):
+                    why.append(text)
+    irregular = any(o["outcome"] in ("family", "irregular") for o in document["outcomes"])
+    for one in found:
+        if one.kind == "cycle" and not any(matches(one, cycle) for cycle in listed) and not irregular:
+            missed.append(f"cycle T = {one.period:.8g}, A = {one.amplitude:.6g} is not listed")
+    why += _starts(truth, listed, document)
+    return why, missed
+
+
+def _reached(truth, cycle):
+    """Tries further starts for a cycle that was not found at first."""
+    for factor in (0.5, 0.7, 0.85, 1.0, 1.15, 1.4, 2.0, -0.9):
+        one = truth.settle(truth.model.reference + factor * cycle.amplitude + 1e-7 * cycle.amplitude)
+        if one.kind == "cycle" and matches(one, cycle):
+            return True
+    return False
+
+
+def _starts(truth, listed, document):
+    """Starts whose displacement is told and whose plant has positions: the checker goes the same way."""
+    if not truth.model.names["positions"]:
+        return []
+    wrong = []
+    middle = _rest_of_linear_part(truth)
+    for outcome in document["outcomes"]:
+        size = displacement(outcome["start"])
+        if size is None or outcome["outcome"] == "undecided" or middle is None:
+            continue
+        one = truth.settle(middle + size)
+        kind = outcome["outcome"]
+        if one.kind == "unknown":
+            continue
+        if kind != one.kind and {kind, one.kind} != {"rest", "sliding"}:
+            wrong.append(f"from y displaced by {size:g}: {kind} was said, {_texts([one])} is true")
+        elif kind == "cycle" and outcome["cycle"] is not None and not matches(one, listed[outcome["cycle"]]):
+            wrong.append(f"from y displaced by {size:g}: another cycle, {_texts([one])}")
+    return wrong
+
+
+def _rest_of_linear_part(truth):
+    """y of the rest point without elements: the reference under integral action; otherwise only zero is known."""
+    loop = truth.case["loop"]
+    if loop.get("controller", {}).get("ki", 0.0) and not loop.get("load", 0.0):
+        return truth.model.reference
+    return 0.0 if not truth.model.reference and not loop.get("load", 0.0) else None
+
+
+def _texts(found):
+    return ", ".join(f"cycle T = {o.period:.8g}, A = {o.amplitude:.6g}" if o.kind == "cycle" else o.kind for o in found)

@@ -1,0 +1,85 @@
+"""What a loop really does: the attractors that motions from several starts come to."""
+
+import time
+
+import numpy as np
+
+from . import attractor, loop_model, smooth
+from .motion import PiecewiseLoop
+
+
+class Truth:
+    """Independent simulations of one case."""
+
+    def __init__(self, case, rtol=1e-8, seconds=10.0):
+        kind = case["loop"].get("friction", {}).get("kind")
+        self.case, self.rtol = case, rtol
+        self.smooth = kind in smooth.BRISTLES + smooth.STICKING
+        if self.smooth:
+            self.loop = smooth.SmoothLoop(loop_model.build(case), rtol)
+        else:
+            self.loop = PiecewiseLoop(loop_model.build(case))
+        self.model = self.loop.model
+        self.found = {}
+        self.deadline = time.process_time() + seconds  # of CPU time, for all starts together
+
+    def scale(self):
+        """A length that matters in the loop: friction over stiffness, the width of an element, the swing of a relay."""
+        loop = self.case["loop"]
+        plant = loop["plant"]
+        if "friction" in loop:
+            force = loop["friction"].get("Fs", loop["friction"]["Fc"])
+            stiff = loop.get("controller", {}).get("kp", 0.0) + plant.get("stiffness", 0.0)
+            return force / stiff if stiff > 0.0 else force
+        keys = loop["element"]
+        gain = self._gain()
+        if "level" in keys:
+            return keys["level"] * gain
+        width = keys.get("half_width", keys.get("half_gap", keys.get("limit", 0.0) / keys.get("slope", 1.0)))
+        return width
+
+    def _gain(self):
+        """|G| at the corner of the slowest moving pole."""
+        A = self.model.A[:-1, :-1]
+        n = self.model.plant_order
+        sizes = np.abs(np.linalg.eigvals(A[:n, :n]))
+        w = np.median(sizes[sizes > 1e-9 * sizes.max()]) if sizes.max() > 0.0 else 1.0
+        return abs(self.model.y[:n] @ np.linalg.solve(1j * w * np.eye(n) - A[:n, :n], self.model.push))
+
+    def out_of_time(self):
+        """Whether starts may have been left out."""
+        return time.process_time() > self.deadline
+
+    def settle(self, displacement=0.0, kick=0.0, windup=0.0):
+        """The attractor from a start; kept."""
+        key = (displacement, kick, windup)
+        if key not in self.found and self.out_of_time():
+            return attractor.Attractor("unknown", why="no time left")
+        if key not in self.found:
+            X = self.model.start(*key)
+            far = abs(displacement) + abs(self.model.reference)
+            bound = 1e6 * max(far, self.scale())
+            method = smooth.settle if self.smooth else attractor.settle
+            self.found[key] = method(self.loop, X, bound)
+        return self.found[key]
+
+    def attractors(self, sizes):
+        """Distinct attractors from y displaced by each of these about the reference."""
+        distinct = []
+        for size in sizes:
+            one = self.settle(size)
+            if one.kind == "unknown":
+                continue
+            if any(one.kind == other.kind == "cycle" and _slow(one, other) for other in distinct):
+                distinct = [other for other in distinct if other.kind != "cycle" or not _slow(one, other)]
+            elif one.kind != "cycle":
+                if all(other.kind != one.kind for other in distinct):
+                    distinct.append(one)
+            elif not any(one.same(other) for other in distinct):
+                distinct.append(one)
+        return distinct
+
+
+def _slow(one, other):
+    """The same period with another amplitude: slow decay or a continuum, not two cycles."""
+    return abs(one.period / other.period - 1.0) < 1e-4 and not one.same(other)
