@@ -49,23 +49,6 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-/// Length in bytes of the UTF-8 sequence at the start of `text`; 0 if there is none. Overlong forms, surrogates and
-/// code points beyond U+10FFFF are not UTF-8.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xC2 && first < 0xE0   ? 2
-                             : first >= 0xE0 && first < 0xF0 ? 3
-                             : first >= 0xF0 && first < 0xF5 ? 4
-                                                             : 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xC0U) != 0x80U) return 0;
-  const bool overlong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
-  const bool beyond = (first == 0xED && byte(1) >= 0xA0) || (first == 0xF4 && byte(1) >= 0x90);
-  return overlong || beyond ? 0 : length;
-}
-
 }  // namespace
 
 InputError::InputError(InputFault fault) : std::runtime_error(message_of(fault)), fault_(std::move(fault)) {}
@@ -91,32 +74,6 @@ std::string suggest(std::string_view name, std::span<const std::string> candidat
   std::string text;
   for (const auto& candidate : candidates) text += (text.empty() ? "known: " : ", ") + candidate;
   return text;
-}
-
-bool is_utf8(std::string_view text, std::size_t& valid) {
-  for (valid = 0; valid < text.size();) {
-    const std::size_t length = utf8_length(text.substr(valid));
-    if (length == 0) return false;
-    valid += length;
-  }
-  return true;
-}
-
-std::string one_line(std::string_view text, std::size_t length) {
-  std::string line;
-  for (std::size_t i = 0, shown = 0; i < text.size(); ++shown) {
-    if (shown == length) return line + "...";
-    const std::size_t step = utf8_length(text.substr(i));
-    const auto byte = static_cast<unsigned char>(text[i]);
-    if (step == 0 || byte < 0x20 || byte == 0x7F) {
-      line += fmt::format("\\x{:02X}", byte);
-      ++i;
-    } else {
-      line += text.substr(i, step);
-      i += step;
-    }
-  }
-  return line;
 }
 
 }  // namespace limcycle

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "limcycle/cases/printable.hpp"
+
 namespace limcycle {
 
 /// What is wrong with an input, and where.
@@ -36,12 +38,5 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
 
 /// "did you mean X?" or, when nothing is near, "known: a, b, c".
 std::string suggest(std::string_view name, std::span<const std::string> candidates);
-
-/// Is it UTF-8? `valid`: length of the part in front that is.
-bool is_utf8(std::string_view text, std::size_t& valid);
-
-/// Text made fit for a one-line message: control characters and bytes that are not UTF-8 as `\xNN`, at most `length`
-/// characters.
-std::string one_line(std::string_view text, std::size_t length = 300);
 
 }  // namespace limcycle

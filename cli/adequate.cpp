@@ -1,11 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
 #include <span>
 
 #include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
@@ -92,15 +92,14 @@ int run(AdequateFlags flags) {
   std::string text = adequate_text(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, adequate_page(report, made, from.text, units));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
-  output.text(text);
+  output.text(first_line(flags, report.status) + text);
   if (output.wants_json()) output.json(adequate_json(made, report));
   if (output.wants_csv()) output.csv(adequate_csv(report));
   output.finish();
-  if (report.status == Status::interrupted && !flags.quiet)
-    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
-  return report.status == Status::undefined ? exit_no_answer : exit_done;
+  tell_cut_short(flags, report.status);
+  return report.status == Status::undefined || report.status == Status::interrupted ? exit_no_answer : exit_done;
 }
 
 }  // namespace

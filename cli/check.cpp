@@ -61,7 +61,9 @@ int check(const CommonFlags& flags) {
   const auto summary = summary_of(from);
   const auto made = provenance(flags, &from);
   Output output(flags);
-  output.text(check_text(made, summary));
+  Provenance shown = made;
+  shown.file = one_line(made.file);
+  output.text(check_text(shown, summary));
   if (output.wants_json()) output.json(check_json(made, summary));
   if (output.wants_csv()) output.csv(check_csv(made, summary));
   output.finish();

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <iostream>
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/reports/claims.hpp"
@@ -93,15 +93,20 @@ std::string arguments(const ClaimsFlags& flags) {
   return out;
 }
 
-/// 1 where a verdict is not the one expected; 3 only where the user stopped it before anything was decided.
-int exit_code(const std::vector<TestedClaim>& tested) {
-  bool answered = false, as_expected = true;
-  for (const auto& one : tested) {
-    if (interrupted() && one.result.status == Status::interrupted) continue;
-    answered = true;
-    as_expected = as_expected && one.as_expected();
-  }
-  return !answered ? exit_no_answer : as_expected ? exit_done : exit_disagreed;
+/// A signal that comes when all are tested changes nothing.
+Status ending(const std::vector<TestedClaim>& tested, std::size_t wanted) {
+  const bool all = tested.size() == wanted && std::ranges::none_of(tested, [](const auto& one) {
+                     return one.result.status == Status::interrupted;
+                   });
+  return all ? Status::converged : ending_so_far();
+}
+
+/// 1 where a verdict is not the one expected; else 3 where some were not tested.
+int exit_code(const std::vector<TestedClaim>& tested, Status ended) {
+  const bool as_expected = std::ranges::all_of(tested, [&](const auto& one) {
+    return (ended == Status::interrupted && one.result.status == Status::interrupted) || one.as_expected();
+  });
+  return !as_expected ? exit_disagreed : tested.empty() || ended == Status::interrupted ? exit_no_answer : exit_done;
 }
 
 int run(ClaimsFlags flags) {
@@ -112,19 +117,20 @@ int run(ClaimsFlags flags) {
   Output output(flags);
   output.check_file("--html", flags.html);
   const auto tested = test_all(which, flags);
+  const Status ended = ending(tested, which.size());
   const auto made = provenance(flags, from ? &*from : nullptr);
   std::string text = claims_text(tested, flags.verbose);
   if (from) text = wrapped(from->title) + "\n" + text;
   if (!flags.html.empty()) {
     output.file(flags.html, claims_page(tested, made, arguments(flags), from ? from->text : ""));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
-  output.text(text);
-  if (output.wants_json()) output.json(claims_json(made, tested));
+  output.text(first_line(flags, ended) + text);
+  if (output.wants_json()) output.json(claims_json(made, tested, ended));
   if (output.wants_csv()) output.csv(claims_csv(tested));
   output.finish();
-  if (interrupted() && !flags.quiet) std::cerr << "limcycle: interrupted; what was computed until then is written\n";
-  return exit_code(tested);
+  tell_cut_short(flags, ended);
+  return exit_code(tested, ended);
 }
 
 }  // namespace

@@ -12,7 +12,9 @@
 #include <tuple>
 
 #include "build_info.hpp"
+#include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/ranks.hpp"
+#include "limcycle/cli/time_limit.hpp"
 
 namespace limcycle {
 
@@ -28,6 +30,11 @@ void add_terminal_flags(CLI::App& command, CommonFlags& flags) {
   command.add_option("--color", flags.color, "Colours; auto: on a terminal, but not with NO_COLOR")
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->type_name("WHEN")
+      ->capture_default_str()
+      ->group(common);
+  command.add_option("--time-limit", flags.time_limit, "Stop after S seconds and keep what is known; 0: no limit")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str()
       ->group(common);
   command.add_flag("--quiet", flags.quiet, "No progress bar and no messages but errors")->group(common);
@@ -69,6 +76,7 @@ void add_computing_flags(CLI::App& command, CommonFlags& flags) {
 /// Runs a command and tells, with --verbose, what it took.
 int timed(const CommonFlags& flags, const Action& run) {
   const auto begin = std::chrono::steady_clock::now();
+  const TimeLimit limit(rank() == 0 ? flags.time_limit : 0.0);  // rank 0 ends the others
   const int code = run();
   if (!flags.verbose || flags.quiet || rank() > 0) return code;
   const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -129,6 +137,7 @@ Provenance provenance(const CommonFlags& flags, const Case* from) {
   // Of the machine, also where mpirun gives this process a part of it: a result has the same bytes either way.
   made.threads =
       flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  made.time_is_over = interrupted_by_time();
   if (from != nullptr) {
     made.title = from->title;
     made.file = from->file;

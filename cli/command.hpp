@@ -20,7 +20,7 @@ enum ExitCode : int {
   exit_done = 0,       ///< whether or not a cycle exists
   exit_disagreed = 1,  ///< a claim or a required agreement failed
   exit_bad_input = 2,  ///< wrong usage or input (InputError, std::invalid_argument)
-  exit_no_answer = 3   ///< a method could not answer, a result could not be written, or a defect of the program
+  exit_no_answer = 3   ///< not answered: undecided, cut short, not written, or a defect of the program
 };
 
 /// What every subcommand understands.
@@ -35,6 +35,7 @@ struct CommonFlags {
   std::string color = "auto";  ///< --color auto, always or never, of what goes to the terminal
   bool quiet = false;          ///< nothing on stderr but errors
   bool verbose = false;        ///< also what was done, and on stderr how long it took
+  double time_limit = 0.0;     ///< --time-limit, s; 0: none
 };
 
 /// What the command line asked for; set while it is parsed, run afterwards. The result is the exit code.

@@ -126,7 +126,7 @@ const std::vector<std::string>& exit_codes() {
   static const std::vector<std::string> codes{
       "done, whether or not a limit cycle exists", "a claim or a required agreement failed",
       "wrong usage or wrong input; one line on stderr says which key, where, and what would be right",
-      "a method could not answer, or a result could not be written"};
+      "no answer: nothing was decided, the work was interrupted, or a result could not be written"};
   return codes;
 }
 

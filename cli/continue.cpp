@@ -1,11 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <iostream>
 
 #include "limcycle/cases/case_numbers.hpp"
 #include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/parameter_range.hpp"
 #include "limcycle/cli/progress.hpp"
@@ -23,7 +23,7 @@ struct ContinueFlags : CommonFlags {
 
 int exit_code(const FollowReport& found) {
   const bool answered = found.status == Status::converged || found.status == Status::no_cycle;
-  return found.branches.empty() && !answered ? exit_no_answer : exit_done;
+  return found.status == Status::interrupted || (found.branches.empty() && !answered) ? exit_no_answer : exit_done;
 }
 
 int run(ContinueFlags flags) {
@@ -54,15 +54,14 @@ int run(ContinueFlags flags) {
   std::string text = continue_text(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, continue_page(report, made, from.text, units));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
   if (!flags.picture.empty()) output.file(flags.picture, continue_picture(report, units));
-  output.text(text);
+  output.text(first_line(flags, report.found.status) + text);
   if (output.wants_json()) output.json(continue_json(made, report));
   if (output.wants_csv()) output.csv(continue_csv(report));
   output.finish();
-  if (report.found.status == Status::interrupted && !flags.quiet)
-    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  tell_cut_short(flags, report.found.status);
   return exit_code(report.found);
 }
 

@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
 
 #include "limcycle/analysis/frequency/df_table.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/sweep.hpp"
 #include "limcycle/reports/csv.hpp"
@@ -43,17 +43,19 @@ int run(const SweepFlags& flags) {
   options.isa = instruction_set(flags);
   options.threads = flags.threads;
   Output output(flags);
+  output.keep("the store", flags.store);
 
   const auto results = sweep_table(from, points, options, flags);
-  output.text(df_text(from.title, points, results));
+  const Status ended = results.size() < points.size() ? ending_so_far() : Status::converged;
+  output.text(first_line(flags, ended) + df_text(from.title, points, results));
   Provenance made = provenance(flags, &from);
   made.isa = to_string(options.isa);
   if (output.wants_json()) output.json(df_json(made, points, results));
   if (output.wants_csv()) output.csv(df_csv(points, results));
   output.finish();
-  if (results.size() < points.size()) tell_how_to_resume(flags);
+  tell_how_to_resume(flags, ended);
   const bool answered = std::ranges::any_of(results, [](const auto& result) { return result.answered(); });
-  return answered ? exit_done : exit_no_answer;
+  return answered && ended != Status::interrupted ? exit_done : exit_no_answer;
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <iostream>
-
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/parameter_range.hpp"
 #include "limcycle/cli/progress.hpp"
@@ -81,19 +80,18 @@ int run(DissipativityFlags flags) {
     if (flags.speed > 0.0) again += fmt::format(" --speed {}", flags.speed);
     if (flags.top_speed > 0.0) again += fmt::format(" --top-speed {}", flags.top_speed);
     output.file(flags.html, dissipativity_page(report, made, from.text, again));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
-  output.text(text);
+  output.text(first_line(flags, report.status) + text);
   if (output.wants_json()) output.json(dissipativity_json(made, report));
   if (output.wants_csv()) output.csv(dissipativity_csv(report));
   output.finish();
-  if (report.status == Status::interrupted && !flags.quiet)
-    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  tell_cut_short(flags, report.status);
   if (report.agrees == false) {
-    std::cerr << "limcycle: a cycle was found where energy proves that there is none: please report this\n";
+    tell(flags, "a cycle was found where energy proves that there is none: please report this");
     return exit_disagreed;
   }
-  return exit_done;
+  return report.status == Status::interrupted ? exit_no_answer : exit_done;
 }
 
 }  // namespace

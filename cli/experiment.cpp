@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/reports/experiment.hpp"
@@ -74,6 +74,13 @@ std::vector<Experiment> run_all(const std::vector<ExperimentEntry>& entries, con
   return results;
 }
 
+/// A signal that comes when all are done changes nothing.
+Status ending(const std::vector<Experiment>& results, std::size_t wanted) {
+  const bool all = results.size() == wanted &&
+                   std::ranges::none_of(results, [](const auto& one) { return one.status == Status::interrupted; });
+  return all ? Status::converged : ending_so_far();
+}
+
 int run(ExperimentFlags flags) {
   if (!flags.set.empty()) throw refusal("--set", "experiments have no case; --law chooses laws");
   if (flags.name.empty()) return list(flags);
@@ -85,21 +92,22 @@ int run(ExperimentFlags flags) {
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.pictures);
   const auto results = run_all(entries, flags);
+  const Status ended = ending(results, entries.size());
   const auto made = provenance(flags);
   std::string text = experiment_text(results);
   if (!flags.html.empty() && !results.empty()) {
     std::string words;
     for (const auto& law : flags.laws) words += (words.empty() ? "--law " : " --law ") + law;
     output.file(flags.html, experiment_page(results, made, words));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
   if (!flags.pictures.empty()) output.file(flags.pictures, experiment_picture(results));
-  output.text(text);
-  if (output.wants_json()) output.json(experiment_json(made, results));
+  output.text(first_line(flags, ended) + text);
+  if (output.wants_json()) output.json(experiment_json(made, results, ended));
   if (output.wants_csv()) output.csv(experiment_csv(results));
   output.finish();
-  if (interrupted() && !flags.quiet) std::cerr << "limcycle: interrupted; what was computed until then is written\n";
-  return results.empty() ? exit_no_answer : exit_done;
+  tell_cut_short(flags, ended);
+  return results.empty() || ended == Status::interrupted ? exit_no_answer : exit_done;
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "limcycle/cli/from_page.hpp"
+#include "limcycle/cli/message.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 
 #include "build_info.hpp"
 
@@ -71,11 +71,10 @@ void compare_with_page(const CommonFlags& flags, const CaseWithPage& loaded, con
   if (!loaded.page || flags.quiet) return;
   const bool other = loaded.page->version != build_info::version;
   if (other)
-    std::cerr << "limcycle: the page was written by version " + one_line(loaded.page->version, 40) + ", this is " +
-                     build_info::version + "\n";
+    tell(flags,
+         "the page was written by version " + one_line(loaded.page->version, 40) + ", this is " + build_info::version);
   if (!flags.set.empty() || loaded.result.empty() || same_result(loaded.result, document)) return;
-  std::cerr << "limcycle: the answer is not the one that the page states" +
-                   std::string(other ? "" : ": please report this") + "\n";
+  tell(flags, std::string("the answer is not the one that the page states") + (other ? "" : ": please report this"));
 }
 
 }  // namespace limcycle

@@ -8,6 +8,7 @@ namespace limcycle {
 namespace {
 
 std::atomic<bool> asked{false};              // by anyone
+std::atomic<bool> time_over{false};          // before the user asked
 std::atomic<long long> signalled{0};         // when, by the user; nanoseconds, 0: not yet
 constexpr long long second = 1'000'000'000;  // signals that come within it after the first say the same
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<long long>::is_always_lock_free,
@@ -33,8 +34,17 @@ void catch_interrupts() {
 
 void interrupt() { asked.store(true, std::memory_order_relaxed); }
 
+void time_is_over() {
+  if (!interrupted()) time_over = true;
+  interrupt();
+}
+
 bool interrupted_by_signal() { return signalled.load(std::memory_order_relaxed) != 0; }
 
 bool interrupted() { return asked.load(std::memory_order_relaxed); }
+
+bool interrupted_by_time() { return time_over.load(std::memory_order_relaxed); }
+
+Status ending_so_far() { return interrupted() ? Status::interrupted : Status::converged; }
 
 }  // namespace limcycle

@@ -1,4 +1,5 @@
 #pragma once
+#include "limcycle/analysis/status.hpp"
 
 namespace limcycle {
 
@@ -10,10 +11,19 @@ void catch_interrupts();
 /// Raises the flag too: what this process computes is not wanted any more.
 void interrupt();
 
-/// Has the user asked to stop, or interrupt() been called? Cheap, safe from any thread.
+/// Raises the flag because the time of --time-limit is over.
+void time_is_over();
+
+/// Has the user asked to stop, is the time over, or was interrupt() called? Cheap, safe from any thread.
 bool interrupted();
 
 /// Has the user?
 bool interrupted_by_signal();
+
+/// Was the time over before the user asked?
+bool interrupted_by_time();
+
+/// How a command ends whose work says nothing of it: converged, or interrupted.
+Status ending_so_far();
 
 }  // namespace limcycle

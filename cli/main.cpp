@@ -12,6 +12,7 @@
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/help.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/option_values.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/rank_job.hpp"
 #include "limcycle/cli/rank_sweep.hpp"
@@ -79,8 +80,10 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", version_text(), "Print the version and exit");
   program.require_subcommand(1);
   for (const auto add : declarations) add(program, action);
-  for (auto* command : program.get_subcommands({}))
+  for (auto* command : program.get_subcommands({})) {
     command->set_version_flag("--version", version_text(), "Print the version and exit");
+    check_option_values(*command);
+  }
   try {
     check_command(program, argc, argv);
     program.parse(argc, argv);

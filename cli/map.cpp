@@ -2,13 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
 
 #include "limcycle/analysis/study/hunting_map.hpp"
 #include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/map_of.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/sweep.hpp"
 #include "limcycle/cli/units_of.hpp"
@@ -81,6 +81,7 @@ int run(MapFlags flags) {
   const Methods methods = chosen_methods(flags.methods);
   MapReport report = map_of(from, flags.x, flags.y, methods);
   Output output(flags);
+  output.keep("the store", flags.store);
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.picture);
 
@@ -95,15 +96,15 @@ int run(MapFlags flags) {
   std::string text = map_text(from.title, report);
   if (!flags.html.empty()) {
     output.file(flags.html, map_page(report, made, from.text, units, flags_text(report.map, flags)));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
   if (!flags.picture.empty()) output.file(flags.picture, map_picture(report, units));
-  output.text(text);
-  if (output.wants_json()) output.json(map_json(made, report));
+  output.text(first_line(flags, swept.status) + text);
+  if (output.wants_json()) output.json(map_json(made, report, swept.status));
   if (output.wants_csv()) output.csv(map_csv(report));
   output.finish();
-  if (swept.status == Status::interrupted) tell_how_to_resume(flags);
-  return report.map.known() == 0 ? exit_no_answer : exit_done;
+  tell_how_to_resume(flags, swept.status);
+  return report.map.known() == 0 || swept.status == Status::interrupted ? exit_no_answer : exit_done;
 }
 
 }  // namespace

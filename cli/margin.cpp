@@ -1,11 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <iostream>
 
 #include "limcycle/cases/case_numbers.hpp"
 #include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
@@ -56,8 +56,8 @@ std::vector<MarginParameter> parameters_of(const Case& from, const MarginFlags& 
 
 int exit_code(const MarginReport& report) {
   const bool nothing = report.parameters.empty() && !report.balance;
-  return nothing && report.status != Status::converged && report.status != Status::interrupted ? exit_no_answer
-                                                                                               : exit_done;
+  return report.status == Status::interrupted || (nothing && report.status != Status::converged) ? exit_no_answer
+                                                                                                 : exit_done;
 }
 
 int run(MarginFlags flags) {
@@ -86,14 +86,13 @@ int run(MarginFlags flags) {
   std::string text = margin_text(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, margin_page(report, made, from.text, units));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
-  output.text(text);
+  output.text(first_line(flags, report.status) + text);
   if (output.wants_json()) output.json(margin_json(made, report));
   if (output.wants_csv()) output.csv(margin_csv(report));
   output.finish();
-  if (report.status == Status::interrupted && !flags.quiet)
-    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  tell_cut_short(flags, report.status);
   return exit_code(report);
 }
 

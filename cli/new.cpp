@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 
 #include "limcycle/cli/command.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/reports/case_files/new_case.hpp"
@@ -58,9 +58,8 @@ int run(NewFlags flags) {
   Output output(flags);
   output.text(text);
   output.finish();
-  if (!flags.output.empty() && !flags.quiet)
-    std::cerr << "limcycle: " + flags.output + " is written; put your own numbers in, then: limcycle predict " +
-                     flags.output + "\n";
+  if (!flags.output.empty())
+    tell(flags, flags.output + " is written; put your own numbers in, then: limcycle predict " + flags.output);
   return exit_done;
 }
 

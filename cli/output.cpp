@@ -2,13 +2,13 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
+#include "limcycle/cases/printable.hpp"
 #include "limcycle/cli/colour.hpp"
 #include "limcycle/cli/ranks.hpp"
 
@@ -49,46 +49,78 @@ bool replaced(const std::string& path, std::string_view document) {
   return done;
 }
 
+/// The one name that all ways to write it lead to, through links; the file need not exist. Empty where that fails.
+std::filesystem::path full_name(const std::string& path) {
+  std::error_code failed;
+  const auto name = std::filesystem::weakly_canonical(std::filesystem::absolute(path, failed), failed);
+  return failed ? std::filesystem::path() : name;
+}
+
+/// Do both names mean one file, which exists or not? Devices may be named twice.
+bool same_file(const std::string& one, const std::string& other) {
+  namespace fs = std::filesystem;
+  if (one == "-" || other == "-") return one == other;
+  std::error_code failed;
+  if (fs::exists(one, failed) && !fs::is_regular_file(one, failed)) return false;
+  if (fs::equivalent(one, other, failed)) return true;
+  const fs::path first = full_name(one);
+  return !first.empty() && first == full_name(other);
+}
+
+/// 0, or the error that a document would meet: it is written beside the file, which it then replaces.
+int cannot_be_replaced(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const auto status = fs::status(path, failed);
+  if (fs::is_directory(status)) return EISDIR;
+  // Devices and pipes are not opened before there is something to write.
+  if (fs::exists(status) && !fs::is_regular_file(status)) return 0;
+  if (fs::exists(status) && access(path.c_str(), W_OK) != 0) return errno;
+  const fs::path folder = full_name(path).parent_path();
+  return access(folder.c_str(), W_OK | X_OK) == 0 ? 0 : errno;
+}
+
 }  // namespace
 
 Output::Output(const CommonFlags& flags) : json_(flags.json), csv_(flags.csv) {
-  const std::vector<std::pair<std::string, std::string>> named = {
-      {"--output", flags.output}, {"--json", flags.json}, {"--csv", flags.csv}};
-  for (std::size_t i = 0; i < named.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if (!named[i].second.empty() && named[i].second == named[k].second)
-        throw refusal(named[i].first + " " + named[i].second, "is where " + named[k].first + " goes already");
+  keep("the case file", flags.case_file);
   text_ = !flags.output.empty() ? flags.output : json_ == "-" || csv_ == "-" ? "" : "-";
   colours_ = text_ == "-" && colours_wanted(flags.color, STDOUT_FILENO);
-  for (const auto& [flag, path] : named) check_file(flag, path);
+  check_file("--output", flags.output);
+  check_file("--json", flags.json);
+  check_file("--csv", flags.csv);
 }
 
-Output::~Output() {
-  std::error_code ignored;
-  for (const auto& path : created_) std::filesystem::remove(path, ignored);
+void Output::keep(const std::string& what, const std::string& path) {
+  if (path.empty() || path == "-") return;
+  for (const auto& one : taken_)
+    if (!one.flag.empty() && same_file(one.path, path)) throw refusal(one.flag + " " + one.path, "is " + what);
+  taken_.push_back({{}, path, what});
 }
 
 void Output::check_file(const std::string& flag, const std::string& path) {
-  if (path.empty() || path == "-" || rank() > 0) return;
-  std::error_code failed;
-  const auto status = std::filesystem::status(path, failed);
-  // Devices and pipes are not opened before there is something to write.
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
-      !std::filesystem::is_directory(status))
-    return;
-  errno = 0;
-  if (!std::ofstream(path, std::ios::app))
-    throw refusal(flag + " " + path, std::string("cannot be written: ") + std::strerror(errno));
-  if (!std::filesystem::exists(status)) created_.push_back(path);
+  if (path.empty() || rank() > 0) return;
+  for (const auto& one : taken_)
+    if (same_file(path, one.path)) throw refusal(flag + " " + path, "is " + one.what);
+  taken_.push_back({flag, path, "where " + flag + " goes already"});
+  if (path == "-") return;
+  if (const int reason = cannot_be_replaced(path); reason != 0)
+    throw refusal(flag + " " + path, std::string("cannot be written: ") + std::strerror(reason));
 }
 
-void Output::text(std::string_view document) { write(text_, colours_ ? coloured(document) : std::string(document)); }
+void Output::text(std::string_view document) {
+  const std::string shown = printable(document);
+  write(text_, colours_ ? coloured(shown) : shown);
+}
 
 void Output::write(const std::string& path, std::string_view document) {
   if (path.empty() || rank() > 0) return;
   errno = 0;
-  const bool written = path == "-" ? written_to(std::cout, document) : replaced(path, document);
-  if (written) std::erase(created_, path);
+  // The text went through printable() before it was coloured.
+  const bool raw = path == "-" && path != text_ && isatty(STDOUT_FILENO) == 1;
+  const bool written = path != "-" ? replaced(path, document)
+                       : raw       ? written_to(std::cout, printable(document))
+                                   : written_to(std::cout, document);
   if (!written && failure_.empty())
     failure_ = "cannot write to " + (path == "-" ? "stdout" : path) +
                (errno != 0 ? std::string(": ") + std::strerror(errno) : "");

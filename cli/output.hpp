@@ -18,13 +18,12 @@ class OutputError : public std::runtime_error {
 /// With "-" for one of them stdout carries that document and nothing else; the text is then dropped unless --output
 /// names a file for it.
 ///
-/// The constructor checks that every file can be opened, before anything is computed, without touching what stands in
-/// it; it throws InputError otherwise. Files that it had to create and that were never written are removed again. Of
-/// several ranks only rank 0 touches any file.
+/// The constructor checks before anything is computed that every file can be written and that none takes the place of
+/// another or of what the command reads, by whatever name; it throws InputError otherwise. No file is created before
+/// its document is complete. Of several ranks only rank 0 touches any file.
 class Output {
  public:
   explicit Output(const CommonFlags& flags);
-  ~Output();
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
@@ -34,10 +33,15 @@ class Output {
 
   /// Write the whole document at once, into a new file that then takes the place of the old one, so that a full disk
   /// never costs an older result. A write that fails is kept for finish(), so that the others still go out.
-  /// On a terminal the text gets colours, as --color says.
+  /// On a terminal the text gets colours, as --color says. Text shows as escapes what a terminal would obey (see
+  /// printable()), and so does any document that goes to a terminal.
   void text(std::string_view document);
   void json(std::string_view document) { write(json_, document); }
   void csv(std::string_view document) { write(csv_, document); }
+
+  /// A file that the command reads or keeps by itself, `what` in words ("the store"): no document may go there. A path
+  /// that is empty is none.
+  void keep(const std::string& what, const std::string& path);
 
   /// Any other file (an HTML page, say) under the same rules: check_file() first, then, when there is something,
   /// file().
@@ -52,7 +56,11 @@ class Output {
 
   std::string text_, json_, csv_;  // "-" is stdout, empty: not wanted
   bool colours_ = false;
-  std::vector<std::string> created_;  // by check_file(), not written yet
+  struct TakenFile {
+    std::string flag;  // of the document that goes there; empty for what the command reads
+    std::string path, what;
+  };
+  std::vector<TakenFile> taken_;
   std::string failure_;
 };
 

@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
-#include <iostream>
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/precision_of.hpp"
 #include "limcycle/cli/progress.hpp"
@@ -24,7 +24,7 @@ struct PrecisionFlags : CommonFlags {
 /// A cycle without a verified reference is no answer, nor is nothing at all. A loop that rests has no such question.
 int exit_code(const PrecisionReport& report) {
   const auto answered = [](const auto& chart) { return chart && chart->answered; };
-  if (report.status == Status::interrupted) return exit_done;
+  if (report.status == Status::interrupted) return exit_no_answer;
   if (report.cycle && !answered(report.cycle_chart)) return exit_no_answer;
   return answered(report.cycle_chart) || answered(report.df_chart) ? exit_done : exit_no_answer;
 }
@@ -62,13 +62,12 @@ int run_atlas(const Case& from, const PrecisionFlags& flags) {
   const auto made = provenance(flags, &from);
   if (!flags.html.empty()) output.file(flags.html, atlas_page(atlas, made, from.text));
   if (!flags.picture.empty()) output.file(flags.picture, atlas_picture(atlas));
-  output.text(atlas_text(from.title, atlas));
+  output.text(first_line(flags, atlas.status) + atlas_text(from.title, atlas));
   if (output.wants_json()) output.json(atlas_json(made, atlas));
   if (output.wants_csv()) output.csv(atlas_csv(atlas));
   output.finish();
-  if (atlas.status != Status::interrupted) return atlas.points.empty() ? exit_no_answer : exit_done;
-  if (!flags.quiet) std::cerr << "limcycle: interrupted; what was computed until then is written\n";
-  return exit_done;
+  tell_cut_short(flags, atlas.status);
+  return atlas.points.empty() || atlas.status == Status::interrupted ? exit_no_answer : exit_done;
 }
 
 int run(PrecisionFlags flags) {
@@ -87,14 +86,13 @@ int run(PrecisionFlags flags) {
   std::string text = precision_text(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, precision_page(report, made, from.text, units));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
-  output.text(text);
+  output.text(first_line(flags, report.status) + text);
   if (output.wants_json()) output.json(precision_json(made, report));
   if (output.wants_csv()) output.csv(precision_csv(report));
   output.finish();
-  if (report.status == Status::interrupted && !flags.quiet)
-    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  tell_cut_short(flags, report.status);
   return exit_code(report);
 }
 

@@ -1,10 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
 
 #include "limcycle/cli/command.hpp"
+#include "limcycle/cli/decided.hpp"
 #include "limcycle/cli/from_page.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
@@ -31,9 +32,9 @@ void sort_out(PredictFlags& flags) {
 }
 
 int exit_code(const PredictReport& report, bool require_agreement) {
-  const bool nothing = report.cycles.empty() && report.predictions.empty() && report.outcomes.empty();
   const bool answered = report.status == Status::converged || report.status == Status::no_cycle;
-  if (report.status == Status::not_finite || (nothing && !answered)) return exit_no_answer;
+  const bool by_user = report.status == Status::interrupted && !interrupted_by_time();
+  if (report.status == Status::not_finite || by_user || !decided(report)) return exit_no_answer;
   if (!require_agreement) return exit_done;
   const auto any = [&](Verdict verdict) {
     return std::any_of(report.predictions.begin(), report.predictions.end(),
@@ -51,6 +52,7 @@ int run(PredictFlags flags) {
   const LoopParts& parts = need_loop(from);
   const Units units = units_of(parts);
   Output output(flags);
+  output.keep("the page to be made again", flags.from);
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.pictures);
 
@@ -68,17 +70,16 @@ int run(PredictFlags flags) {
   if (flags.verbose) text += predict_efforts(report, from.predict.methods);
   if (!flags.html.empty()) {
     output.file(flags.html, predict_page(report, made, from.text, units));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
   if (!flags.pictures.empty()) output.file(flags.pictures, predict_picture(report, units));
-  output.text(text);
+  output.text(first_line(flags, report.status) + text);
   const std::string document = predict_json(made, report);
   if (output.wants_json()) output.json(document);
   if (output.wants_csv()) output.csv(predict_csv(report));
   output.finish();
   if (report.status != Status::interrupted) compare_with_page(flags, loaded, document);
-  if (report.status == Status::interrupted && !flags.quiet)
-    std::cerr << "limcycle: interrupted; what was computed until then is written\n";
+  tell_cut_short(flags, report.status);
   return exit_code(report, flags.require_agreement);
 }
 
@@ -86,6 +87,7 @@ int run(PredictFlags flags) {
 
 void add_predict(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<PredictFlags>();
+  flags->time_limit = 60.0;
   CLI::App* command = add_command(program, action, "predict",
                                   "Every limit cycle, predicted and checked in the time domain, with a verdict", true,
                                   flags, [flags] { return run(*flags); });

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "limcycle/cli/time_limit.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
@@ -14,6 +15,9 @@ namespace {
 
 constexpr int bar_width = 30;
 constexpr std::size_t line_width = 78;
+
+/// "3 s left": as long as it seems to take, but no longer than the time limit allows.
+std::string left_in_words(double seconds) { return as_waiting_time(std::min(seconds, TimeLimit::left())) + " left"; }
 
 }  // namespace
 
@@ -45,7 +49,7 @@ void Progress::show(double fraction, std::string_view what) {
   if (!wanted_) return;
   const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
   std::string more;
-  if (done > 0.0) more = ", " + as_waiting_time(passed() * (1.0 - done) / done) + " left";
+  if (done > 0.0) more = ", " + left_in_words(passed() * (1.0 - done) / done);
   if (!what.empty()) more += fmt::format("  {}", what);
   draw(done, more);
 }
@@ -59,8 +63,8 @@ void Progress::count(std::size_t done, std::size_t total) {
   std::string more = fmt::format(", {} of {}", done, total);
   const double rate = static_cast<double>(done - std::min(*first_, done)) / passed();
   if (rate > 0.0)
-    more += fmt::format(", {}/s, {} left", with_digits(rate, 3),
-                        as_waiting_time(static_cast<double>(total - std::min(done, total)) / rate));
+    more += fmt::format(", {}/s, {}", with_digits(rate, 3),
+                        left_in_words(static_cast<double>(total - std::min(done, total)) / rate));
   draw(total > 0 ? static_cast<double>(std::min(done, total)) / static_cast<double>(total) : 1.0, more);
 }
 

@@ -2,12 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <iostream>
 #include <sstream>
 
 #include "limcycle/cli/command.hpp"
+#include "limcycle/cli/decided.hpp"
 #include "limcycle/cli/from_page.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/report_parts.hpp"
@@ -44,21 +45,16 @@ std::string flags_text(const ReportFlags& flags) {
   return text.empty() ? text : text.substr(1);
 }
 
-/// Where the page goes: -o, or the name of the case in the current folder. It never takes the place of the case.
+/// Where the page goes: -o, or the name of the case in the current folder.
 std::string page_file(const ReportFlags& flags, const Case& from) {
   std::string file = flags.output;
   if (file.empty()) file = std::filesystem::path(from.file).stem().string() + ".html";
-  std::error_code ignored;
-  if (!flags.case_file.empty() && std::filesystem::equivalent(file, flags.case_file, ignored))
-    throw refusal("-o " + file, "is the case file itself");
   return file;
 }
 
 int exit_code(const LoopReport& report) {
-  const PredictReport& found = report.predict;
-  const bool nothing = found.cycles.empty() && found.predictions.empty() && found.outcomes.empty();
-  const bool answered = found.status == Status::converged || found.status == Status::no_cycle;
-  return found.status == Status::not_finite || (nothing && !answered) ? exit_no_answer : exit_done;
+  const bool failed = report.interrupted || report.predict.status == Status::not_finite;
+  return failed || !decided(report.predict) ? exit_no_answer : exit_done;
 }
 
 int run(ReportFlags flags) {
@@ -71,6 +67,7 @@ int run(ReportFlags flags) {
   if (page == "-" && (flags.json == "-" || flags.csv == "-")) throw refusal("-o -", "stdout holds one document only");
   flags.output = page == "-" ? "/dev/null" : "";
   Output output(flags);
+  output.keep("the page to be made again", flags.from);
   output.check_file("-o", page);
 
   const LoopReport report = [&] {
@@ -80,14 +77,14 @@ int run(ReportFlags flags) {
   }();
   const auto made = provenance(flags, &from);
   output.file(page, report_page(report, made, from.text, units, flags_text(flags)));
-  output.text(predict_text(from.title, report.predict, units) + "\nreport: " + page + "\n");
+  output.text(first_line(flags, report.predict.status) + predict_text(from.title, report.predict, units) +
+              page_line(page));
   const std::string document = predict_json(made, report.predict);
   if (output.wants_json()) output.json(document);
   if (output.wants_csv()) output.csv(predict_csv(report.predict));
   output.finish();
   if (!report.interrupted) compare_with_page(flags, loaded, document);
-  if (report.interrupted && !flags.quiet)
-    std::cerr << "limcycle: interrupted; the page holds what was computed until then\n";
+  tell_cut_short(flags, report.predict.status, "the page holds what was computed until then");
   return exit_code(report);
 }
 

@@ -180,6 +180,7 @@ LoopReport report_parts(const Case& from, const ReportWishes& wishes, const Comm
   progress.show(0.75, "speed against accuracy");
   report.precision = attempted<PrecisionReport>(!wishes.quick, left_out, [&] { return precision_part(ask); });
   report.interrupted = interrupted();
+  if (report.interrupted) report.predict.status = Status::interrupted;  // the document of the page says so too
   return report;
 }
 

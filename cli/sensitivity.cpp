@@ -12,6 +12,7 @@
 #include "limcycle/cases/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/ranks.hpp"
@@ -197,7 +198,7 @@ SensitivityReport study(const Case& from, const Loop& loop, const SensitivityFla
     report.cycle = main_cycle(loop, from, report.notes);
     look_nearby(from, loop, flags, report);
   }
-  status = interrupted() ? Status::interrupted : Status::converged;
+  status = ending_so_far();
   if (flags.local_only || interrupted()) return report;
   if (report.spread_is_default)
     report.notes.emplace_back(
@@ -215,6 +216,7 @@ int run(SensitivityFlags flags) {
   const Units units = units_of(need_loop(from));
   const Loop loop = build_loop(need_loop(from));
   Output output(flags);
+  output.keep("the store", flags.store);
   output.check_file("--html", flags.html);
   Status status = Status::converged;
   const SensitivityReport report = study(from, loop, flags, status);
@@ -223,14 +225,14 @@ int run(SensitivityFlags flags) {
   std::string text = sensitivity_text(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, sensitivity_page(report, made, from.text, units, flags_text(flags)));
-    text += "\nreport: " + flags.html + "\n";
+    text += page_line(flags.html);
   }
-  output.text(text);
-  if (output.wants_json()) output.json(sensitivity_json(made, report));
+  output.text(first_line(flags, status) + text);
+  if (output.wants_json()) output.json(sensitivity_json(made, report, status));
   if (output.wants_csv()) output.csv(sensitivity_csv(report));
   output.finish();
-  if (status == Status::interrupted) tell_how_to_resume(flags);
-  return exit_done;
+  tell_how_to_resume(flags, status);
+  return status == Status::interrupted ? exit_no_answer : exit_done;
 }
 
 }  // namespace

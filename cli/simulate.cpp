@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
-#include <iostream>
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
@@ -60,17 +60,19 @@ int run(SimulateFlags flags) {
   const auto [result, second, energy] = compute(from, flags);
   std::string text = simulate_text(from.title, result, second, energy, units_of(*from.loop));
   if (!output.wants_csv() && !output.wants_json()) text += "\nThe samples: --csv FILE, --csv - or -o FILE.\n";
-  output.text(text);
+  output.text(first_line(flags, result.status) + text);
   if (output.wants_json()) output.json(simulate_json(provenance(flags, &from), result, second, energy));
   if (output.wants_csv()) output.csv(simulate_csv(result));
   output.finish();
-  if (second && !second->agrees && !flags.quiet) std::cerr << "limcycle: " << agreement_in_words(*second) << '\n';
-  if (!flags.quiet)
-    for (const auto& note : result.notes) std::cerr << "limcycle: " << note << '\n';
-  if (energy && !energy->balanced() && !flags.quiet) std::cerr << "limcycle: " << energy_in_words(*energy) << '\n';
+  if (second && !second->agrees) tell(flags, agreement_in_words(*second));
+  for (const auto& note : result.notes) tell(flags, note);
+  if (energy && !energy->balanced()) tell(flags, energy_in_words(*energy));
   if (result.status == Status::converged) return exit_done;
-  if (!flags.quiet) std::cerr << "limcycle: " << (result.why.empty() ? to_string(result.status) : result.why) << '\n';
-  return result.status == Status::interrupted && !result.rows.empty() ? exit_done : exit_no_answer;
+  if (result.status == Status::interrupted)
+    tell_cut_short(flags, result.status);
+  else
+    tell(flags, result.why.empty() ? std::string(to_string(result.status)) : result.why);
+  return exit_no_answer;
 }
 
 }  // namespace

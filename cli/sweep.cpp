@@ -1,7 +1,7 @@
 #include "limcycle/cli/sweep.hpp"
+#include "limcycle/cli/message.hpp"
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <limits>
 #include <optional>
 
@@ -91,12 +91,11 @@ SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& colu
   return swept;
 }
 
-void tell_how_to_resume(const SweepFlags& flags) {
-  if (flags.quiet) return;
-  std::cerr << (flags.store.empty()
-                    ? "limcycle: interrupted; what was computed until then is written (--store FILE would keep it)\n"
-                    : "limcycle: interrupted; what was computed is in " + flags.store +
-                          ": the same command with --resume goes on\n");
+void tell_how_to_resume(const SweepFlags& flags, Status status) {
+  tell_cut_short(flags, status,
+                 flags.store.empty()
+                     ? "what was computed until then is written (--store FILE would keep it)"
+                     : "what was computed is in " + flags.store + ": the same command with --resume goes on");
 }
 
 }  // namespace limcycle

@@ -30,7 +30,7 @@ struct SweptRows {
 SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& columns, const std::string& design,
                      const SweepFlags& flags, const Case& from);
 
-/// Says on stderr how to go on after an interruption.
-void tell_how_to_resume(const SweepFlags& flags);
+/// Says on stderr how to go on with a sweep that was cut short.
+void tell_how_to_resume(const SweepFlags& flags, Status status);
 
 }  // namespace limcycle

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/claims/run_claims.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
@@ -29,8 +30,9 @@ std::string claims_list(const std::vector<Claim>& claims);
 std::string claims_list_json(const Provenance& provenance, const std::vector<Claim>& claims);
 
 /// JSON document of `claims`: {"claims": [{id, statement, formula, source, evidence, range, test, expected, verdict,
-/// as_expected, checks: [...], finding, counterexample, status}]}.
-std::string claims_json(const Provenance& provenance, const std::vector<TestedClaim>& tested);
+/// as_expected, checks: [...], finding, counterexample, status}]}. `ended`: how the work did.
+std::string claims_json(const Provenance& provenance, const std::vector<TestedClaim>& tested,
+                        Status ended = Status::converged);
 
 /// One row a comparison; a claim without any has one row with its verdict only.
 std::string claims_csv(const std::vector<TestedClaim>& tested);

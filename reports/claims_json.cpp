@@ -39,21 +39,23 @@ Json tested_object(const TestedClaim& one) {
 }
 
 template <class List>
-std::string document(const Provenance& provenance, const List& list, Json (*object)(const typename List::value_type&)) {
+std::string document(const Provenance& provenance, const List& list, Json (*object)(const typename List::value_type&),
+                     Status ended) {
   Json top;
   top["claims"] = Json::array();
   for (const auto& one : list) top["claims"].push_back(object(one));
+  top["status"] = to_string(ended);
   return json_document("claims", provenance, json_text(top));
 }
 
 }  // namespace
 
 std::string claims_list_json(const Provenance& provenance, const std::vector<Claim>& claims) {
-  return document(provenance, claims, claim_object);
+  return document(provenance, claims, claim_object, Status::converged);
 }
 
-std::string claims_json(const Provenance& provenance, const std::vector<TestedClaim>& tested) {
-  return document(provenance, tested, tested_object);
+std::string claims_json(const Provenance& provenance, const std::vector<TestedClaim>& tested, Status ended) {
+  return document(provenance, tested, tested_object, ended);
 }
 
 std::string claims_csv(const std::vector<TestedClaim>& tested) {

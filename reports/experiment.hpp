@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/experiments/experiment.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
@@ -17,8 +18,10 @@ std::string experiment_list_json(const Provenance& provenance, const std::vector
 std::string experiment_text(const std::vector<Experiment>& experiments);
 inline constexpr std::size_t longest_experiment_table = 100;
 
-/// JSON document of `experiment`: numbers, findings, claims, and the curves of the figures as they are drawn.
-std::string experiment_json(const Provenance& provenance, const std::vector<Experiment>& experiments);
+/// JSON document of `experiment`: numbers, findings, claims, and the curves of the figures as they are drawn. `ended`:
+/// how the work did.
+std::string experiment_json(const Provenance& provenance, const std::vector<Experiment>& experiments,
+                            Status ended = Status::converged);
 
 /// One row a number, finding, claim and point of a curve, told apart by the first column `kind`.
 std::string experiment_csv(const std::vector<Experiment>& experiments);

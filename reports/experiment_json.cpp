@@ -63,13 +63,15 @@ std::string experiment_list_json(const Provenance& provenance, const std::vector
   Json top;
   top["experiments"] = Json::array();
   for (const auto& entry : entries) top["experiments"].push_back({{"name", entry.name}, {"title", entry.title}});
+  top["status"] = to_string(Status::converged);
   return json_document("experiment", provenance, json_text(top));
 }
 
-std::string experiment_json(const Provenance& provenance, const std::vector<Experiment>& experiments) {
+std::string experiment_json(const Provenance& provenance, const std::vector<Experiment>& experiments, Status ended) {
   Json top;
   top["experiments"] = Json::array();
   for (const auto& one : experiments) top["experiments"].push_back(experiment_object(one));
+  top["status"] = to_string(ended);
   return json_document("experiment", provenance, json_text(top));
 }
 

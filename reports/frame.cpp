@@ -1,5 +1,7 @@
 #include "limcycle/reports/frame.hpp"
 
+#include <fmt/format.h>
+
 #include "limcycle/reports/json_values.hpp"
 
 namespace limcycle {
@@ -41,12 +43,46 @@ std::string framed(const Json& top) {
   return text;
 }
 
+/// As an escape of JSON where a terminal would obey the character; empty otherwise. `text` begins with a character.
+std::string steering_escape(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  const unsigned a = byte(0), b = byte(1), c = byte(2);
+  unsigned code = 0;
+  if (a == 0x7F) code = a;
+  if ((a == 0xC2 && b < 0xA0) || (a == 0xD8 && b == 0x9C)) code = (a & 0x1FU) << 6 | (b & 0x3FU);
+  if (a == 0xE2) code = 0x2000U | (b & 0x3FU) << 6 | (c & 0x3FU);
+  const bool general = code < 0x2000 || code == 0x200E || code == 0x200F || (code >= 0x2028 && code <= 0x202E) ||
+                       (code >= 0x2066 && code <= 0x2069);
+  return code != 0 && general ? fmt::format("\\u{:04x}", code) : std::string();
+}
+
 }  // namespace
+
+std::string json_text(const Json& document) {
+  const std::string plain = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text;
+  text.reserve(plain.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    const std::string escape =
+        static_cast<unsigned char>(plain[i]) < 0x7F ? "" : steering_escape(std::string_view(plain).substr(i));
+    if (escape.empty())
+      text += plain[i];
+    else
+      text += escape, i += plain[i] == '\x7F' ? 0 : plain[i] == '\xE2' ? 2 : 1;
+  }
+  return text;
+}
+
+std::string_view status_word(const Provenance& provenance, Status status) {
+  return status == Status::interrupted && provenance.time_is_over ? "time-limit" : to_string(status);
+}
 
 std::string json_document(const std::string& command, const Provenance& provenance, const std::string& body) {
   Json top = head(command, provenance);
   const Json members = Json::parse(body);
   for (const auto& [key, value] : members.items()) top[key] = value;
+  if (top.contains("status") && top["status"] == to_string(Status::interrupted))
+    top["status"] = status_word(provenance, Status::interrupted);
   return framed(top) + "\n}\n";
 }
 

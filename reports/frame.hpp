@@ -1,13 +1,19 @@
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "limcycle/analysis/status.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace limcycle {
 
+/// The name of a status, but "time-limit" for `interrupted` where the time limit is what interrupted the command.
+std::string_view status_word(const Provenance& provenance, Status status);
+
 /// JSON document of schema "limcycle/1": schema, command, case and provenance, then the members of `body`, itself the
-/// text of a JSON object. Without a case its title, file and sha256 are null. Text that is not UTF-8 is replaced.
+/// text of a JSON object, whose "status" is put as status_word() does. Without a case its title, file and sha256 are
+/// null. Text that is not UTF-8 is replaced.
 std::string json_document(const std::string& command, const Provenance& provenance, const std::string& body);
 
 /// The beginning of such a document, for one that is too long to be parsed: members follow as ",\n  "key": value", then

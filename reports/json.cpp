@@ -174,7 +174,7 @@ std::string df_json(const Provenance& provenance, const std::vector<DfPoint>& po
   }
   if (!results.empty()) out += "\n  ";
   out += "],\n  \"status\": \"";
-  out += to_string(results.size() < points.size() ? Status::interrupted : Status::converged);
+  out += status_word(provenance, results.size() < points.size() ? Status::interrupted : Status::converged);
   return out += "\"\n}\n";
 }
 

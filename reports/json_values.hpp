@@ -30,10 +30,9 @@ inline Json rounded(double value) {
   return value;
 }
 
-/// On one line; bytes that are not UTF-8 are replaced.
-inline std::string json_text(const Json& document) {
-  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+/// On one line; bytes that are not UTF-8 are replaced, and characters that steer a terminal (DEL, C1, separators,
+/// directions) are written as escapes, which mean the same.
+std::string json_text(const Json& document);
 
 template <class T>
 Json or_null(const std::optional<T>& value) {

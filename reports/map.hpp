@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/hunting_map.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
@@ -20,8 +21,8 @@ std::string map_answer(const MapReport& report);
 /// For a terminal: the answer, the map in letters, two tables.
 std::string map_text(const std::string& title, const MapReport& report);
 
-/// JSON document of `map`; points that were not computed are null.
-std::string map_json(const Provenance& provenance, const MapReport& report);
+/// JSON document of `map`; points that were not computed are null. `ended`: how the work did.
+std::string map_json(const Provenance& provenance, const MapReport& report, Status ended = Status::converged);
 
 /// One row a computed point.
 std::string map_csv(const MapReport& report);

@@ -38,7 +38,7 @@ Json map_point_json(const HuntingMap& map, std::size_t k) {
 
 }  // namespace
 
-std::string map_json(const Provenance& provenance, const MapReport& report) {
+std::string map_json(const Provenance& provenance, const MapReport& report, Status ended) {
   Json points = Json::array();
   for (std::size_t k = 0; k < report.map.size(); ++k) points.push_back(map_point_json(report.map, k));
   const Json body = {{"answer", map_answer(report)},
@@ -46,7 +46,8 @@ std::string map_json(const Provenance& provenance, const MapReport& report) {
                      {"y", axis_json(report.map.y, report.y_unit)},
                      {"methods", report.map.methods},
                      {"known", report.map.known()},
-                     {"points", points}};
+                     {"points", points},
+                     {"status", to_string(ended)}};
   return json_document("map", provenance, json_text(body));
 }
 

@@ -12,6 +12,8 @@ struct Provenance {
   std::uint64_t seed = 0;
   int threads = 1;
 
+  bool time_is_over = false;  ///< the command reached its time limit: what was interrupted was cut short by that
+
   std::string title, file, sha256;     ///< of the case; empty: the command has no case
   std::vector<std::string> overrides;  ///< "PATH=VALUE" as given by --set, in order
 };

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/sensitivity.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
@@ -14,8 +15,9 @@ std::string sensitivity_answer(const SensitivityReport& report);
 /// For a terminal: the answer and the tables below.
 std::string sensitivity_text(const std::string& title, const SensitivityReport& report, const Units& units);
 
-/// JSON document of `sensitivity`.
-std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report);
+/// JSON document of `sensitivity`. `ended`: how the work did.
+std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report,
+                             Status ended = Status::converged);
 
 /// One row a number, told apart by the first column `kind`: local, predicted, threshold, one-at-a-time, morris, sobol,
 /// interaction.

@@ -191,7 +191,7 @@ std::string derivative_rows(const SensitivityReport& report) {
 
 }  // namespace
 
-std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report) {
+std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report, Status ended) {
   Json parameters = Json::array(), changes = Json::array(), morris = Json::array(), sobol = Json::array(),
        interactions = Json::array(), convergence = Json::array(), without = Json::object();
   if (report.cycle)
@@ -225,7 +225,8 @@ std::string sensitivity_json(const Provenance& provenance, const SensitivityRepo
                      {"robustness", report.global ? robustness_json(report) : Json(nullptr)},
                      {"share_without_answer", report.global ? number(share) : Json(nullptr)},
                      {"without_answer", without},
-                     {"notes", report.notes}};
+                     {"notes", report.notes},
+                     {"status", to_string(ended)}};
   return json_document("sensitivity", provenance, json_text(body));
 }
 

@@ -28,6 +28,7 @@ struct ExactStepper {
   State tolerance;         ///< up to which the cubic through the ends of a step must be right
   Eigen::MatrixXd last{};  ///< exponential of the last step, tried or repeated
   State rate_at_end, middle;
+  int at_floor = 0;  ///< steps in succession that were too long, but the shortest there are
 };
 
 using AnyStepper =
@@ -49,6 +50,7 @@ AnyStepper make(StepperKind kind, const ErrorWeights& w, LoopField& field) {
 }
 
 constexpr double longest_step = 1e15;  ///< s
+constexpr int most_at_floor = 10'000;  ///< exact steps too long by their error; they get nowhere
 
 template <class E>
 constexpr bool holds_rate() {
@@ -168,11 +170,14 @@ bool March::try_exact(double& dt) {
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const double cubic = 0.5 * (x_[i] + step_.x1[i]) + 0.125 * h * (step_.dx0[i] - exact.rate_at_end[i]);
     const double size = std::max(std::abs(x_[i]), 1e-3 * exact.tolerance[i]);
-    error = std::max(error, std::abs(cubic - exact.middle[i]) / (1e-6 * size));
+    const double miss = std::abs(cubic - exact.middle[i]) / (1e-6 * size);
+    error = std::isnan(miss) ? infinite : std::max(error, miss);  // beyond the range of numbers: too long
   }
   const double factor = std::clamp(0.9 * std::pow(std::max(error, 1e-12), -0.25), 0.125, 4.0);
-  if (!(error <= 1.0) && h > 1e-14 * std::max(1.0, std::abs(t_))) {
-    dt = std::min(0.5, factor) * h;
+  const bool shortest = h <= 1e-14 * std::max(1.0, std::abs(t_));
+  exact.at_floor = error > 1.0 && shortest ? exact.at_floor + 1 : 0;
+  if (error > 1.0 && (!shortest || exact.at_floor > most_at_floor)) {
+    dt = shortest ? 0.0 : std::min(0.5, factor) * h;
     truncated_ = false;
     return false;
   }

@@ -51,6 +51,13 @@ TEST_CASE("text for one line") {
   CHECK(one_line("a\r\nb") == "a\\x0D\\x0Ab");
   CHECK(one_line("\xC3\xA9t\xC3\xA9") == "\xC3\xA9t\xC3\xA9");
   CHECK(one_line("\xC3") == "\\xC3");
+  CHECK(one_line("a\xC2\x9B"
+                 "31mb\xC2\xA0") == "a\\x9B31mb\xC2\xA0");  // C1, and a space that is no control
+  CHECK(one_line("\xE2\x80\xAE"
+                 "abc\xE2\x81\xA9\xD8\x9C") == "\\u202Eabc\\u2069\\u061C");  // directions
+  CHECK(one_line("a\xE2\x80\xA8"
+                 "b\xE2\x80\x94") == "a\\u2028b\xE2\x80\x94");  // a separator of lines, a dash
+  CHECK(printable("a\n\tb\x1B[2J\r") == "a\n\tb\\x1B[2J\\x0D");
   CHECK(one_line("abcdef", 3) == "abc...");
   CHECK(one_line("\xC3\xA9\xC3\xA9\xC3\xA9", 2) == "\xC3\xA9\xC3\xA9...");
 }

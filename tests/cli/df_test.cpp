@@ -51,7 +51,7 @@ TEST_CASE("df: an interrupt keeps what was computed") {
                        "df.frequency={from=0.1, to=1000.0, points=900}", "--set", "df.accuracy=1e-10", "--set",
                        "df.method=\"quadrature\"", "--json", scratch.file("r.json")},
                       1.0);  // of hours
-  CHECK(ran.code == 0);
+  CHECK(ran.code == 3);
   const auto document = Json::parse(scratch.get("r.json"));
   CHECK(document["status"] == "interrupted");
   CHECK(document["points"].size() > 0);
