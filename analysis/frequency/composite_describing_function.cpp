@@ -18,6 +18,7 @@ struct CompositeDescribingFunction::Solver {
   virtual bool tears_loose(double force, double frequency) = 0;
   virtual bool tears_loose(double bias, double force, double frequency, double direction) = 0;
   virtual void stop_with(std::function<bool()> stop) = 0;
+  virtual long steps() const = 0;
   virtual bool has_front() const = 0;
   virtual double level() const = 0;
 };
@@ -37,6 +38,7 @@ class SolverOf : public CompositeDescribingFunction::Solver {
     return period_.tears_loose(bias, force, frequency, direction);
   }
   void stop_with(std::function<bool()> stop) override { period_.stop_with(std::move(stop)); }
+  long steps() const override { return period_.steps(); }
   bool has_front() const override { return period_.has_front(); }
   double level() const override { return period_.level(); }
 
@@ -106,6 +108,8 @@ CompositeResponse CompositeDescribingFunction::operator()(const CompositePoint& 
 }
 
 void CompositeDescribingFunction::stop_with(std::function<bool()> stop) { solver_->stop_with(std::move(stop)); }
+
+long CompositeDescribingFunction::steps() const { return solver_->steps(); }
 
 double CompositeDescribingFunction::break_away(double frequency, double relative, double guess) {
   const double level = solver_->level();

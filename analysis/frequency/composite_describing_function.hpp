@@ -79,6 +79,9 @@ class CompositeDescribingFunction {
   /// Status::interrupted, and what break_away and break_away_bias return is of no use. Empty: never.
   void stop_with(std::function<bool()> stop);
 
+  /// Steps of the integrator taken since the object was made, those of break_away and break_away_bias included.
+  long steps() const;
+
   struct Solver;
 
  private:

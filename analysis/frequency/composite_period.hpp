@@ -70,6 +70,7 @@ class CompositePeriod {
   }
   /// Asked often from now on; true ends what goes on with Status::interrupted (tears_loose: with true).
   void stop_with(std::function<bool()> stop) { march_.stop_with(std::move(stop)); }
+  long steps() const { return march_.steps(); }
   bool has_front() const { return march_.has_modes() || std::isfinite(march_.law().scales().velocity); }
   double level() const { return march_.law().scales().output; }
 

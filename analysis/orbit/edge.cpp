@@ -14,12 +14,17 @@ enum class Trend { shrinks, grows, neither };
 
 /// Do the swings of y grow or shrink before the motion has turned 60 times? A motion that does not turn for 20 periods
 /// has shrunk; one that still swings as much after 60 turns has grown before its swings were first looked at.
-Trend trend(const Loop& loop, const LoopState& from, double period, const SettleOptions& options) {
+Trend trend(const Loop& loop, const LoopState& from, double period, const SettleOptions& options, long& steps) {
   LoopField field(loop);
   field.modes() = from.modes;
   March march(field, StepperKind::automatic, loop_weights(loop, options.rtol));
   march.begin(from.x, 0.0);
   TurningPoints turning;
+  struct Count {
+    const March& march;
+    long& steps;
+    ~Count() { steps += march.steps(); }
+  } const count{march, steps};
   double reference = 0.0;  // the fourth swing: the first ones still take shape
   while (march.steps() < options.max_steps && turning.points().size() < 60) {
     const double patience = (turning.points().empty() ? 0.0 : turning.points().back().t) + 20.0 * period;
@@ -66,8 +71,9 @@ std::optional<LoopState> after(const Loop& loop, const LoopState& from, double t
 ShootingResult edge_cycle(const Loop& loop, const std::function<LoopState(double)>& ray, double period,
                           const SettleOptions& options) {
   ShootingResult none;
+  long& steps = none.steps;
   none.why = "no border between growing and shrinking motions was found near it";
-  const auto trend_at = [&](double scale) { return trend(loop, ray(scale), period, options); };
+  const auto trend_at = [&](double scale) { return trend(loop, ray(scale), period, options, steps); };
   const auto found = bracket(trend_at);
   if (!found) return none;
   auto [low, high] = *found;
@@ -86,7 +92,10 @@ ShootingResult edge_cycle(const Loop& loop, const std::function<LoopState(double
     if (!lingering || record(loop, *lingering, 1.2 * period, 1e-9, 400, trace) != Status::converged) continue;
     for (const bool half : {symmetry(loop).has_value(), false}) {
       auto shot = shoot(loop, *lingering, choose_section(loop, trace), half, shooting);
-      if (shot.status == Status::converged && shot.cycle.stable == false) return shot;
+      steps += shot.steps;
+      if (shot.status != Status::converged || shot.cycle.stable != false) continue;
+      shot.steps = steps;
+      return shot;
     }
   }
   none.status = Status::stalled;

@@ -51,6 +51,7 @@ class MultipleShooter {
   const LoopState& start() const { return nodes_.front(); }
   double period() const { return reflection_ ? 2.0 * span_ : span_; }
   int maps() const { return maps_; }
+  long steps() const { return steps_; }
 
  private:
   Segment flow(const LoopState& from, double duration) {
@@ -70,6 +71,7 @@ class MultipleShooter {
       if (segment.status == Status::converged)
         segment.derivative = (march.last().transition * segment.derivative).eval();
     }
+    steps_ += march.steps();
     segment.end = {march.x(), field_.modes()};
     State rate;
     if (segment.status == Status::converged) field_.rate(march.x(), rate, 0.0);
@@ -159,6 +161,7 @@ class MultipleShooter {
   VectorXd scale_, residual_;
   std::vector<Segment> segments_;
   int maps_ = 0;
+  long steps_ = 0;
 };
 
 }  // namespace
@@ -168,6 +171,7 @@ ShootingResult shoot_multiple(const Loop& loop, const OrbitGuess& guess, const S
   ShootingResult result;
   result.status = shooter.solve();
   result.maps = shooter.maps();
+  result.steps = shooter.steps();
   result.why = "multiple shooting did not converge";
   if (result.status != Status::converged) return result;
   Trace period;
@@ -182,7 +186,9 @@ ShootingResult shoot_multiple(const Loop& loop, const OrbitGuess& guess, const S
   ShootingOptions polish = options;
   polish.warm_maps = 0;
   polish.longest_map = 5.0 * shooter.period();
-  return shoot(loop, shooter.start(), choose_section(loop, period), guess.half, polish);
+  ShootingResult polished = shoot(loop, shooter.start(), choose_section(loop, period), guess.half, polish);
+  polished.steps += shooter.steps();
+  return polished;
 }
 
 }  // namespace limcycle

@@ -31,6 +31,7 @@ class Settling {
     while (!decided_) step();
     result_.time = march_.t();
     result_.steps = march_.steps();
+    result_.work = tried_ + march_.steps();
     return std::move(result_);
   }
 
@@ -103,7 +104,7 @@ class Settling {
   }
 
   /// Does the motion from here return with the period of a known cycle of this swing?
-  std::optional<std::size_t> recognised(const LoopState& here, double swing) const {
+  std::optional<std::size_t> recognised(const LoopState& here, double swing) {
     for (std::size_t i = 0; i < options_.known.size(); ++i) {
       const Cycle& cycle = options_.known[i];
       if (std::abs(2.0 * cycle.amplitude / swing - 1.0) > 0.02) continue;
@@ -118,20 +119,25 @@ class Settling {
         Trace again;
         if (record(loop_, at.state, cycle.period, options_.rtol, 200, again) != Status::converged) break;
         const auto [low, high] = extremes(again);
-        if (std::abs((high - low) / (2.0 * cycle.amplitude) - 1.0) < 1e-4) return i;
+        if (std::abs((high - low) / (2.0 * cycle.amplitude) - 1.0) < 1e-4) {
+          tried_ += map.steps();
+          return i;
+        }
       }
+      tried_ += map.steps();
     }
     return std::nullopt;
   }
 
   /// Swings that are still uneven may show several periods as one: takes the least one that the orbit has.
-  void shorten(ShootingResult& shot, const Section& section, bool half, const ShootingOptions& options) const {
+  void shorten(ShootingResult& shot, const Section& section, bool half, const ShootingOptions& options) {
     for (int fewer = 1; fewer < options.returns; ++fewer) {
       if (options.returns % fewer != 0) continue;
       ShootingOptions shorter = options;
       shorter.returns = fewer;
       shorter.warm_maps = 0;
       auto found = shoot(loop_, shot.cycle.start, section, half, shorter);
+      tried_ += found.steps;
       const double times = static_cast<double>(options.returns) / fewer;
       if (found.status != Status::converged || std::abs(times * found.cycle.period / shot.cycle.period - 1.0) > 1e-6)
         continue;
@@ -160,6 +166,7 @@ class Settling {
     const Section section = choose_section(loop_, period);
     shooting.returns = returns_of(section, period);
     auto shot = shoot(loop_, here, section, half, shooting);
+    tried_ += shot.steps;
     if (shot.status == Status::converged) shorten(shot, section, half, shooting);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
     if (shot.status != Status::converged || shot.cycle.stable == false) return false;
@@ -194,6 +201,7 @@ class Settling {
   std::optional<Cycle> candidate_;
   double mismatch_ = 0.0;
   std::size_t next_try_ = 5;
+  long tried_ = 0;  ///< steps of return maps
   bool decided_ = false;
 };
 

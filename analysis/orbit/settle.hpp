@@ -31,7 +31,8 @@ struct Settled {
   std::optional<std::size_t> known;    ///< index of the known cycle that was reached
   Trace trace;
   double time = 0.0;  ///< simulated, s
-  long steps = 0;
+  long steps = 0;     ///< of the simulation
+  long work = 0;      ///< the same and those of all return maps tried on the way
 };
 
 /// Simulates from `start` until it is clear what is reached. A cycle is one only when shooting from the motion finds a

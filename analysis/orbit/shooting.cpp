@@ -158,6 +158,7 @@ class Shooter {
   double residual_size() const { return residual_; }
   const std::optional<Reflection>& reflection() const { return map_.reflection(); }
   int maps() const { return maps_; }
+  long steps() const { return map_.steps(); }
 
  private:
   /// One damped Newton step from state_ with residual r; moves there and returns true if the residual falls enough: to
@@ -250,6 +251,7 @@ ShootingResult failed(Status status, const Shooter& shooter, std::string why) {
   ShootingResult result;
   result.status = status;
   result.maps = shooter.maps();
+  result.steps = shooter.steps();
   result.why = std::move(why);
   return result;
 }
@@ -380,6 +382,7 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
   }
   result.status = Status::converged;
   result.maps = shooter.maps();
+  result.steps = shooter.steps();
   return result;
 }
 

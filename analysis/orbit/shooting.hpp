@@ -31,6 +31,7 @@ struct ShootingResult {
   Cycle cycle;                    ///< meaningful only if status is converged
   std::string why;                ///< one sentence
   int maps = 0;                   ///< return maps computed
+  long steps = 0;                 ///< of the integrator, in all of them
   double multiplier_error = 0.0;  ///< estimated absolute error of the Floquet multipliers of the map
   double trivial_error = 0.0;     ///< by how much the trivial multiplier is off 1
 };

@@ -15,12 +15,16 @@ constexpr double near_zero =
     1e-9;  ///< the share of the smallest sample that stands for 0, where a gain may be infinite
 constexpr std::size_t kept = 20'000;  ///< frequencies whose turns are remembered
 
-/// Where a function turns that does so once between `low` and `high`, by the golden section.
-double turning_point(const AmplitudeBranches::Size& s, bool maximum, double low, double high) {
+/// To what share of itself an amplitude is worth finding when the function is only known to `accuracy`: narrower
+/// brackets are bisected on its errors.
+double narrowest(double accuracy) { return std::max(4e-16, 1e-3 * accuracy); }
+
+/// Where a function turns that does so once between `low` and `high`, by the golden section, to `width` of itself.
+double turning_point(const AmplitudeBranches::Size& s, bool maximum, double low, double high, double width) {
   constexpr double golden = 0.6180339887498949;
   const auto better = [&](double x, double y) { return maximum ? x > y : x < y; };
   double a = high - golden * (high - low), b = low + golden * (high - low), at_a = s(a), at_b = s(b);
-  for (int i = 0; i < 80 && high - low > 4e-16 * high; ++i) {  // a size that nearly vanishes turns in a sharp dip
+  for (int i = 0; i < 80 && high - low > width * high; ++i) {  // a size that nearly vanishes turns in a sharp dip
     if (better(at_a, at_b)) {
       high = b, b = a, at_b = at_a;
       a = high - golden * (high - low), at_a = s(a);
@@ -35,10 +39,10 @@ double turning_point(const AmplitudeBranches::Size& s, bool maximum, double low,
 /// Where a monotone function takes a value that it has between two places: regula falsi that keeps both ends moving
 /// (Dowell and Jarratt, 1971, the Illinois rule after them), with a bisection wherever that is slow.
 double place_of(const AmplitudeBranches::Size& s, double wanted, AmplitudeBranches::Turn from,
-                AmplitudeBranches::Turn to) {
+                AmplitudeBranches::Turn to, double narrow) {
   double low = from.amplitude, high = to.amplitude, f_low = from.size - wanted, f_high = to.size - wanted;
   if (f_low == 0.0) return low;
-  for (int i = 0; i < 200 && high - low > 4e-16 * high; ++i) {
+  for (int i = 0; i < 200 && high - low > narrow * high; ++i) {
     const double width = high - low;
     for (int k = 0; k < 3 && f_low != f_high; ++k) {
       const double mid = std::clamp(low - f_low * (high - low) / (f_high - f_low), low, high);
@@ -57,15 +61,11 @@ double place_of(const AmplitudeBranches::Size& s, double wanted, AmplitudeBranch
   return 0.5 * (low + high);
 }
 
-}  // namespace
-
-namespace {
-
 /// Where a function begins to exist and where it turns, from 0 to the end of the range.
-std::vector<AmplitudeBranches::Turn> sampled_turns(const AmplitudeBranches::Size& s, std::pair<double, double> range) {
+AmplitudeBranches::Sampled sample(const AmplitudeBranches::Size& s, std::pair<double, double> range, double width) {
   using Turn = AmplitudeBranches::Turn;
-  if (!(range.second > 0.0)) return {{0.0, 0.0}};
-  std::vector<Turn> found;
+  if (!(range.second > 0.0)) return {{{0.0, 0.0}}, {}};
+  AmplitudeBranches::Sampled found;
   std::optional<bool> rising;
   Turn two_before{}, before{};
   for (double a = near_zero * range.first; before.amplitude < range.second; a = std::max(a * step_ratio, range.first)) {
@@ -74,13 +74,14 @@ std::vector<AmplitudeBranches::Turn> sampled_turns(const AmplitudeBranches::Size
       before.amplitude = a;
       continue;
     }
-    if (found.empty()) {
-      found.push_back(here);
+    found.samples.push_back(here);
+    if (found.turns.empty()) {
+      found.turns.push_back(here);
     } else if (here.size != before.size) {
       const bool now = here.size > before.size;
       if (rising && *rising != now) {
-        const double at = turning_point(s, *rising, two_before.amplitude, a);
-        found.push_back({at, s(at)});
+        const double at = turning_point(s, *rising, two_before.amplitude, a, width);
+        found.turns.push_back({at, s(at)});
       }
       rising = now;
     }
@@ -90,16 +91,31 @@ std::vector<AmplitudeBranches::Turn> sampled_turns(const AmplitudeBranches::Size
   return found;
 }
 
+/// The samples between two places of a branch that enclose a value, so that the search for it is short.
+void narrow(const std::vector<AmplitudeBranches::Turn>& samples, double wanted, AmplitudeBranches::Turn& from,
+            AmplitudeBranches::Turn& to) {
+  const bool rises = to.size > from.size;
+  for (const AmplitudeBranches::Turn& one : samples) {
+    if (!(one.amplitude > from.amplitude && one.amplitude < to.amplitude)) continue;
+    const bool before = rises ? one.size <= wanted : one.size >= wanted;
+    if (!before) {
+      to = one;
+      return;
+    }
+    from = one;
+  }
+}
+
 }  // namespace
 
-std::vector<AmplitudeBranches::Turn> AmplitudeBranches::turns(const Size& s, std::pair<double, double> range,
-                                                              double frequency, double accuracy) {
+AmplitudeBranches::Sampled AmplitudeBranches::sampled(const Size& s, std::pair<double, double> range, double frequency,
+                                                      double accuracy) {
   const std::pair name{frequency, accuracy};
   {
     const std::lock_guard lock(guard_);
     if (const auto known = known_.find(name); known != known_.end()) return known->second;
   }
-  auto found = sampled_turns(s, range);
+  Sampled found = sample(s, range, narrowest(accuracy));
   const std::lock_guard lock(guard_);
   if (known_.size() >= kept) known_.clear();
   return known_.insert_or_assign(name, std::move(found)).first->second;
@@ -107,19 +123,34 @@ std::vector<AmplitudeBranches::Turn> AmplitudeBranches::turns(const Size& s, std
 
 std::vector<AmplitudeBranches::Answer> AmplitudeBranches::answers(const Size& s, std::pair<double, double> range,
                                                                   double wanted, double frequency, double accuracy) {
-  if (wanted == 0.0) return {{0, 0.0}};
-  std::vector<Turn> ends = turns(s, range, frequency, accuracy);
-  if (ends.empty()) return {};
-  double last = std::max({range.second, wanted, 2.0 * ends.back().amplitude});
-  for (int i = 0; i < 100 && s(last) < wanted; ++i) last *= 2.0;
-  ends.push_back({last, s(last)});
   std::vector<Answer> found;
-  for (std::size_t k = 0; k + 1 < ends.size() && static_cast<int>(k) < most; ++k) {
-    const auto [least, largest] = std::minmax(ends[k].size, ends[k + 1].size);
-    if (!(wanted >= least * (1.0 - at_a_turn) && wanted <= largest * (1.0 + at_a_turn))) continue;
-    found.push_back({static_cast<int>(k), place_of(s, std::clamp(wanted, least, largest), ends[k], ends[k + 1])});
-  }
+  for (int branch = 0; branch < most; ++branch)
+    if (const auto one = answer_on(branch, s, range, wanted, frequency, accuracy)) found.push_back(*one);
   return found;
+}
+
+std::optional<AmplitudeBranches::Answer> AmplitudeBranches::answer_on(int branch, const Size& s,
+                                                                      std::pair<double, double> range, double wanted,
+                                                                      double frequency, double accuracy) {
+  if (wanted == 0.0) return branch == 0 ? std::optional(Answer{0, 0.0}) : std::nullopt;
+  const Sampled known = sampled(s, range, frequency, accuracy);
+  const std::vector<Turn>& ends = known.turns;
+  const auto k = static_cast<std::size_t>(branch);
+  if (k >= ends.size()) return std::nullopt;
+  Turn to;
+  if (k + 1 < ends.size()) {
+    to = ends[k + 1];
+  } else {
+    double last = std::max({range.second, wanted, 2.0 * ends.back().amplitude});
+    for (int i = 0; i < 100 && s(last) < wanted; ++i) last *= 2.0;
+    to = {last, s(last)};
+  }
+  const auto [least, largest] = std::minmax(ends[k].size, to.size);
+  if (!(wanted >= least * (1.0 - at_a_turn) && wanted <= largest * (1.0 + at_a_turn))) return std::nullopt;
+  const double inside = std::clamp(wanted, least, largest);
+  Turn from = ends[k];
+  narrow(known.samples, inside, from, to);
+  return Answer{branch, place_of(s, inside, from, to, narrowest(accuracy))};
 }
 
 ElementReach::ElementReach(const Element<double>& element)

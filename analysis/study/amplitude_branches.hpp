@@ -2,6 +2,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -31,12 +32,20 @@ class AmplitudeBranches {
   /// `frequency` and `accuracy` name the function s: it is sampled once for each pair of them.
   std::vector<Answer> answers(const Size& size, std::pair<double, double> range, double wanted, double frequency,
                               double accuracy);
+  /// The one on a branch, if there is one; costs a part of answers().
+  std::optional<Answer> answer_on(int branch, const Size& size, std::pair<double, double> range, double wanted,
+                                  double frequency, double accuracy);
+
+  /// A function along its range: where it turns, and the samples that show it.
+  struct Sampled {
+    std::vector<Turn> turns, samples;
+  };
 
  private:
-  std::vector<Turn> turns(const Size& size, std::pair<double, double> range, double frequency, double accuracy);
+  Sampled sampled(const Size& size, std::pair<double, double> range, double frequency, double accuracy);
 
   std::mutex guard_;
-  std::map<std::pair<double, double>, std::vector<Turn>> known_;  ///< by frequency and accuracy
+  std::map<std::pair<double, double>, Sampled> known_;  ///< by frequency and accuracy
 };
 
 /// Amplitudes below which and beyond which a memoryless element's gain does not change, or changes as 1/a: those

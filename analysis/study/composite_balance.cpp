@@ -73,11 +73,9 @@ CompositeResponse CompositeBalance::solve(double force, double frequency, double
     // The velocity of an inertial motion goes with U/w.
     CompositeResponse start = *near_;
     found = element_(point, options, &start);
-    steps_ += found.steps;
   }
   if (!near_ || found.status != Status::converged) {
     found = element_(point, options);
-    steps_ += found.steps;
   }
   if (found.status == Status::converged) near_ = found;
   return found;
@@ -97,14 +95,12 @@ std::optional<CompositeBalance::StickSlip> CompositeBalance::stick_slip(double f
   const double beyond = edge + (V < 0.0 ? -1e-4 : 1e-4) * level_;
   ++evaluations_;
   CompositeResponse full = element_({force, frequency, V, beyond}, options);
-  steps_ += full.steps;
   if (full.status != Status::converged) return std::nullopt;
   StickSlip found;
   if (full.mean_velocity / V >= 1.0) {
     found.share = V / full.mean_velocity;
   } else {
     full = element_({force, frequency, V}, options, &full);
-    steps_ += full.steps;
     if (full.status != Status::converged) return std::nullopt;
   }
   found.gain = found.share * full.gain;

@@ -36,6 +36,7 @@ struct CompositeSearchOptions {
   double force_min = 0.0, force_max = 0.0;              ///< N; 0: 0.2 and 100 times the level of the friction
   double coarse_accuracy = 1e-3;                        ///< of N in the search, 1e-8..1e-2
   double accuracy = 1e-8;                               ///< of N at a root, 1e-10..1e-4
+  long max_steps = 400'000;                             ///< of the integrator, for the whole search: about a second
   std::function<bool()> stop;                           ///< asked often; true ends the search
 };
 
@@ -123,7 +124,8 @@ class CompositeBalance {
   Front front(double frequency, double accuracy);
   std::complex<double> residue(std::complex<double> gain, double frequency) const;
   std::vector<Window> windows(const CompositeSearchOptions& options) const;
-  std::function<bool()> bounded(const CompositeSearchOptions& options) const;
+  void bound(const CompositeSearchOptions& options);
+  bool ended_early(const CompositeSearchOptions& options, CompositeSearch& found) const;
   bool may_balance_below(const Window& window, const CompositeSearchOptions& options, CompositeSearch& found);
   void search_side(const Window& window, bool above, const CompositeSearchOptions& options, CompositeSearch& found);
   void search_biased(const CompositeSearchOptions& options, CompositeSearch& found);
@@ -140,7 +142,8 @@ class CompositeBalance {
   CompositeDescribingFunction element_;
   std::optional<CompositeResponse> near_;
   std::map<std::pair<double, double>, double> fronts_;  ///< (frequency, accuracy) -> break-away force
-  long evaluations_ = 0, steps_ = 0;
+  long evaluations_ = 0;
+  long last_step_ = 0;  ///< of the element, for the search that goes on
 };
 
 }  // namespace limcycle

@@ -45,7 +45,7 @@ double CompositeBalance::guess_front(double frequency) const {
 
 /// Break-away force and N on either side. The force is kept: it is asked for at every amplitude of a frequency.
 CompositeBalance::Front CompositeBalance::front(double frequency, double accuracy) {
-  const double relative = accuracy > 1e-5 ? 0.03 * front_width : 1e-9;
+  const double relative = accuracy > 1e-5 ? 0.3 * front_width : 1e-9;
   const auto key = std::pair(frequency, relative);
   auto known = fronts_.find(key);
   if (known == fronts_.end()) {
@@ -83,8 +83,9 @@ void CompositeBalance::search_front(const Window& window, const CompositeSearchO
   double w0 = window.low;
   Front last = sides(w0, options.coarse_accuracy);
   for (int i = 1; i <= n; ++i) {
-    if (options.stop && options.stop()) {
-      found.status = Status::interrupted;
+    if (ended_early(options, found)) {
+      found.notes.emplace_back(
+          "the search in the leap at break-away ended with its budget of steps used up: roots may be missing");
       return;
     }
     const double w1 = window.low * std::exp(ratio * i);

@@ -10,9 +10,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Steps of the integrator that a search of one side may cost: about a second.
-constexpr long step_budget = 400000;
-
 std::string ended(Status status) {
   return status == Status::interrupted ? "its budget of steps used up" : "status " + std::string(to_string(status));
 }
@@ -53,9 +50,16 @@ std::vector<CompositeBalance::Window> CompositeBalance::windows(const CompositeS
   return found;
 }
 
+/// Lets the element stop by itself where ended_early() would.
+void CompositeBalance::bound(const CompositeSearchOptions& options) {
+  element_.stop_with([this, &options] { return element_.steps() > last_step_ || (options.stop && options.stop()); });
+}
+
 void CompositeBalance::add(double force, double frequency, int index, const CompositeSearchOptions& options,
                            CompositeSearch& found) {
+  element_.stop_with(options.stop);  // a root that was found is kept, whatever it costs
   const CompositeResponse r = solve(force, frequency, options.accuracy, false);
+  bound(options);
   if (r.status != Status::converged) return;
   CompositeRoot root = describe(force, frequency, r.gain, index);
   root.bias = r.bias;
@@ -63,11 +67,10 @@ void CompositeBalance::add(double force, double frequency, int index, const Comp
   found.roots.push_back(root);
 }
 
-/// The caller's wish to stop, or too many steps.
-std::function<bool()> CompositeBalance::bounded(const CompositeSearchOptions& options) const {
-  return [this, stop = options.stop, limit = steps_ + (biased_ ? 2 : 1) * step_budget] {
-    return steps_ > limit || (stop && stop());
-  };
+/// After the caller's wish to stop, or too many steps: what the element answered last is of no use then.
+bool CompositeBalance::ended_early(const CompositeSearchOptions& options, CompositeSearch& found) const {
+  if (options.stop && options.stop()) found.status = Status::interrupted;
+  return found.status == Status::interrupted || element_.steps() > last_step_;
 }
 
 /// Below break-away |N| is that of a stiff spring, mostly far too small: is |K N| anywhere above a half? N grows with
@@ -77,10 +80,7 @@ bool CompositeBalance::may_balance_below(const Window& window, const CompositeSe
                                          CompositeSearch& found) {
   const int n = std::clamp(static_cast<int>(10.0 * std::log10(window.high / window.low)), 4, 80);
   for (int i = 0; i <= n; ++i) {
-    if (options.stop && options.stop()) {
-      found.status = Status::interrupted;
-      return false;
-    }
+    if (ended_early(options, found)) return false;
     const double w = window.low * std::pow(window.high / window.low, double(i) / n);
     for (const double share : {0.2, 1.0}) {
       const double force = side_force(share, w, false, options.coarse_accuracy);
@@ -106,7 +106,7 @@ void CompositeBalance::search_side(const Window& window, bool above, const Compo
   search.fine_accuracy = options.accuracy;
   search.residual = 100.0 * options.accuracy;
   search.max_evaluations = 3000;
-  search.interrupted = bounded(options);
+  search.interrupted = [&] { return ended_early(options, found); };
   near_.reset();
   if (!above && !may_balance_below(window, options, found)) return;
   near_.reset();
@@ -115,10 +115,10 @@ void CompositeBalance::search_side(const Window& window, bool above, const Compo
       search);
   for (const Root& root : side.roots)
     add(side_force(root.amplitude, root.frequency, above, 1e-12), root.frequency, root.index, options, found);
-  if (options.stop && options.stop()) found.status = Status::interrupted;
-  if (side.status != Status::converged && side.status != Status::no_cycle)
+  if (ended_early(options, found) || (side.status != Status::converged && side.status != Status::no_cycle))
     found.notes.push_back(std::string("the search ") + (above ? "above" : "below") + " break-away ended with " +
-                          ended(side.status) + ": roots may be missing");
+                          ended(ended_early(options, found) ? Status::interrupted : side.status) +
+                          ": roots may be missing");
 }
 
 /// On a belt or a ramp: the sheet of motions that stick in every period (see stick_slip), then that of motions that
@@ -136,15 +136,15 @@ void CompositeBalance::search_biased(const CompositeSearchOptions& options, Comp
   search.residual = 100.0 * options.accuracy;
   search.max_evaluations = 3000;
   search.max_border_depth = 5;
-  search.interrupted = bounded(options);
+  search.interrupted = [&] { return ended_early(options, found); };
   const SearchBox box{low, high, options.frequency_min, options.frequency_max};
   const Complex undefined{std::nan(""), std::nan("")};
   const double speed = std::abs(mean_velocity_);
   near_.reset();
   const auto note = [&](const RootSearch& side, const char* what) {
-    if (options.stop && options.stop()) found.status = Status::interrupted;
-    if (side.status == Status::converged || side.status == Status::no_cycle) return;
-    found.notes.push_back(std::string("the search among ") + what + " ended with " + ended(side.status) +
+    if (!ended_early(options, found) && (side.status == Status::converged || side.status == Status::no_cycle)) return;
+    found.notes.push_back(std::string("the search among ") + what + " ended with " +
+                          ended(ended_early(options, found) ? Status::interrupted : side.status) +
                           ": roots may be missing");
   };
   if (speed == 0.0) {
@@ -159,6 +159,7 @@ void CompositeBalance::search_biased(const CompositeSearchOptions& options, Comp
         return s ? residue(s->gain, w) : undefined;
       },
       box, search);
+  element_.stop_with(options.stop);  // see add()
   for (const Root& root : sticking.roots) {
     const auto s = stick_slip(root.amplitude, root.frequency, options.accuracy);
     if (!s) continue;
@@ -172,12 +173,12 @@ void CompositeBalance::search_biased(const CompositeSearchOptions& options, Comp
                   " times as fast as the mean motion: a first-harmonic balance is hardly a prediction there";
     found.roots.push_back(made);
   }
+  bound(options);
   note(sticking, "motions that stick");
   // Friction of constant slope makes this sheet linear: no cycle, or a family of sines.
   const bool curved =
       std::visit([](const auto& e) { return std::isfinite(e.scales().velocity); }, loop_->elements.back());
-  if (!curved || found.status == Status::interrupted) return;
-  search.interrupted = bounded(options);
+  if (!curved || ended_early(options, found)) return;
   const auto sliding = find_roots(
       [&](double a, double w, double accuracy) {
         near_.reset();
@@ -192,24 +193,27 @@ void CompositeBalance::search_biased(const CompositeSearchOptions& options, Comp
 CompositeSearch CompositeBalance::find(const CompositeSearchOptions& options) {
   check(options);
   CompositeSearch found;
-  const long evaluations = evaluations_, steps = steps_;
+  const long evaluations = evaluations_, steps = element_.steps();
+  last_step_ = steps + options.max_steps;
   fronts_.clear();
-  element_.stop_with(options.stop);
+  bound(options);
   if (biased_) {
     search_biased(options, found);
   } else {
     for (const Window& window : windows(options)) {
       if (!(window.high > window.low * 1.0001)) continue;
-      search_front(window, options, found);
+      if (!ended_early(options, found)) search_front(window, options, found);
       for (const bool above : {false, true})
-        if (found.status != Status::interrupted) search_side(window, above, options, found);
+        if (!ended_early(options, found)) search_side(window, above, options, found);
     }
   }
   element_.stop_with({});
+  if (found.notes.empty() && ended_early(options, found))
+    found.notes.push_back("the search ended with " + ended(Status::interrupted) + ": roots may be missing");
   if (options.stop && options.stop()) found.status = Status::interrupted;
   std::ranges::sort(found.roots, {}, &CompositeRoot::frequency);
   found.evaluations = evaluations_ - evaluations;
-  found.steps = steps_ - steps;
+  found.steps = element_.steps() - steps;
   if (found.status == Status::interrupted) return found;
   if (!found.notes.empty())
     found.status = Status::incomplete;

@@ -2,41 +2,50 @@
 
 #include <algorithm>
 
-#include "limcycle/analysis/motion/stepper_limits.hpp"
 #include "limcycle/analysis/orbit/edge.hpp"
-#include "limcycle/analysis/study/output_per_input.hpp"
+#include "limcycle/analysis/study/cycle_search.hpp"
 #include "limcycle/analysis/study/verdicts.hpp"
 
 namespace limcycle {
 
-CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box) : loop_(loop) {
-  const double unit = output_per_input(loop);
-  settle_.amplitude_floor = unit * box.amplitude_min;
-  settle_.amplitude_ceiling = 1e4 * unit * box.amplitude_max;
-  settle_.rtol = std::clamp(0.1 * loosest_stiff_tolerance(loop), 1e-12, settle_.rtol);
-  settle_.shooting.accuracy = options.accuracy;
-  settle_.shooting.rtol = std::clamp(options.accuracy, 1e-13, 1e-8);
-  settle_.shooting.tolerance = 0.1 * settle_.shooting.rtol;
-  settle_.shooting.derivative_rtol = std::clamp(options.accuracy, 1e-10, 1e-8);
-  settle_.stop = settle_.shooting.stop = options.stop;
-}
+CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box)
+    : loop_(loop), settle_(cycle_search(loop, box, options.accuracy, options.stop)) {}
 
-const OutcomeOfStart& CycleHunt::settle_from(const LoopState& start, std::string name) {
+OutcomeOfStart CycleHunt::simulate(const LoopState& start, std::string name) {
   settle_.known = cycles_;
   Settled settled = settle(loop_, start, settle_);
   OutcomeOfStart outcome{std::move(name),          settled.outcome, std::move(settled.why), {},
                          std::move(settled.trace), settled.time,    settled.steps};
   outcome.cycle = settled.known;
+  steps_ += settled.work;
   if (settled.shot) {
     maps_ += settled.shot->maps;
     outcome.cycle = merge(cycles_, settled.shot->cycle);
   }
-  outcomes_.push_back(std::move(outcome));
+  return outcome;
+}
+
+const OutcomeOfStart& CycleHunt::settle_from(const LoopState& start, std::string name) {
+  outcomes_.push_back(simulate(start, std::move(name)));
   return outcomes_.back();
+}
+
+bool CycleHunt::is_news(const OutcomeOfStart& outcome) const {
+  if (outcome.outcome == Outcome::undecided) return false;
+  return std::ranges::none_of(outcomes_, [&](const OutcomeOfStart& one) {
+    return one.outcome == outcome.outcome && one.cycle == outcome.cycle;
+  });
+}
+
+OutcomeOfStart CycleHunt::probe_from(const LoopState& start, std::string name) {
+  OutcomeOfStart outcome = simulate(start, std::move(name));
+  if (is_news(outcome)) outcomes_.push_back(outcome);
+  return outcome;
 }
 
 std::optional<std::size_t> CycleHunt::keep(const ShootingResult& shot) {
   maps_ += shot.maps;
+  steps_ += shot.steps;
   if (shot.status != Status::converged || !shot.cycle.stable) return std::nullopt;
   if (shot.cycle.amplitude < settle_.amplitude_floor) return std::nullopt;
   return merge(cycles_, shot.cycle);
@@ -53,6 +62,7 @@ std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(d
   // Where small and large oscillations come to the same in the end there is no border between them.
   const Settled small = settle(loop_, ray(smallest_edge_scale), settle_),
                 large = settle(loop_, ray(largest_edge_scale), settle_);
+  steps_ += small.work + large.work;
   const bool same = small.outcome == large.outcome && small.outcome != Outcome::undecided && small.known == large.known;
   if (same && !small.shot && !large.shot) return std::nullopt;
   for (const Settled* end : {&small, &large})

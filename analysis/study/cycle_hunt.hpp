@@ -14,6 +14,9 @@ class CycleHunt {
 
   /// Simulates from a state until it is clear what is reached; a cycle reached joins `cycles`.
   const OutcomeOfStart& settle_from(const LoopState& start, std::string name);
+  /// The same where no user would start, to learn what lies between the starts: it joins `outcomes` only if it reaches
+  /// what none of them has reached, a cycle or another kind of outcome.
+  OutcomeOfStart probe_from(const LoopState& start, std::string name);
   /// Newton for the cycle near a guess, stable or not; index of the cycle found (and whether it is near is for the
   /// caller to say).
   std::optional<std::size_t> shoot_from(const OrbitGuess& guess);
@@ -26,15 +29,19 @@ class CycleHunt {
   double rtol() const { return settle_.rtol; }
   /// Return maps that shooting computed.
   long maps() const { return maps_; }
+  /// Steps of the integrator in all that was done.
+  long steps() const { return steps_; }
 
  private:
+  OutcomeOfStart simulate(const LoopState& start, std::string name);
+  bool is_news(const OutcomeOfStart& outcome) const;
   std::optional<std::size_t> keep(const ShootingResult& shot);
 
   const Loop& loop_;
   SettleOptions settle_;
   std::vector<Cycle> cycles_;
   std::vector<OutcomeOfStart> outcomes_;
-  long maps_ = 0;
+  long maps_ = 0, steps_ = 0;
 };
 
 }  // namespace limcycle

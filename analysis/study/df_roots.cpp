@@ -11,8 +11,9 @@ namespace {
 
 class RootStudy {
  public:
-  RootStudy(const Loop& loop, const LoopBalance& balance, const SearchBox& box, const std::function<bool()>& stop)
-      : loop_(loop), balance_(balance), box_(box), stop_(stop) {}
+  RootStudy(const Loop& loop, const LoopBalance& balance, const SearchBox& box, const std::function<bool()>& stop,
+            long max_values)
+      : loop_(loop), balance_(balance), box_(box), stop_(stop), last_value_(balance.values() + max_values) {}
 
   DfRoots run() {
     for (const double pole : undamped_poles())
@@ -53,7 +54,7 @@ class RootStudy {
   /// in which that line is straight.
   std::vector<Root> search(SearchBox box) {
     RootSearchOptions options;
-    options.interrupted = stop_;
+    options.interrupted = [this] { return used_up() || (stop_ && stop_()); };
     // The other element's kink crosses the whole box; of gravity it is a ridge of the free swing, on which f is small.
     if (balance_.main_element() > 0) options.max_evaluations = 20000;
     // Each sample of a law of many states takes long; a root is polished to the fine accuracy in any case.
@@ -107,6 +108,7 @@ class RootStudy {
       };
       auto found = find_roots(f, second, options);
       if (found.status == Status::not_finite) break;
+      if (used_up()) note_doubts(found, second);
       for (Root& root : found.roots) {
         root.amplitude = balance_.from_second(branch, root.amplitude, root.frequency, 1e-12).amplitude;
         roots.push_back(root);
@@ -134,6 +136,12 @@ class RootStudy {
 
   void note_doubts(const RootSearch& found, const SearchBox& box) {
     if (found.status == Status::converged || found.status == Status::no_cycle) return;
+    if (used_up() && !(stop_ && stop_())) {
+      const std::string note = "the root search has used up its share of the work: roots may be missing";
+      if (std::ranges::find(found_.notes, note) == found_.notes.end()) found_.notes.push_back(note);
+      found_.status = Status::incomplete;
+      return;
+    }
     const std::string range = short_number(box.frequency_min) + " and " + short_number(box.frequency_max) + " rad/s";
     std::string note = found.status == Status::not_finite
                            ? "the describing function exists nowhere in the search box between " + range +
@@ -144,18 +152,21 @@ class RootStudy {
     found_.status = found.status == Status::interrupted ? found.status : Status::incomplete;
   }
 
+  bool used_up() const { return balance_.values() > last_value_; }
+
   const Loop& loop_;
   const LoopBalance& balance_;
   const SearchBox& box_;
   const std::function<bool()>& stop_;
+  long last_value_;
   DfRoots found_;
 };
 
 }  // namespace
 
 DfRoots find_df_roots(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
-                      const std::function<bool()>& stop) {
-  return RootStudy(loop, balance, box, stop).run();
+                      const std::function<bool()>& stop, long max_values) {
+  return RootStudy(loop, balance, box, stop, max_values).run();
 }
 
 }  // namespace limcycle

@@ -14,8 +14,9 @@ struct DfRoots {
 };
 
 /// All roots of 1 + N(A, w) G(jw) of a loop in a box: the box is cut at undamped poles of the rest of the loop (where G
-/// is infinite), the phase of a delay sets the grid, and on a belt the search runs along the kink of N.
+/// is infinite), the phase of a delay sets the grid, and on a belt the search runs along the kink of N. The search ends
+/// as incomplete when it has integrated `max_values` describing functions (LoopBalance::values).
 DfRoots find_df_roots(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
-                      const std::function<bool()>& stop);
+                      const std::function<bool()>& stop, long max_values = 200'000);
 
 }  // namespace limcycle

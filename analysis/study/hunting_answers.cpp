@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "limcycle/analysis/motion/stepper_limits.hpp"
 #include "limcycle/analysis/orbit/ensemble.hpp"
+#include "limcycle/analysis/study/cycle_search.hpp"
 #include "limcycle/analysis/study/output_per_input.hpp"
 #include "limcycle/analysis/study/predict.hpp"
 #include "limcycle/models/delay.hpp"
@@ -37,9 +37,10 @@ HuntingQuestion hunting_question(const Loop& loop) {
   const double unit = output_per_input(loop);
   HuntingQuestion question;
   question.displacements = {unit * box.amplitude_max, 0.01 * unit * box.amplitude_max};
-  question.amplitude_floor = unit * box.amplitude_min;
-  question.amplitude_ceiling = 1e4 * unit * box.amplitude_max;
-  question.rtol = std::clamp(0.1 * loosest_stiff_tolerance(loop), 1e-12, question.rtol);
+  const SettleOptions search = cycle_search(loop, box, question.accuracy);
+  question.amplitude_floor = search.amplitude_floor;
+  question.amplitude_ceiling = search.amplitude_ceiling;
+  question.rtol = std::min(question.rtol, search.rtol);
   return question;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -54,6 +55,8 @@ class LoopBalance::MainGain {
  public:
   explicit MainGain(const Element<double>& element) : element_(&element) {}
 
+  std::atomic<long> values = 0;  ///< computed
+
   DescribingFunction at(const DfPoint& point, double accuracy) {
     {
       const std::lock_guard lock(guard_);
@@ -61,11 +64,13 @@ class LoopBalance::MainGain {
         if (const auto known = prepared_.find({point.amplitude, point.frequency, point.bias}); known != prepared_.end())
           return known->second;
     }
+    ++values;
     return table(accuracy).at(point);
   }
 
   /// Forgets what was prepared before.
   void prepare(const std::vector<DfPoint>& points, double accuracy) {
+    values += std::ssize(points);
     auto results = table(accuracy).some_of(points);
     const std::lock_guard lock(guard_);
     prepared_.clear();
@@ -94,6 +99,8 @@ class LoopBalance::MainGain {
 
 void LoopBalance::prepare(const std::vector<SearchPoint>& points, double accuracy) const {
   if (!is_friction(*loop_, main_)) return;  // means of the inputs of other elements depend on the point
+  if (!points.empty() && exact_gain(loop_->elements[main_], points[0].amplitude, points[0].frequency, mean_velocity_))
+    return;  // nothing to compute
   std::vector<DfPoint> at;
   at.reserve(points.size());
   for (const SearchPoint& point : points) at.push_back({point.amplitude, point.frequency, mean_velocity_});
@@ -156,6 +163,7 @@ LoopBalance::LoopBalance(const Loop& loop)
 }
 
 double LoopBalance::mean_velocity() const { return mean_velocity_; }
+long LoopBalance::values() const { return main_gain_->values; }
 
 bool LoopBalance::depends_on_frequency() const { return is_friction(*loop_, main_); }
 
@@ -170,6 +178,7 @@ double LoopBalance::bias(double amplitude, double frequency, double accuracy) co
   const double slope = loop_->element_response(0.0)(0, 0).real();
   double low = rest, high = rest;
   const auto balance = [&](double b) {
+    ++main_gain_->values;
     return rest + slope * df(loop_->elements[main_], amplitude, frequency, b, accuracy).mean - b;
   };
   double width = std::abs(balance(rest));
@@ -213,9 +222,9 @@ Eigen::VectorXd LoopBalance::mean_inputs(double amplitude, double frequency, dou
 }
 
 Complex LoopBalance::gain(double amplitude, double frequency, double accuracy) const {
-  if (const auto exact = exact_gain(loop_->elements[main_], amplitude, frequency, bias(amplitude, frequency, accuracy)))
-    return *exact;
-  const auto result = main_gain_->at({amplitude, frequency, bias(amplitude, frequency, accuracy)}, accuracy);
+  const double mean = bias(amplitude, frequency, accuracy);
+  if (const auto exact = exact_gain(loop_->elements[main_], amplitude, frequency, mean)) return *exact;
+  const auto result = main_gain_->at({amplitude, frequency, mean}, accuracy);
   if (result.status != Status::converged && result.status != Status::incomplete) return undefined;
   if (symmetric_ && !result.symmetric) return undefined;  // e.g. a relay that does not switch
   return result.gain;

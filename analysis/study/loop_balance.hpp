@@ -55,6 +55,8 @@ class LoopBalance {
   /// Linear states of the loop on the predicted oscillation at a phase of the main element's input (0: rising zero).
   Eigen::VectorXd linear_state(double amplitude, double frequency, double phase, double scale = 1.0) const;
 
+  /// Describing functions computed so far that are no closed forms: what a search costs. Shared by copies.
+  long values() const;
   std::size_t main_element() const { return main_; }
   bool depends_on_frequency() const;
   /// Response from the main element's output to its own input at `order` times the frequency of the oscillation, the

@@ -130,14 +130,12 @@ LoopBalance::FromSecond LoopBalance::from_second(int branch, double amplitude, d
   const Eigen::RowVectorXcd to_main = H.row(m);
   const auto size = [&](double A) { return std::abs(A - (to_main * own_outputs(A, frequency, accuracy)).value()); };
   const Complex drives = H(m, o) * N * amplitude;
-  for (const auto& answer :
-       second_->main->answers(size, main_range(std::abs(H(m, m))), std::abs(drives), frequency, accuracy)) {
-    if (answer.branch != branch) continue;
-    const Eigen::VectorXcd W = own_outputs(answer.amplitude, frequency, accuracy);
-    const Complex phase = drives / (answer.amplitude - (to_main * W).value());  // of the main element's input
-    return {1.0 - (H.row(o) * W).value() * phase / amplitude - H(o, o) * N, answer.amplitude};
-  }
-  return {{nan, nan}, nan};
+  const auto answer =
+      second_->main->answer_on(branch, size, main_range(std::abs(H(m, m))), std::abs(drives), frequency, accuracy);
+  if (!answer) return {{nan, nan}, nan};
+  const Eigen::VectorXcd W = own_outputs(answer->amplitude, frequency, accuracy);
+  const Complex phase = drives / (answer->amplitude - (to_main * W).value());  // of the main element's input
+  return {1.0 - (H.row(o) * W).value() * phase / amplitude - H(o, o) * N, answer->amplitude};
 }
 
 /// Amplitudes of the main element's input between which the size of what must drive it can turn.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/cycle_search.hpp"
 #include "limcycle/analysis/study/output_per_input.hpp"
 
 namespace limcycle {
@@ -66,13 +67,8 @@ std::optional<Cycle> SideSearch::cycle_at(double p, const LoopState* from, Outco
   outcome = Outcome::undecided;
   if (!loop) return std::nullopt;
   const SearchBox box = default_search_box(*loop);
-  const double unit = output_per_input(*loop), widest = unit * box.amplitude_max;
-  SettleOptions settling;
-  settling.amplitude_floor = unit * box.amplitude_min;
-  settling.amplitude_ceiling = 1e4 * widest;
-  settling.shooting.rtol = 3e-10;
-  settling.shooting.tolerance = 1e-8;
-  settling.stop = settling.shooting.stop = options_.predict.stop;
+  const double widest = output_per_input(*loop) * box.amplitude_max;
+  const SettleOptions settling = cycle_search(*loop, box, options_.accuracy, options_.predict.stop);
   std::vector<LoopState> starts;
   const LoopState rest = displaced(*loop, widest);
   if (from && from->x.size() == rest.x.size()) starts.push_back(*from);

@@ -8,6 +8,7 @@
 #include "limcycle/analysis/orbit/settle.hpp"
 #include "limcycle/analysis/orbit/turning_points.hpp"
 #include "limcycle/analysis/study/composite_balance.hpp"
+#include "limcycle/analysis/study/cycle_search.hpp"
 #include "limcycle/analysis/study/df_roots.hpp"
 #include "limcycle/analysis/study/method_names.hpp"
 #include "limcycle/analysis/study/output_per_input.hpp"
@@ -119,25 +120,24 @@ SceneAnswer ask_balance(const Loop& loop, const PredictOptions& options) {
 class SimulationWatch {
  public:
   SimulationWatch(const Loop& loop, const PredictOptions& options, const SearchBox& box)
-      : loop_(loop), options_(options), box_(box) {
+      : loop_(loop), options_(options), settling_(cycle_search(loop, box, 1e-8)) {
     const auto moduli = pole_moduli(loop);
     horizon_ = 200.0 / (moduli.empty() ? 1.0 : moduli.front());
     longest_ = 25.0 * horizon_;
   }
 
   SceneAnswer operator()(double displacement) {
-    const double unit = output_per_input(loop_);
     const LoopState start = displaced(loop_, displacement);
     LoopField field(loop_);
     field.modes() = start.modes;
-    March march(field, StepperKind::automatic, loop_weights(loop_, 1e-7));
+    March march(field, StepperKind::automatic, loop_weights(loop_, settling_.rtol));
     march.begin(start.x, 0.0);
     while (march.t() < horizon_) {
       if (march.steps() > 200000) return unanswered("the simulation gave up after 200000 steps");
       if (options_.stop && march.steps() % 64 == 0 && options_.stop()) return unanswered("interrupted");
       if (const Status status = march.step(longest_); status != Status::converged) return ended(status);
       const double y = field.y(march.x());
-      if (std::abs(y) > 1e4 * unit * box_.amplitude_max) return ended(Status::not_finite);
+      if (std::abs(y) > settling_.amplitude_ceiling) return ended(Status::not_finite);
       if (!turning_.feed(march.t(), y)) continue;
       for (const std::size_t order : {2U, 4U, 6U})
         if (repeats(order)) return cycle(order);
@@ -145,7 +145,7 @@ class SimulationWatch {
     }
     const auto& points = turning_.points();
     const bool calm = points.empty() || points.back().t < 0.5 * march.t() ||
-                      (points.size() > 2 && turning_.swing(0) < unit * box_.amplitude_min);
+                      (points.size() > 2 && turning_.swing(0) < settling_.amplitude_floor);
     const bool grows = points.size() > 3 && turning_.swing(0) > 10.0 * displacement &&
                        turning_.swing(0) > turning_.swing(1) && turning_.swing(1) > turning_.swing(2);
     if (grows) return ended(Status::not_finite);
@@ -207,7 +207,7 @@ class SimulationWatch {
   static constexpr double agree = 5e-3;
   const Loop& loop_;
   const PredictOptions& options_;
-  const SearchBox& box_;
+  SettleOptions settling_;
   double horizon_ = 0.0, longest_ = 0.0;  ///< s
   TurningPoints turning_;
 };

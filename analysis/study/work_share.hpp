@@ -1,0 +1,20 @@
+#pragma once
+
+namespace limcycle {
+
+/// What the parts of predict() may cost, counted in steps and evaluations and never in seconds, so that the answer is
+/// the same on every machine and with any number of threads. The starts come first and have their own horizon
+/// (SettleOptions::max_steps); what follows has a share of the steps that they took, and enough for a loop whose starts
+/// end at once.
+struct WorkShare {
+  long between_steps;        ///< of the integrator, in simulations between starts that end differently
+  long composite_steps;      ///< of the integrator, in the search of the composite describing function
+  long df_values;            ///< of a describing function, in the search for roots
+  long check_steps;          ///< of the integrator, in the simulations and shooting that check predictions
+  long balance_evaluations;  ///< of the equations of harmonic balance, for all its starts
+};
+
+/// `steps`: of the integrator, from all starts, shooting included.
+WorkShare work_share(long steps);
+
+}  // namespace limcycle
