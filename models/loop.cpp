@@ -167,6 +167,10 @@ Eigen::MatrixXcd Loop::element_response(std::complex<double> s) const {
   Eigen::MatrixXcd H(ne, ne);
   for (Index i = 0; i < ne; ++i) {
     const Port& port = ports[static_cast<std::size_t>(i)];
+    if (port.rubs && port.C.isZero(0.0)) {  // no state holds the rubbing displacement
+      H.row(i) = (port.C_v.cast<std::complex<double>>() * X + port.D_v.cast<std::complex<double>>()) / s;
+      continue;
+    }
     Eigen::RowVectorXcd row = port.C.cast<std::complex<double>>();
     if (delay > 0.0) row += shift * port.C_delayed.cast<std::complex<double>>();
     H.row(i) = row * X + port.D.cast<std::complex<double>>();

@@ -16,8 +16,8 @@ std::string rubbing_velocity(const Plant& plant) {
                        diagram_number(shaft->shaft_speed));
   if (const auto* pair = std::get_if<TwoMass>(&plant))
     return "v of the " + std::string(TwoMass::sides[static_cast<std::size_t>(pair->friction_on.index)]);
-  const auto* named = std::get_if<StateSpacePlant>(&plant);
-  return named != nullptr && named->C_velocity.size() > 0 ? "v" : "v = dy/dt";
+  const PlantModel model = model_of(plant);
+  return model.C_x == model.C_y ? "v = dy/dt" : "v";
 }
 
 std::string reference_words(const LoopParts& parts, const Units& units) {

@@ -63,6 +63,9 @@ double sticking_time(const Trace& trace, double limit) {
   return stuck;
 }
 
+/// Is the rubbing displacement no combination of the states? It is then the sum of the trapezia under the velocity.
+bool rubs_along_no_state(const Port& port) { return port.rubs && port.C.isZero(0.0); }
+
 /// Harmonics 0..H of a periodic signal given with its rate, as in input_harmonics().
 Eigen::VectorXcd harmonics(const std::vector<double>& t, const std::vector<double>& y, const std::vector<double>& rate,
                            double period, int H) {
@@ -103,10 +106,14 @@ Eigen::VectorXcd input_harmonics(const Cycle& cycle, int H) {
 
 void append(Trace& trace, LoopField& field, const State& x, const State& dx, double t) {
   const std::size_t i = element_of_interest(field.loop());
+  const double travelled =
+      !rubs_along_no_state(field.loop().ports[i]) || trace.t.empty()
+          ? 0.0
+          : trace.input.back() + 0.5 * (t - trace.t.back()) * (trace.velocity.back() + field.input(i).v);
   trace.t.push_back(t);
   trace.y.push_back(field.y(x));
   trace.rate.push_back(field.y_rate(dx));
-  trace.input.push_back(field.input(i).x);
+  trace.input.push_back(field.input(i).x + travelled);
   trace.velocity.push_back(field.input(i).v);
   trace.output.push_back(field.output(i));
 }
@@ -137,7 +144,8 @@ Status record(const Loop& loop, const LoopState& from, double duration, double r
 void append_reflected(const Loop& loop, const Eigen::VectorXd& centre, Trace& trace) {
   const Port& port = loop.ports[element_of_interest(loop)];
   const double y_middle = loop.C_y.dot(centre.transpose());
-  const double input_middle = (port.C * centre + port.c * loop.external).value();
+  const double input_middle = rubs_along_no_state(port) ? 0.5 * (trace.input.front() + trace.input.back())
+                                                        : (port.C * centre + port.c * loop.external).value();
   const double half = trace.t.back();
   const std::size_t count = trace.t.size();
   for (std::size_t i = 1; i < count; ++i) {

@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
+#include "limcycle/analysis/study/quasi_linear.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -139,11 +140,8 @@ std::optional<bool> CompositeBalance::stable(double frequency, Complex gain, int
   if (index == 0) return std::nullopt;
   if (index < 0) return false;
   if (loop_->delay > 0.0) return std::nullopt;
-  const Port& port = loop_->ports.back();
   const Complex N = 1.0 / gain + mass_ * frequency * frequency;
-  const double damping = N.imag() / frequency;
-  const Eigen::RowVectorXd feedback = N.real() * port.C + damping * port.C_v;
-  const Eigen::VectorXcd roots = eigenvalues(loop_->A + loop_->B.col(f_) * feedback);
+  const Eigen::VectorXcd roots = eigenvalues(quasi_linear(*loop_, static_cast<std::size_t>(f_), N, frequency));
   for (const Complex& root : roots) {
     const bool own =
         std::abs(std::abs(root.imag()) - frequency) < 1e-3 * frequency && std::abs(root.real()) < 1e-3 * frequency;

@@ -11,6 +11,7 @@
 #include "limcycle/analysis/frequency/df_table.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
 #include "limcycle/analysis/orbit/return_map.hpp"
+#include "limcycle/analysis/study/quasi_linear.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -114,7 +115,8 @@ LoopBalance::Sorted LoopBalance::sort(const Loop& loop) {
   for (std::size_t i = 0; i + 1 < loop.elements.size(); ++i) {
     const Port& port = loop.ports[i];
     const double size = main.C.squaredNorm();
-    const double factor = size > 0.0 ? main.C.dot(port.C) / size : 0.0;
+    // Where no state holds the rubbing displacement its row is zero, also that of the compensation.
+    const double factor = size > 0.0 ? main.C.dot(port.C) / size : main.rubs && port.rubs ? 1.0 : 0.0;
     const bool same = factor != 0.0 && loop.delay == 0.0 && port.D.isZero() && main.D.isZero() &&
                       (port.C - factor * main.C).norm() <= 1e-12 * port.C.norm();
     if (same)
@@ -273,11 +275,8 @@ std::optional<bool> LoopBalance::stable(double amplitude, double frequency, int 
   if (loop_->delay > 0.0) return std::nullopt;  // the other roots of a loop with delay are infinitely many
   if (loop_->elements.size() > 1) return true;
   // The quasi-linear loop, N acting as Re N + (Im N / w) d/dt: all its other roots must lie in the left half plane.
-  const Port& port = loop_->ports[main_];
   const Complex N = gain(amplitude, frequency, 1e-9);
-  const double damping = N.imag() / frequency;
-  const Eigen::RowVectorXd feedback = (N.real() * port.C + damping * port.C_v) / (1.0 - damping * port.D_v(0));
-  const Eigen::VectorXcd roots = eigenvalues(loop_->A + loop_->B * feedback);
+  const Eigen::VectorXcd roots = eigenvalues(quasi_linear(*loop_, main_, N, frequency));
   for (const Complex& root : roots) {
     const bool own =
         std::abs(std::abs(root.imag()) - frequency) < 1e-3 * frequency && std::abs(root.real()) < 1e-3 * frequency;

@@ -3,15 +3,13 @@
 
 namespace limcycle {
 
-/// Amplitude of y for one of the main element's input where the two are the same motion in other units (the angle of a
-/// Froude pendulum and the rubbing of its sleeve); else 1.
-inline double output_per_input(const Loop& loop) {
-  const Port& main = loop.ports.back();
-  const double size = main.C.squaredNorm();
-  if (!(size > 0.0)) return 1.0;
-  const double factor = loop.C_y.dot(main.C) / size;
-  const bool same = factor > 0.0 && (loop.C_y - factor * main.C).norm() <= 1e-12 * loop.C_y.norm();
-  return same ? factor : 1.0;
-}
+/// Amplitude of y for one of the main element's input: what brings the search box, which is of that input, to y.
+///
+/// Where the two are the same motion in other units (the angle of a Froude pendulum and the rubbing of its sleeve) it
+/// is exact. Where friction rubs elsewhere than at y it is that of slow motions under a force on the plant, lim |y/x|
+/// for s -> 0, rounded to six digits: 1 for the two masses of a drive, the flow per stroke of a valve. If that limit is
+/// zero or infinite, |y/x| at the middle of the loop's poles. Otherwise 1. Predictions convert exactly, at their
+/// frequency.
+double output_per_input(const Loop& loop);
 
 }  // namespace limcycle

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "limcycle/models/linear/rubbing.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -28,6 +30,15 @@ PlantModel oscillator(double mass, double damping, double stiffness) {
   plant.C_v = Eigen::RowVector2d(0.0, 1.0);
   plant.state_names = {"y", "v"};
   return plant;
+}
+
+constexpr double typed = 1e-6;  ///< numbers in a case file are often rounded to six digits
+
+/// The columns through which u and the friction act.
+Eigen::MatrixXd both_forces(const Eigen::MatrixXd& B, const Eigen::MatrixXd& B_friction) {
+  Eigen::MatrixXd forces(B.rows(), 2);
+  forces << B, (B_friction.size() != 0 ? B_friction : B);
+  return forces;
 }
 
 std::optional<BrokenRule> strictly_proper(const std::string& key, const auto& realisation) {
@@ -120,13 +131,32 @@ std::optional<BrokenRule> StateSpacePlant::validate() const {
     return BrokenRule{"B_friction", "must be one column with as many rows as A"};
   if (C_velocity.size() != 0 && (C_velocity.cols() != n || C_velocity.rows() != 1))
     return BrokenRule{"C_velocity", "must be one row with as many columns as A"};
+  if (C_friction.size() == 0) return std::nullopt;
+  if (C_friction.cols() != n || C_friction.rows() != 1)
+    return BrokenRule{"C_friction", "must be one row with as many columns as A"};
+  const Eigen::MatrixXd forces = both_forces(B, B_friction);
+  const Eigen::RowVectorXd displacement = C_friction.row(0);
+  if (C_velocity.size() == 0 && !is_rate_of(displacement * A, displacement, A, forces, typed))
+    return BrokenRule{"C_friction", "must not be moved by a force at once: C_friction B and C_friction B_friction = 0"};
+  if (C_velocity.size() != 0 && !is_rate_of(C_velocity.row(0), displacement, A, forces, typed))
+    return BrokenRule{"C_friction",
+                      "must have C_velocity as its rate: C_friction A = C_velocity, C_friction B and "
+                      "C_friction B_friction = 0"};
   return std::nullopt;
 }
 
 PlantModel StateSpacePlant::model() const {
   PlantModel plant = from_input_output({A, B, C, D}, 0.0);
   if (B_friction.size() != 0) plant.B_F = B_friction.col(0);
-  if (C_velocity.size() != 0) plant.C_v = C_velocity.row(0);
+  if (C_friction.size() != 0) {
+    plant.C_x = C_friction.row(0);
+    plant.C_v = plant.C_x * A;
+  }
+  if (C_velocity.size() == 0) return plant;
+  plant.C_v = C_velocity.row(0);
+  if (C_friction.size() != 0) return plant;
+  const Eigen::MatrixXd forces = both_forces(B, B_friction);
+  if (!is_rate_of(plant.C_v, plant.C_y, A, forces, typed)) plant.C_x = integral_of(plant.C_v, A, forces);
   return plant;
 }
 

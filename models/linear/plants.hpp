@@ -134,10 +134,13 @@ struct ZeroPoleGain {
   PlantModel model() const;
 };
 
-/// dx/dt = A x + B u - B_friction F, y = C x; rubbing velocity C_velocity x (default d/dt of y).
+/// dx/dt = A x + B u - B_friction F, y = C x. The friction sees the rubbing velocity v = C_velocity x, by default d/dt
+/// of the rubbing displacement C_friction x, and that by default y. With C_velocity alone the rubbing displacement is
+/// the row c with c A = C_velocity, c B = c B_friction = 0 (to rounding). Where there is none, no state holds the
+/// integral of v: the row of the model is then zero, and the frequency domain takes v/(jw).
 struct StateSpacePlant {
   Eigen::MatrixXd A, B, C, D{Eigen::MatrixXd(0, 0)}, B_friction{Eigen::MatrixXd(0, 0)},
-      C_velocity{Eigen::MatrixXd(0, 0)};
+      C_velocity{Eigen::MatrixXd(0, 0)}, C_friction{Eigen::MatrixXd(0, 0)};
   static constexpr std::string_view kind = "state-space";
   static constexpr std::string_view equation = "dx/dt = A x + B u - B_friction F, y = C x, v = C_velocity x";
   static std::vector<Parameter<StateSpacePlant, double>> parameters() {
@@ -146,8 +149,10 @@ struct StateSpacePlant {
             {"C", "1", "rows as lists", &StateSpacePlant::C},
             {"D", "1", "must be zero in a loop", &StateSpacePlant::D, any_number, false},
             {"B_friction", "1", "force column, default B", &StateSpacePlant::B_friction, any_number, false},
-            {"C_velocity", "1", "row of the rubbing velocity, default d/dt of y", &StateSpacePlant::C_velocity,
-             any_number, false}};
+            {"C_velocity", "1", "row of the rubbing velocity, default d/dt of the rubbing displacement",
+             &StateSpacePlant::C_velocity, any_number, false},
+            {"C_friction", "1", "row of the rubbing displacement, default the integral of the rubbing velocity, or y",
+             &StateSpacePlant::C_friction, any_number, false}};
   }
   std::optional<BrokenRule> validate() const;
   PlantModel model() const;

@@ -17,11 +17,12 @@ CaseSection loop() {
 }
 
 CaseSection search() {
-  return {"search",
-          "Where roots of the harmonic balance are searched. Without it the box is chosen from the loop's own scales; "
-          "`limcycle check` tells it.",
-          {{"amplitude", "[1e-6, 1.0]", "from and to, of the element's input (with friction: of y), m", "", true},
-           {"frequency", "[0.01, 1000.0]", "from and to, rad/s", "", true}}};
+  return {
+      "search",
+      "Where roots of the harmonic balance are searched. Without it the box is chosen from the loop's own scales; "
+      "`limcycle check` tells it.",
+      {{"amplitude", "[1e-6, 1.0]", "from and to, of the element's input (with friction: of what rubs), m", "", true},
+       {"frequency", "[0.01, 1000.0]", "from and to, rad/s", "", true}}};
 }
 
 CaseSection predict() {

@@ -72,6 +72,7 @@ constexpr std::array typical_rows{
                {"[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, -3.0, -3.0]]", "here 1/(s + 1)^3"}},
     TypicalRow{"lone plant", "state-space", "B_friction", {"[[0.0], [0.0], [1.0]]", "", true}},
     TypicalRow{"lone plant", "state-space", "C_velocity", {"[[0.0, 1.0, 0.0]]", "", true}},
+    TypicalRow{"lone plant", "state-space", "C_friction", {"[[1.0, 0.0, 0.0]]", "", true}},
     TypicalRow{"lone plant", "state-space", "B", {"[[0.0], [0.0], [1.0]]", ""}},
     TypicalRow{"lone plant", "state-space", "C", {"[[1.0, 0.0, 0.0]]", ""}},
     TypicalRow{"plant", "mass", "mass", {"1.0", "0.1 to 1000"}},
@@ -96,6 +97,7 @@ constexpr std::array typical_rows{
     TypicalRow{"plant", "state-space", "D", {"[[0.0]]", "", true}},
     TypicalRow{"plant", "state-space", "B_friction", {"[[0.0], [1.0]]", "", true}},
     TypicalRow{"plant", "state-space", "C_velocity", {"[[0.0, 1.0]]", "", true}},
+    TypicalRow{"plant", "state-space", "C_friction", {"[[1.0, 0.0]]", "", true}},
     TypicalRow{"plant", "state-space", "B", {"[[0.0], [1.0]]", ""}},
     TypicalRow{"plant", "state-space", "C", {"[[1.0, 0.0]]", ""}},
 

@@ -1,0 +1,19 @@
+#pragma once
+#include <Eigen/Core>
+
+/// @file
+/// The rubbing displacement of a plant dx/dt = A x + B w, and the rubbing velocity as its rate.
+
+namespace limcycle {
+
+/// Is velocity x = d/dt(displacement x), whatever the inputs do: displacement A = velocity and displacement B = 0, each
+/// entry to `accuracy` of the terms that it is the sum of?
+bool is_rate_of(const Eigen::RowVectorXd& velocity, const Eigen::RowVectorXd& displacement, const Eigen::MatrixXd& A,
+                const Eigen::MatrixXd& B, double accuracy);
+
+/// The row c whose rate is the velocity (c A = velocity, c B = 0), by least squares, checked to 1e-9; of several the
+/// shortest, the others differing by what no input moves. Zero where no combination of the states is the integral of
+/// the velocity.
+Eigen::RowVectorXd integral_of(const Eigen::RowVectorXd& velocity, const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+}  // namespace limcycle
