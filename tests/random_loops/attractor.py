@@ -76,7 +76,7 @@ def settle(loop, X, bound, most_events=800, start=None):
     the start."""
     point = loop.start(X) if start is None else start
     history, stuck, tried = {}, 0, 0
-    recent = deque(maxlen=60)
+    recent, first = deque(maxlen=60), None
     for count in range(most_events):
         before = point
         point = loop.advance(before)
@@ -86,13 +86,13 @@ def settle(loop, X, bound, most_events=800, start=None):
             return Attractor("divergence")
         stuck = stuck + 1 if point.t - before.t <= 1e-13 * max(1e-300, point.t) else 0
         if stuck > 8:
-            small = len(recent) > 20 and recent[-1].max() < 1e-5 * first.max()
+            small = first is not None and len(recent) > 20 and recent[-1].max() < 1e-5 * first.max()
             why = "events without time between them"
             return Attractor("rest", why="ever faster switching") if small else Attractor("unknown", why=why)
         if stuck:
             continue
         recent.append(np.maximum(np.abs(point.X[:-1]), np.abs(_halfway(loop, before, point.t))))
-        first = recent[0] if count == 0 else first
+        first = recent[0] if first is None else first
         scale = np.max(recent, axis=0)
         scale = scale + 1e-12 * scale.max() + 1e-300
         hits = history.setdefault((point.label, point.modes, len(point.queue)), [])

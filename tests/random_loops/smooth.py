@@ -170,7 +170,10 @@ def settle(loop, X, bound, most_steps=36000, window=900):
     """Follows a motion until it is clear what it comes to."""
     size = np.abs(X[:-1]).max()
     run = Run(loop, X, size)
-    for _ in range(most_steps // window):
+    horizon = np.inf
+    for count in range(most_steps // window):
+        if run.t > horizon:
+            return Attractor("unknown", why=f"a slow motion, not decided at t = {run.t:.6g}")
         for _ in range(window):
             if not run.step():
                 return Attractor("unknown", why="the solver gave up")
@@ -179,6 +182,7 @@ def settle(loop, X, bound, most_steps=36000, window=900):
         found = judged(run)
         if found is not None:
             return found
+        horizon = 1e6 * run.t if count == 0 else horizon
     return Attractor("unknown", why=f"nothing decided after {most_steps} steps at t = {run.t:.6g}")
 
 

@@ -60,7 +60,10 @@ class Truth:
             far = abs(displacement) + abs(self.model.reference)
             bound = 1e6 * max(far, self.scale())
             method = smooth.settle if self.smooth else attractor.settle
-            self.found[key] = method(self.loop, X, bound)
+            one = method(self.loop, X, bound)
+            if one.kind == "cycle" and one.amplitude < 1e-7 * self.scale():
+                one = attractor.Attractor("unknown", why="a swing of the size of roundings")
+            self.found[key] = one
         return self.found[key]
 
     def attractors(self, sizes):

@@ -1,0 +1,46 @@
+"""Reproducers: tests/reproducers/*.toml against what is known to be true of each (reproducers.json).
+
+`cycles` are [period, amplitude or null, stable]; `some`: at least one start comes to one of these; `never`: none does.
+"""
+
+import json
+import pathlib
+
+FOLDER = pathlib.Path("tests/reproducers")
+TRUTHS = pathlib.Path(__file__).with_suffix(".json")
+
+
+def faults(document, truth):
+    """What a document says that is not true, and what it does not say."""
+    tolerance = truth.get("tolerance", 1e-3)
+    found = []
+    for period, amplitude, stable in truth.get("cycles", []):
+        if not any(_is(cycle, period, amplitude, stable, tolerance) for cycle in document["cycles"]):
+            found.append(f"no {'stable' if stable else 'unstable'} cycle of {period:g} s")
+    outcomes = [outcome["outcome"] for outcome in document["outcomes"]]
+    if "some" in truth and not set(truth["some"]) & set(outcomes):
+        found.append(f"no start comes to {' or '.join(truth['some'])}")
+    found += [f"a start comes to {kind}" for kind in truth.get("never", []) if kind in outcomes]
+    return found
+
+
+def _is(cycle, period, amplitude, stable, tolerance):
+    close = abs(cycle["period"] / period - 1.0) < tolerance
+    return close and cycle["stable"] == stable and (not amplitude or abs(cycle["amplitude"] / amplitude - 1.0) < 5 * tolerance)
+
+
+def run(program):
+    """All reproducers; prints what is off and returns (passed, failed)."""
+    truths = json.loads(TRUTHS.read_text())
+    passed = failed = 0
+    for path in sorted(FOLDER.glob("*.toml")):
+        truth = truths.get(path.stem)
+        if truth is None:
+            found = ["its truth is not in reproducers.json"]
+        else:
+            answer = program.predict(path)
+            found = faults(answer.document, truth) if answer.document else [answer.message]
+        passed, failed = passed + (not found), failed + bool(found)
+        if found:
+            print(f"reproducer: {path}", *found, sep="\n    ", flush=True)
+    return passed, failed

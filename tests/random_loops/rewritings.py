@@ -1,0 +1,192 @@
+"""The same loop written otherwise: what must not change an answer.
+
+Each rewriting takes a case and dice and returns a Rewriting, or None where it does not apply.
+"""
+
+import copy
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import linear, units
+
+
+@dataclass
+class Rewriting:
+    """A case, the factors of length and time between it and the first one, and how close both have to be."""
+
+    case: dict
+    length: float = 1.0
+    time: float = 1.0
+    shift: float = 0.0  # of offsets, after the factor of length
+    tolerance: float = 1e-5
+    same_starts: bool = True  # outcomes are comparable one by one
+    backwards: bool = False  # sections and keys in reverse
+
+
+def other_units(case, dice):
+    """Random factors of length, force and time."""
+    length, force, time = dice.log(1e-3, 1e3), dice.log(1e-3, 1e3), dice.log(1e-2, 1e2)
+    return Rewriting(units.scaled(case, length, force, time), length, time)
+
+
+def mirror(case, dice):
+    """Reference, load and the velocity of a belt with the other sign."""
+    turned = copy.deepcopy(case)
+    for key in ("reference", "load"):
+        if key in turned["loop"]:
+            turned["loop"][key] = -turned["loop"][key]
+    plant = turned["loop"]["plant"]
+    if "speed" in plant:
+        plant["speed"] = -plant["speed"]
+    return Rewriting(turned, -1.0, same_starts=False) if turned != case else None
+
+
+def reordered(case, dice):
+    """Sections and keys from last to first."""
+    return Rewriting(copy.deepcopy(case), backwards=True)
+
+
+def transfer_function(case, dice):
+    """A plant by zeros and poles as a quotient of polynomials."""
+    plant = case["loop"]["plant"]
+    if plant["kind"] != "zpk":
+        return None
+    other = copy.deepcopy(case)
+    top = plant["gain"] * np.atleast_1d(np.real(np.poly(linear.roots(plant["zeros"]))))
+    below = np.real(np.poly(linear.roots(plant["poles"])))
+    keys = {"kind": "transfer-function", "numerator": top.tolist(), "denominator": below.tolist()}
+    other["loop"]["plant"] = keys | {"delay": plant["delay"]} if "delay" in plant else keys
+    return Rewriting(other, tolerance=1e-4)
+
+
+def _matrices(plant):
+    """A linear.Plant of everything that a state space can say, or None."""
+    if plant.get("delay", 0.0) or plant["kind"] == "belt":
+        return None
+    return linear.plant(plant)
+
+
+def _state_space(case, transform, extra=0):
+    """The plant as a state space, after x -> transform x, with decoupled states already in the matrices."""
+    plant = _matrices(case["loop"]["plant"])
+    if plant is None:
+        return None
+    n = len(plant.A)
+    wide = np.zeros((n + extra, n + extra))
+    wide[:n, :n] = plant.A
+    for i in range(extra):
+        wide[n + i, n + i] = -(i + 1.0) * np.abs(plant.A).max()
+    T = transform(n + extra)
+    back = np.linalg.inv(T)
+
+    def column(values):
+        return (T @ np.append(values, np.zeros(extra)))[:, None].tolist()
+
+    def row(values):
+        return (np.append(values, np.zeros(extra)) @ back)[None, :].tolist()
+
+    other = copy.deepcopy(case)
+    keys = {"kind": "state-space", "A": (T @ wide @ back).tolist(), "B": column(plant.B), "C": row(plant.C)}
+    if "friction" in case["loop"]:
+        keys |= {"B_friction": column(plant.B_friction), "C_velocity": row(plant.velocity)}
+    other["loop"]["plant"] = keys
+    return other
+
+
+def similar(case, dice):
+    """The plant as a state space after a random, well-conditioned change of coordinates."""
+
+    def transform(n):
+        first = np.linalg.qr(dice.random.normal(size=(n, n)))[0]
+        second = np.linalg.qr(dice.random.normal(size=(n, n)))[0]
+        return first @ np.diag([dice.log(0.3, 3.0) for _ in range(n)]) @ second
+
+    other = _state_space(case, transform)
+    return Rewriting(other, tolerance=1e-4, same_starts=False) if other else None
+
+
+def decoupled(case, dice):
+    """A stable state that nothing reaches and nobody sees."""
+    other = _state_space(case, np.eye, extra=1)
+    return Rewriting(other, tolerance=1e-4, same_starts=False) if other else None
+
+
+def moved(case, dice):
+    """Another set-point under integral action: nothing but the place changes."""
+    loop = case["loop"]
+    if loop["plant"]["kind"] not in ("mass", "two-mass") or loop["plant"].get("stiffness", 0.0) and loop["plant"]["kind"] == "mass":
+        return None
+    other = copy.deepcopy(case)
+    scale = loop["friction"]["Fc"] / loop["controller"]["kp"]
+    shift = dice.between(-3.0, 3.0) * scale
+    other["loop"]["reference"] = loop.get("reference", 0.0) + shift
+    return Rewriting(other, shift=shift, tolerance=1e-4, same_starts=False)
+
+
+def fast_pole(case, dice):
+    """A pole 1e5 times faster than all others."""
+    plant = case["loop"]["plant"]
+    if plant["kind"] != "zpk" or not any(np.abs(linear.roots(plant["poles"]))):
+        return None
+    other = copy.deepcopy(case)
+    fast = 1e5 * float(max(np.abs(linear.roots(plant["poles"]))))
+    other["loop"]["plant"]["poles"] = plant["poles"] + [-fast]
+    other["loop"]["plant"]["gain"] = plant["gain"] * fast
+    return Rewriting(other, tolerance=5e-3, same_starts=False)
+
+
+def stiff_shaft(case, dice):
+    """One mass as two with a shaft 300 times faster than the loop."""
+    loop = case["loop"]
+    plant, controller = loop["plant"], loop.get("controller", {})
+    if plant["kind"] != "mass" or "damping" in plant or "stiffness" in plant or loop["friction"]["kind"] != "coulomb":
+        return None
+    other = copy.deepcopy(case)
+    m = plant["mass"]
+    shaft = 300.0 * max(np.sqrt(abs(controller["kp"]) / m), abs(controller.get("kd", 0.0)) / m)
+    keys = {"kind": "two-mass", "motor_mass": 0.5 * m, "load_mass": 0.5 * m, "stiffness": 0.25 * m * shaft**2}
+    keys |= {"damping": 0.25 * m * shaft, "friction_on": "motor", "measured": "motor"}
+    other["loop"]["plant"] = keys
+    return Rewriting(other, tolerance=3e-2, same_starts=False)
+
+
+REWRITINGS = {
+    "units": other_units, "mirror": mirror, "reordered": reordered, "transfer-function": transfer_function,
+    "similar": similar, "decoupled": decoupled, "moved": moved, "fast-pole": fast_pole, "stiff-shaft": stiff_shaft,
+}  # fmt: skip
+
+
+def changes(first, other, rewriting):
+    """What differs between two documents of predict: (kind, sentences), kind: same, undecided or changed."""
+    undecided = [any(o["outcome"] == "undecided" for o in d["outcomes"]) for d in (first, other)]
+    differs = _cycles(first, other, rewriting) + _outcomes(first, other, rewriting)
+    if not differs:
+        return "same", []
+    return ("undecided" if any(undecided) else "changed"), differs
+
+
+def _cycles(first, other, rewriting):
+    """Stable cycles of one that are not in the other."""
+    length, tolerance = abs(rewriting.length), rewriting.tolerance
+
+    def alike(a, b):
+        return (
+            abs(b["period"] / (a["period"] * rewriting.time) - 1.0) < tolerance
+            and abs(b["amplitude"] / (a["amplitude"] * length) - 1.0) < 3.0 * tolerance
+            and abs(b["offset"] - (a["offset"] * rewriting.length + rewriting.shift)) < 30.0 * tolerance * b["amplitude"]
+        )
+
+    stable = [[c for c in d["cycles"] if c["stable"]] for d in (first, other)]
+    lost = [a for a in stable[0] if not any(alike(a, b) for b in stable[1])]
+    new = [b for b in stable[1] if not any(alike(a, b) for a in stable[0])]
+    sentences = [f"lost: T = {a['period'] * rewriting.time:.8g}, A = {a['amplitude'] * length:.6g}" for a in lost]
+    return sentences + [f"new: T = {b['period']:.8g}, A = {b['amplitude']:.6g}" for b in new]
+
+
+def _outcomes(first, other, rewriting):
+    """Outcomes that differ, start by start where the starts are the same, else the set of those decided."""
+    a, b = ([o["outcome"] for o in d["outcomes"]] for d in (first, other))
+    if not rewriting.same_starts:
+        a, b = (sorted({o for o in some if o != "undecided"}) for some in (a, b))
+    return [] if a == b else [f"outcomes: {', '.join(a)} became {', '.join(b)}"]
