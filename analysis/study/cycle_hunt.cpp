@@ -27,6 +27,9 @@ const OutcomeOfStart& CycleHunt::settle_from(const LoopState& start, std::string
   OutcomeOfStart outcome{std::move(name),          settled.outcome, std::move(settled.why), {},
                          std::move(settled.trace), settled.time,    settled.steps};
   outcome.cycle = settled.known;
+  outcome.by = std::move(settled.by);
+  outcome.half_range = settled.half_range;
+  outcome.mean_period = settled.mean_period;
   if (settled.shot) {
     maps_ += settled.shot->maps;
     outcome.cycle = merge(cycles_, settled.shot->cycle);
