@@ -42,6 +42,10 @@ std::string phrase(Outcome outcome) {
       return "reaches a limit cycle";
     case Outcome::divergence:
       return "diverges";
+    case Outcome::family:
+      return "oscillates with an amplitude that depends on the start";
+    case Outcome::irregular:
+      return "moves irregularly for ever";
     case Outcome::undecided:
       return "is undecided";
   }
@@ -52,8 +56,8 @@ std::string phrase(Outcome outcome) {
 std::string fates(const PredictReport& report) {
   const std::size_t n = report.outcomes.size();
   std::string out;
-  for (const Outcome outcome :
-       {Outcome::cycle, Outcome::rest, Outcome::sliding, Outcome::divergence, Outcome::undecided}) {
+  for (const Outcome outcome : {Outcome::cycle, Outcome::family, Outcome::irregular, Outcome::rest, Outcome::sliding,
+                                Outcome::divergence, Outcome::undecided}) {
     const std::size_t k = count(report, outcome);
     if (k == 0) continue;
     if (k == n)
@@ -64,10 +68,21 @@ std::string fates(const PredictReport& report) {
   return out;
 }
 
-std::string without_cycle(const PredictReport& report) {
+/// "between -0.88 m and 0.88 m" of the largest irregular motion.
+std::string irregular_size(const PredictReport& report, const Units& units) {
+  const auto largest = std::ranges::max_element(report.outcomes, {}, &OutcomeOfStart::half_range);
+  return fmt::format(
+      " It moves irregularly and never comes to rest, with a half-range of {} and a mean period of {} s.",
+      Units::attach(with_digits(largest->half_range, 3), units.y), with_digits(largest->mean_period, 3));
+}
+
+std::string without_cycle(const PredictReport& report, const Units& units) {
   if (report.outcomes.empty()) return "What this loop does was not checked in the time domain.";
   if (count(report, Outcome::undecided) > 0)
     return "Whether this loop has a limit cycle was not decided: " + fates(report) + ".";
+  if (count(report, Outcome::irregular) > 0)
+    return "This loop moves for ever without a period: " + fates(report) + "." + irregular_size(report, units);
+  if (count(report, Outcome::family) > 0) return "This loop oscillates without a limit cycle: " + fates(report) + ".";
   if (count(report, Outcome::divergence) > 0)
     return "This loop has no limit cycle that was found: " + fates(report) + ".";
   return "This loop does not hunt: " + fates(report) + ".";
@@ -181,7 +196,7 @@ std::string method_in_words(const std::string& method) {
 
 CycleAnswer answer(const PredictReport& report, const Units& units) {
   CycleAnswer out;
-  out.what_happens = report.cycles.empty() ? without_cycle(report) : with_cycles(report, units);
+  out.what_happens = report.cycles.empty() ? without_cycle(report, units) : with_cycles(report, units);
   if (report.status == Status::interrupted) out.what_happens = "Interrupted; as far as it went: " + out.what_happens;
   std::vector<std::string> methods;
   const auto add = [&](const std::string& method) {

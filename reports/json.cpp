@@ -160,6 +160,19 @@ void append_point(std::string& out, const DfPoint& point, const DescribingFuncti
   out.append(R"(","status":")").append(to_string(result.status)).append(R"("})");
 }
 
+Json outcome_json(const OutcomeOfStart& outcome) {
+  Json out = {{"start", outcome.start},
+              {"outcome", to_string(outcome.outcome)},
+              {"cycle", or_null(outcome.cycle)},
+              {"why", outcome.why}};
+  if (!outcome.by.empty()) out["by"] = outcome.by;
+  if (outcome.outcome == Outcome::irregular) {
+    out["half_range"] = number(outcome.half_range);
+    out["mean_period"] = number(outcome.mean_period);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string df_json(const Provenance& provenance, const std::vector<DfPoint>& points,
@@ -185,11 +198,7 @@ std::string predict_json(const Provenance& provenance, const PredictReport& repo
   for (const auto& prediction : report.predictions) top["predictions"].push_back(prediction_json(prediction));
   for (const auto& missed : report.missed)
     top["missed"].push_back({{"method", missed.method}, {"cycle", missed.cycle}});
-  for (const auto& outcome : report.outcomes)
-    top["outcomes"].push_back({{"start", outcome.start},
-                               {"outcome", to_string(outcome.outcome)},
-                               {"cycle", or_null(outcome.cycle)},
-                               {"why", outcome.why}});
+  for (const auto& outcome : report.outcomes) top["outcomes"].push_back(outcome_json(outcome));
   top["search"] = {
       {"amplitude", Json::array({number(report.search.amplitude_min), number(report.search.amplitude_max)})},
       {"frequency", Json::array({number(report.search.frequency_min), number(report.search.frequency_max)})}};
@@ -212,8 +221,9 @@ std::string simulate_json(const Provenance& provenance, const Simulation& run, c
   top["events"] = Json::array();
   for (const auto& event : run.events) top["events"].push_back({{"t", number(event.t)}, {"what", event.what}});
   top["outcome"] = to_string(run.outcome);
-  top["period"] = run.outcome == Outcome::cycle ? number(run.period) : Json(nullptr);
-  top["amplitude"] = run.outcome == Outcome::cycle ? number(run.amplitude) : Json(nullptr);
+  const bool periodic = run.outcome == Outcome::cycle || run.outcome == Outcome::family;
+  top["period"] = periodic ? number(run.period) : Json(nullptr);
+  top["amplitude"] = periodic ? number(run.amplitude) : Json(nullptr);
   top["agreement"] = second ? agreement_json(*second) : Json(nullptr);
   top["energy"] = energy ? energy_json(*energy) : Json(nullptr);
   top["stepper"] = run.stepper;

@@ -35,6 +35,10 @@ std::string colour_of_what(const MapPoint& point) {
       return "#6ea3d8";
     case 'x':
       return "#3b2f45";
+    case '~':
+      return "#8a5a2b";
+    case 'o':
+      return "#d9a7c7";
     case '/':
       return "#ffffff";
     default:

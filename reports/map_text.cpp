@@ -58,6 +58,8 @@ char map_letter(const std::optional<MapPoint>& point) {
   const bool rest = point->has(Outcome::rest), hunts = point->has(Outcome::cycle);
   if (point->has(Outcome::divergence)) return 'x';
   if (hunts) return rest ? '+' : point->has(Outcome::sliding) ? '*' : 'H';
+  if (point->has(Outcome::irregular)) return '~';
+  if (point->has(Outcome::family)) return 'o';
   if (rest) return '.';
   return point->has(Outcome::sliding) ? 's' : '?';
 }

@@ -45,6 +45,11 @@ std::string outcome_in_words(const Simulation& run, const Units& units) {
     return fmt::format("It settles on a cycle of period {} s and amplitude {}.", with_error(run.period, cycle_accuracy),
                        Units::attach(with_error(run.amplitude, cycle_accuracy), units.y));
   if (run.outcome == Outcome::undecided) return {};
+  if (run.outcome == Outcome::family)
+    return fmt::format("It is periodic, one of a family of periodic motions: period {} s, amplitude {}.",
+                       with_error(run.period, cycle_accuracy),
+                       Units::attach(with_error(run.amplitude, cycle_accuracy), units.y));
+  if (run.outcome == Outcome::irregular) return "It moves irregularly.";
   return fmt::format("It comes to {}.", to_string(run.outcome));
 }
 

@@ -17,6 +17,17 @@ std::size_t guards_of(const Element<double>& element, Mode mode) {
       element);
 }
 
+/// Is the guard of element i, when it slides, the velocity that its own force changes?
+bool slides_through_zero(const Loop& loop, std::size_t i) {
+  const bool holds_rate = std::visit(
+      []<class E>(const E&) {
+        if constexpr (CanHold<E>) return E::holds == Held::rate;
+        return false;
+      },
+      loop.elements[i]);
+  return holds_rate && (loop.ports[i].C_v * loop.B.col(static_cast<Index>(i))).value() != 0.0;
+}
+
 }  // namespace
 
 std::size_t LoopField::guard_count() const {
@@ -83,6 +94,7 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
     evaluate(x, t);
     find_inputs(x);
   }
+  const Mode before = modes_[i];
   std::visit(
       [&]<class E>(const E& e) {
         if constexpr (HasModes<E, double>) {
@@ -91,8 +103,9 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
         }
       },
       loop_->elements[i]);
-  // The located v is zero to the accuracy of the location: take what is left out.
-  if (held(i) == Held::rate) arrest(x, i);
+  // The located v is zero to the accuracy of the location: take what is left out. A body that comes to v = 0 and goes
+  // on as before would else be behind its guard already, and switch for ever.
+  if (held(i) == Held::rate || (before == modes_[i] && slides_through_zero(*loop_, i))) arrest(x, i);
 }
 
 bool LoopField::fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation) {

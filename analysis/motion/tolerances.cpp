@@ -13,6 +13,21 @@ namespace {
 
 using Eigen::Index;
 
+/// Factor on the velocity scale of a set-valued law whose curve begins with infinite slope, g = Fs - (...)|v/vs|^delta
+/// with delta < 1: the force is right to rtol only where v is right to vs rtol^(1/delta), and implicit stages must not
+/// cross the steep part unseen.
+double steepness(const Element<double>& element, double rtol) {
+  return std::visit(
+      [&]<class E>(const E& e) {
+        if constexpr (CanHold<E> && requires { e.curve.index, e.delta, e.vs; }) {
+          constexpr std::size_t tustin = 1;  // which is delta = 1, whatever delta is
+          if (e.curve.index != tustin && e.delta < 1.0) return 1e-3 * std::pow(rtol, 1.0 / e.delta - 1.0);
+        }
+        return 1.0;
+      },
+      element);
+}
+
 }  // namespace
 
 std::vector<double> pole_moduli(const Loop& loop) {
@@ -71,7 +86,12 @@ ErrorWeights loop_weights(const Loop& loop, double rtol, State typical) {
     };
     if (!loop.ports[k].rubs) continue;
     limit(loop.ports[k].C, scales.displacement);
-    limit(loop.ports[k].C_v, scales.velocity);
+    limit(loop.ports[k].C_v, scales.velocity * steepness(loop.elements[k], rtol));
+    // The rubbing velocity of a belt is a difference from its speed: no tolerance may ask for less than its rounding.
+    const double speed = std::abs(loop.ports[k].c_v.dot(loop.external));
+    for (std::size_t i = 0; i < n; ++i)
+      if (const double part = std::abs(loop.ports[k].C_v(static_cast<Index>(i))); part > 0.0)
+        weights.atol[i] = std::max(weights.atol[i], 1e-6 * speed / part);
   }
   for (auto& value : weights.atol) value *= rtol;
   return weights;

@@ -124,10 +124,7 @@ class LaneRun {
   void look(int lane) {
     read_lane(loop(lane), rows_.get() + lane, lanes_, at_.rate(), rates_);
     read_lane(loop(lane), rows_.get() + lane, lanes_, at_.state(), state_);
-    const LaneRows at = at_;
-    double speed = number(lane, LaneRows::speed_outside);
-    for (int i = 0; i < at.n; ++i) speed += number(lane, at.C_v() + i) * number(lane, at.state() + i);
-    seat(lane).watch->look(number(lane, LaneRows::time), state_, rates_, speed * lane_unit(loop(lane)));
+    seat(lane).watch->look(number(lane, LaneRows::time), state_, rates_, work_.member(seat(lane).member).start.modes);
   }
 
   /// How the member ends, if it does.
@@ -151,6 +148,9 @@ class LaneRun {
     result.steps = static_cast<long>(number(lane, LaneRows::accepted));
     result.refused = static_cast<long>(number(lane, LaneRows::refused));
     result.in_lanes = true;
+    // Friction alone leaves no family of periodic motions: only a motion that never repeats is asked about.
+    if (!here.watch->decided() && leaves_open(result, *here.watch, options_))
+      ask_settle(result, work_.member(here.member), options_, [this] { return work_.stopped(); });
     useful_ += result.steps + result.refused;
     --seated_;
     refill(lane);
@@ -175,6 +175,7 @@ class SingleRun {
  public:
   SingleRun(EnsembleWork& work, std::size_t index)
       : work_(work),
+        index_(index),
         options_(work.options()),
         loop_(*work.member(index).loop),
         result_(work.results()[index]),
@@ -194,6 +195,8 @@ class SingleRun {
     result_.state = {march_.x(), field_.modes()};
     result_.time = march_.t();
     result_.steps = march_.steps();
+    if (leaves_open(result_, watch_, options_))
+      ask_settle(result_, work_.member(index_), options_, [this] { return work_.stopped(); });
   }
 
  private:
@@ -219,12 +222,14 @@ class SingleRun {
     const double level = watch_.level();
     if (step.y0 < level && step.y1 >= level) watch_.crossed(step);
     if ((field_.y_rate(last.dx0) < 0.0) != (field_.y_rate(last.dx1) < 0.0)) watch_.turned(step);
+    if (last.switched) watch_.switched(field_, march_.x(), march_.t(), *last.switched);
     if (march_.t() < watch_.next_look()) return;
     field_.rate(march_.x(), rates_, march_.t());
-    watch_.look(march_.t(), march_.x(), rates_, field_.input(loop_.elements.size() - 1).v);
+    watch_.look(march_.t(), march_.x(), rates_, field_.modes());
   }
 
   EnsembleWork& work_;
+  std::size_t index_;
   const EnsembleOptions& options_;
   const Loop& loop_;
   EnsembleResult& result_;

@@ -84,6 +84,36 @@ inline void conclude(EnsembleResult& result, const OutcomeWatch& watch, Status s
   result.amplitude = watch.amplitude();
 }
 
+/// What the watch leaves open is asked of settle(), which shoots: whether a motion that repeated itself from the first
+/// is a cycle or one of a family, and what goes on for ever without a period. For runs without an end only.
+inline void ask_settle(EnsembleResult& result, const EnsembleMember& member, const EnsembleOptions& options,
+                       const std::function<bool()>& stop) {
+  SettleOptions settling;
+  settling.rtol = options.rtol;
+  settling.amplitude_floor = options.amplitude_floor;
+  settling.amplitude_ceiling = options.amplitude_ceiling;
+  settling.max_steps = options.max_steps;
+  settling.shooting.rtol = 0.1 * options.rtol;
+  settling.shooting.tolerance = 0.1 * options.rtol;
+  settling.shooting.derivative_rtol = options.rtol;
+  settling.stop = settling.shooting.stop = stop;
+  const Settled settled = settle(*member.loop, member.start, settling);
+  if (settled.outcome == Outcome::undecided) return;
+  result.outcome = settled.outcome;
+  result.status = Status::converged;
+  result.period = result.amplitude = 0.0;
+  if (!settled.shot) return;
+  result.period = settled.shot->cycle.period;
+  result.amplitude = settled.shot->cycle.amplitude;
+}
+
+/// Whether that is to be done.
+inline bool leaves_open(const EnsembleResult& result, const OutcomeWatch& watch, const EnsembleOptions& options) {
+  if (!options.until_decided || options.duration < infinite) return false;
+  const bool budget = result.status == Status::max_iterations && result.outcome == Outcome::undecided;
+  return budget || (result.status == Status::converged && watch.doubtful());
+}
+
 /// Status of a member that reached the end of the duration.
 inline Status at_end(const OutcomeWatch& watch, const EnsembleOptions& options) {
   return watch.decided() || !options.until_decided ? Status::converged : Status::incomplete;

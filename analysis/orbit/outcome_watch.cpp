@@ -64,12 +64,18 @@ double OutputStep::crossing(double level) const {
 }
 
 OutcomeWatch::OutcomeWatch(const Loop& loop, const OutcomeOptions& options, State sizes, double slow)
-    : loop_(loop), options_(options), rest_(std::move(sizes), slow, options.rtol) {}
+    : loop_(loop), options_(options), stillness_(loop, sizes, slow, options.rtol), switching_(loop, {sizes, slow}) {}
 
-void OutcomeWatch::look(double t, const State& x, const State& dx, double speed) {
-  const auto verdict = rest_.look(t, x, dx);
-  if (verdict == RestWatch::Verdict::at_rest) return decide(stillness());
-  if (verdict == RestWatch::Verdict::steady && std::abs(speed) > rubbing_speed(loop_)) decide(Outcome::sliding);
+void OutcomeWatch::look(double t, const State& x, const State& dx, const std::vector<Mode>& modes) {
+  if (const auto still = stillness_.look(t, x, dx, modes)) decide(still->outcome);
+}
+
+void OutcomeWatch::switched(const LoopField& field, const State& x, double t, std::size_t i) {
+  if (decided()) return;
+  const auto still = switching_.switched(field, x, t, i);
+  if (!still) return;
+  by_ = still->by;
+  decide(still->outcome);
 }
 
 void OutcomeWatch::turned(const OutputStep& step) {
@@ -142,6 +148,7 @@ void OutcomeWatch::judge() {
   if (!periods) return;
   const double now = std::max(difference(0), std::abs(periods->first / periods->second - 1.0));
   const double before = difference(1), noise = 10.0 * options_.rtol;
+  approached_ = approached_ || (std::max(before, difference(2)) > 10.0 * noise && now < 0.9 * before);
   // A geometric approach: what is left is the sum of all differences to come. The slower of two paces counts, as a fast
   // part of the motion may hide a slow one for a while.
   const double pace = std::max(now / before, before / difference(2));

@@ -3,8 +3,7 @@
 #include <vector>
 
 #include "limcycle/analysis/motion/march.hpp"
-#include "limcycle/analysis/orbit/rest_watch.hpp"
-#include "limcycle/analysis/orbit/settle.hpp"
+#include "limcycle/analysis/orbit/switching_watch.hpp"
 
 namespace limcycle {
 
@@ -50,16 +49,22 @@ class OutcomeWatch {
   void turned(const OutputStep& step);
   /// A step within which y goes up through level().
   void crossed(const OutputStep& step);
-  /// The state, its rates and that of the rubbing displacement at a time not before next_look().
-  void look(double t, const State& x, const State& dx, double speed);
+  /// The state, its rates and the modes of the elements at a time not before next_look().
+  void look(double t, const State& x, const State& dx, const std::vector<Mode>& modes);
+  /// A step that ended with a switch of element i; the field is in the modes after it.
+  void switched(const LoopField& field, const State& x, double t, std::size_t i);
   /// The motion has left all bounds.
   void diverged() { decide(Outcome::divergence); }
 
-  double next_look() const { return rest_.next(); }
+  double next_look() const { return stillness_.next(); }
   double level() const { return level_; }  ///< infinite: none is wanted
 
   Outcome outcome() const { return outcome_; }
   bool decided() const { return outcome_ != Outcome::undecided; }
+  const std::string& by() const { return by_; }  ///< as in Settled
+  /// A cycle whose swings repeated themselves from the first: no approach to it was seen, so that it may be one of a
+  /// family.
+  bool doubtful() const { return outcome_ == Outcome::cycle && !approached_; }
   double period() const { return period_; }        ///< s; 0 without a cycle
   double amplitude() const { return amplitude_; }  ///< half the swing of y over one period of the cycle; 0 without
   const TurningPoints& turning() const { return turning_; }
@@ -76,7 +81,10 @@ class OutcomeWatch {
 
   const Loop& loop_;
   OutcomeOptions options_;
-  RestWatch rest_;
+  StillnessWatch stillness_;
+  SwitchingWatch switching_;
+  std::string by_;
+  bool approached_ = false;  ///< swings were seen to come nearer to what they become
   TurningPoints turning_;
   std::optional<double> rest_y_;  ///< y of the point of rest, once asked for; NaN: none
   std::size_t order_ = 0;         ///< turning points per period; 0: the swings do not repeat themselves

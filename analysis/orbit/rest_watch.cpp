@@ -51,7 +51,12 @@ double slow_time(const Loop& loop) {
 double rubbing_speed(const Loop& loop) {
   if (!loop.ports.back().rubs) return infinite;
   const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
-  return std::isfinite(scales.velocity) ? scales.velocity / 100.0 : 1e-12;
+  if (std::isfinite(scales.velocity)) return scales.velocity / 100.0;
+  // Rounding is of the size of the velocities that the loop has, whatever its units.
+  const State sizes = typical_sizes(loop);
+  const Port& port = loop.ports.back();
+  const Eigen::Map<const Eigen::VectorXd> X(sizes.data(), loop.states());
+  return 1e-8 * ((port.C_v.cwiseAbs() * X).value() + std::abs((port.c_v * loop.external).value()));
 }
 
 bool slides_at_rest(const Loop& loop) {

@@ -6,8 +6,9 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/irregular.hpp"
 #include "limcycle/analysis/orbit/measure.hpp"
-#include "limcycle/analysis/orbit/rest_watch.hpp"
+#include "limcycle/analysis/orbit/switching_watch.hpp"
 #include "limcycle/analysis/orbit/turning_points.hpp"
 
 namespace limcycle {
@@ -22,7 +23,8 @@ class Settling {
         start_(std::move(start)),
         field_(loop),
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
-        rest_(typical_sizes(loop), slow_time(loop), options.rtol) {}
+        stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol),
+        switching_(loop, loop_sizes(loop)) {}
 
   Settled run() {
     field_.modes() = start_.modes;
@@ -49,8 +51,7 @@ class Settling {
 
   void step() {
     if (options_.stop && options_.stop()) return decide(Outcome::undecided, "interrupted");
-    if (march_.steps() > options_.max_steps)
-      return decide(Outcome::undecided, "neither rest nor a cycle was recognised within the step budget");
+    if (march_.steps() > options_.max_steps) return look_for_irregular();
     const Status status = march_.step(1e15);
     if (status == Status::not_finite) return decide(Outcome::divergence, "the state left the range of numbers");
     if (status != Status::converged)
@@ -61,11 +62,45 @@ class Settling {
     if (march_.t() >= 1e15) return decide(Outcome::undecided, "nothing was decided within 1e15 s");
     if (turning_.feed(march_.t(), y)) look_at_swings();
     if (decided_) return;
-    const auto verdict = rest_.look(march_.t(), march_.x(), dx_);
-    if (verdict == RestWatch::Verdict::at_rest)
-      return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest, "all rates died out, but for noise");
-    if (verdict == RestWatch::Verdict::steady && std::abs(result_.trace.velocity.back()) > rubbing_speed(loop_))
-      decide(Outcome::sliding, "the body slides at constant speed");
+    if (auto still = stillness_.look(march_.t(), march_.x(), dx_, field_.modes())) come_to(*still);
+    if (!decided_ && march_.last().switched)
+      if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
+  }
+
+  /// Neither rest nor a cycle within the budget: permanent all the same, if two tolerances tell the same of it.
+  void look_for_irregular() {
+    const auto motion = permanent_motion(result_.trace);
+    const auto again = motion ? permanent_motion(repeated(march_.t())) : std::nullopt;
+    if (!motion || !again || !agree(*motion, *again))
+      return decide(Outcome::undecided, motion ? "the motion stays bounded, but two tolerances differ in its range"
+                                               : "neither rest nor a cycle was recognised within the step budget");
+    result_.half_range = again->half_range;
+    result_.mean_period = again->mean_period;
+    decide(Outcome::irregular, "the motion goes on without a period, and a second tolerance finds the same range");
+  }
+
+  /// The same run with a tolerance a hundred times as tight.
+  Trace repeated(double until) const {
+    constexpr double tighter = 0.01, tightest = 1e-12;
+    constexpr long longer = 10;  // steps, against those of the first run
+    LoopField field(loop_);
+    field.modes() = start_.modes;
+    March march(field, march_.kind(), loop_weights(loop_, std::max(tightest, tighter * options_.rtol)));
+    march.begin(start_.x, 0.0);
+    Trace trace;
+    while (march.t() < until && march.steps() < longer * options_.max_steps) {
+      if (options_.stop && options_.stop()) break;
+      if (march.step(until) != Status::converged) break;
+      trace.t.push_back(march.t());
+      trace.y.push_back(field.y(march.x()));
+      trace.rate.push_back(field.y_rate(march.last().dx1));
+    }
+    return trace;
+  }
+
+  void come_to(Stillness& still) {
+    result_.by = std::move(still.by);
+    decide(still.outcome, std::move(still.why));
   }
 
   void look_at_swings() {
@@ -146,6 +181,21 @@ class Settling {
     }
   }
 
+  /// Is there another periodic motion right beside this one? From 2 % farther out, shooting finds it there.
+  bool has_neighbour(const Cycle& cycle, const Section& section, bool half, const ShootingOptions& options) const {
+    constexpr double farther = 1.02, apart = 0.005;
+    bool exact = false;
+    const Eigen::VectorXd rest = loop_.rest_point(exact);
+    LoopState other = cycle.start;
+    Eigen::Map<Eigen::VectorXd> X(other.x.data(), rest.size());
+    X = rest + farther * (X - rest);
+    ShootingOptions there = options;
+    there.warm_maps = 0;
+    const auto found = shoot(loop_, other, section, half, there);
+    const double larger = found.cycle.amplitude / cycle.amplitude - 1.0;
+    return found.status == Status::converged && std::abs(larger) > apart && std::abs(larger) < 10.0 * (farther - 1.0);
+  }
+
   bool try_cycle(std::size_t order) {
     next_try_ = turning_.points().size() + turning_.points().size() / 2 + 1;
     const Trace period = recent(order);
@@ -172,7 +222,10 @@ class Settling {
     if (shot.status != Status::converged || shot.cycle.stable == false) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);
     if (!shot.cycle.stable && mismatch < 0.01) {
-      decide(Outcome::undecided, "periodic, but one of a family of periodic motions (multiplier 1): no limit cycle");
+      if (has_neighbour(shot.cycle, section, half, shooting))
+        decide(Outcome::family, "periodic, one of a family of periodic motions whose size depends on the start");
+      else
+        decide(Outcome::undecided, "periodic, but whether neighbours come back was not determined (multiplier 1)");
       return true;
     }
     // Far from the cycle yet, but nearer to it than at the last try: a slow approach.
@@ -194,7 +247,8 @@ class Settling {
   LoopState start_;
   LoopField field_;
   March march_;
-  RestWatch rest_;
+  StillnessWatch stillness_;
+  SwitchingWatch switching_;
   TurningPoints turning_;
   Settled result_;
   State dx_;
@@ -217,6 +271,10 @@ std::string_view to_string(Outcome outcome) {
       return "cycle";
     case Outcome::divergence:
       return "divergence";
+    case Outcome::family:
+      return "family";
+    case Outcome::irregular:
+      return "irregular";
     default:
       return "undecided";
   }

@@ -8,8 +8,9 @@
 
 namespace limcycle {
 
-/// What a motion comes to.
-enum class Outcome { rest, sliding, cycle, divergence, undecided };
+/// What a motion comes to. family: periodic, one of a continuum of periodic motions (a centre). irregular: bounded and
+/// permanent, but never periodic.
+enum class Outcome { rest, sliding, cycle, divergence, undecided, family, irregular };
 std::string_view to_string(Outcome outcome);
 
 /// How long and how accurately a motion is followed until it is clear what it comes to.
@@ -27,6 +28,9 @@ struct SettleOptions {
 struct Settled {
   Outcome outcome = Outcome::undecided;
   std::string why;                     ///< one sentence
+  std::string by;                      ///< "switching": rest reached through ever faster switching; else empty
+  double half_range = 0.0;             ///< of an irregular motion: half of largest less least y; else 0
+  double mean_period = 0.0;            ///< of an irregular motion: mean time between returns to its middle, s; else 0
   std::optional<ShootingResult> shot;  ///< for a new cycle
   std::optional<std::size_t> known;    ///< index of the known cycle that was reached
   Trace trace;

@@ -153,8 +153,8 @@ class Running {
     const double level = watch_->level();
     if (step.y0 < level && step.y1 >= level) watch_->crossed(step);
     if ((field_.y_rate(march.last().dx0) < 0.0) != (field_.y_rate(march.last().dx1) < 0.0)) watch_->turned(step);
-    if (march.t() >= watch_->next_look())
-      watch_->look(march.t(), march.x(), dx_, field_.input(loop_.elements.size() - 1).v);
+    if (march.last().switched) watch_->switched(field_, march.x(), march.t(), *march.last().switched);
+    if (march.t() >= watch_->next_look()) watch_->look(march.t(), march.x(), dx_, field_.modes());
   }
 
   void trace(const State& x, double t) {
@@ -189,6 +189,12 @@ class Running {
     if (run_.outcome != Outcome::cycle) return;
     run_.period = watch_->period();
     run_.amplitude = watch_->amplitude();
+    if (!watch_->doubtful()) return;
+    SettleOptions settling;
+    settling.stop = settling.shooting.stop = options_.stop;
+    settling.shooting.rtol = settling.shooting.derivative_rtol = 1e-9;
+    const Outcome outcome = settle(loop_, {march.x(), field_.modes()}, settling).outcome;
+    if (outcome == Outcome::family) run_.outcome = outcome;
   }
 
   const Loop& loop_;

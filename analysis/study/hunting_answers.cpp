@@ -25,7 +25,11 @@ HuntingAnswer from_starts(std::span<const EnsembleResult> starts) {
       answer.period = start.period;
     }
   }
-  const auto undecided = [](const EnsembleResult& start) { return start.outcome == Outcome::undecided; };
+  // A motion that goes on for ever in another way is no limit cycle, and no rest either.
+  const auto undecided = [](const EnsembleResult& start) {
+    return start.outcome == Outcome::undecided || start.outcome == Outcome::family ||
+           start.outcome == Outcome::irregular;
+  };
   if (answer.hunts == 0.0 && std::ranges::any_of(starts, undecided)) answer.hunts = no_answer;
   return answer;
 }

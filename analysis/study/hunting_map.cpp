@@ -12,8 +12,8 @@
 namespace limcycle {
 namespace {
 
-constexpr Outcome every_outcome[] = {Outcome::rest, Outcome::sliding, Outcome::cycle, Outcome::divergence,
-                                     Outcome::undecided};
+constexpr Outcome every_outcome[] = {Outcome::rest,      Outcome::sliding,    Outcome::cycle,    Outcome::family,
+                                     Outcome::irregular, Outcome::divergence, Outcome::undecided};
 constexpr std::size_t of_point = 5, of_method = 3;  // columns of a row
 
 bool applies(const std::string& method, const Loop& loop) {
@@ -153,7 +153,7 @@ MapPoint point_of_row(std::span<const double> row, std::size_t methods) {
     return static_cast<unsigned>(value);
   };
   MapPoint point;
-  const unsigned bits = whole(row[0], 31.0);
+  const unsigned bits = whole(row[0], 127.0);
   for (const Outcome outcome : every_outcome)
     if ((bits >> static_cast<unsigned>(outcome) & 1U) != 0) point.outcomes.push_back(outcome);
   point.cycles = static_cast<int>(whole(row[1], 1e6));

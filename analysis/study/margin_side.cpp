@@ -80,7 +80,9 @@ std::optional<Cycle> SideSearch::cycle_at(double p, const LoopState* from, Outco
       outcome = Outcome::cycle;
       return std::move(settled.shot->cycle);
     }
-    if (outcome == Outcome::undecided) outcome = settled.outcome;
+    // What goes on for ever in another way has not ended.
+    const bool persists = settled.outcome == Outcome::family || settled.outcome == Outcome::irregular;
+    if (outcome == Outcome::undecided && !persists) outcome = settled.outcome;
     if (settled.outcome == Outcome::divergence || stopped()) break;
   }
   return std::nullopt;

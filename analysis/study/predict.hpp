@@ -63,9 +63,11 @@ struct OutcomeOfStart {
   Outcome outcome = Outcome::undecided;
   std::string why;  ///< one sentence
   std::optional<std::size_t> cycle;
-  Trace trace;        ///< the run, for pictures
-  double time = 0.0;  ///< simulated, s
-  long steps = 0;     ///< of the integrator
+  Trace trace;                                 ///< the run, for pictures
+  double time = 0.0;                           ///< simulated, s
+  long steps = 0;                              ///< of the integrator
+  std::string by{};                            ///< as in Settled
+  double half_range = 0.0, mean_period = 0.0;  ///< of an irregular motion, as in Settled
 };
 
 /// What a method had to do, in the unit in which its work is counted. Times are not told here: results do not depend on

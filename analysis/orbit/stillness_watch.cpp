@@ -1,0 +1,49 @@
+#include "limcycle/analysis/orbit/stillness_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/short_number.hpp"
+
+namespace limcycle {
+namespace {
+
+/// Most motions at rest show it before; only then is the algebra of a slow decay worth its time.
+constexpr int patience = 12;
+
+}  // namespace
+
+StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, double rtol)
+    : loop_(loop), scale_{sizes, slow}, rest_(std::move(sizes), slow, rtol) {}
+
+std::optional<Stillness> StillnessWatch::look(double t, const State& x, const State& dx,
+                                              const std::vector<Mode>& modes) {
+  if (t < rest_.next()) return std::nullopt;
+  const auto verdict = rest_.look(t, x, dx);
+  ++looks_;
+  if (verdict == RestWatch::Verdict::moving && looks_ < patience) return std::nullopt;
+  LoopField field(loop_);
+  field.modes() = modes;
+  if (verdict == RestWatch::Verdict::at_rest) return at_rest(field, x, dx);
+  if (verdict == RestWatch::Verdict::steady && slides_steadily(field, x, dx, scale_))
+    return Stillness{Outcome::sliding, "the body slides at constant speed"};
+  if (looks_ < patience) return std::nullopt;
+  const auto approach = approach_from(field, x, scale_);
+  if (!approach) return std::nullopt;
+  return Stillness{approach->to.slides ? Outcome::sliding : Outcome::rest,
+                   "the motion decays linearly, at a rate of at least " + short_number(approach->decay, 3) + " 1/s"};
+}
+
+std::optional<Stillness> StillnessWatch::at_rest(LoopField& field, const State& x, const State& dx) const {
+  constexpr double near = 0.01, fades = 1e-6;
+  const char* const why = "all rates died out, but for noise";
+  const auto found = standstill_near(field, x, scale_);
+  if (found && found->moved <= near) return Stillness{found->slides ? Outcome::sliding : Outcome::rest, why};
+  // A law whose slope jumps where it rests defeats Newton's method: then the rates themselves must be nothing.
+  double rate = 0.0;
+  for (std::size_t i = 0; i < dx.size(); ++i) rate = std::max(rate, std::abs(dx[i]) * scale_.slow / scale_.sizes[i]);
+  if (!(rate <= fades)) return std::nullopt;
+  return Stillness{slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest, why};
+}
+
+}  // namespace limcycle

@@ -1,0 +1,41 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/orbit/rest_watch.hpp"
+#include "limcycle/analysis/orbit/settle.hpp"
+#include "limcycle/analysis/orbit/standstill.hpp"
+
+namespace limcycle {
+
+/// A motion that has come to rest or to steady sliding.
+struct Stillness {
+  Outcome outcome = Outcome::rest;
+  std::string why;   ///< one sentence
+  std::string by{};  ///< "switching": through ever faster switching; else empty
+};
+
+/// Watches whether a motion comes to rest or slides for ever, by looks at it as RestWatch takes them. What the rates
+/// suggest counts only once the equations of the loop hold: a state of rest near the motion solves dx/dt = 0 with every
+/// set-valued output within its interval, and a steady slide keeps its rates (J dx = 0). A decay too slow for its rates
+/// to die out is rest once the motion is where the linear decay cannot be left any more (see approach_from).
+class StillnessWatch {
+ public:
+  /// The loop must outlive the watch.
+  StillnessWatch(const Loop& loop, State sizes, double slow, double rtol);
+
+  double next() const { return rest_.next(); }
+  /// The state, its rates and the modes at a time not before next(), or after every step.
+  std::optional<Stillness> look(double t, const State& x, const State& dx, const std::vector<Mode>& modes);
+
+ private:
+  std::optional<Stillness> at_rest(LoopField& field, const State& x, const State& dx) const;
+
+  const Loop& loop_;
+  LoopSizes scale_;
+  RestWatch rest_;
+  int looks_ = 0;
+};
+
+}  // namespace limcycle

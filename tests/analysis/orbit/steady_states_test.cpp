@@ -1,0 +1,274 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/ensemble.hpp"
+#include "limcycle/analysis/orbit/irregular.hpp"
+#include "limcycle/analysis/orbit/settle.hpp"
+#include "limcycle/analysis/orbit/standstill.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using namespace limcycle::test;
+
+namespace {
+
+Settled settled(const Loop& loop, const LoopState& start, double floor = 1e-9) {
+  SettleOptions options;
+  options.amplitude_floor = floor;
+  options.shooting.rtol = options.shooting.derivative_rtol = 1e-9;
+  options.shooting.tolerance = 1e-9;
+  return settle(loop, start, options);
+}
+
+/// The outcome, which an ensemble must find too.
+Settled from(const Loop& loop, double displacement, double floor = 1e-9) {
+  const LoopState start = displaced(loop, displacement);
+  const Settled found = settled(loop, start, floor);
+  const EnsembleMember member{&loop, start};
+  EnsembleOptions options;
+  options.amplitude_floor = floor;
+  options.rtol = 1e-7;
+  const auto run = run_ensemble({&member, 1}, options);
+  CHECK(to_string(run.members.front().outcome) == to_string(found.outcome));
+  return found;
+}
+
+/// Residual of A X + B w + E ext at a state, outputs as the elements have them in its modes.
+double residual(const Loop& loop, const Standstill& at, const std::vector<Mode>& modes) {
+  LoopField field(loop);
+  field.modes() = modes;
+  State dx;
+  field.rate(at.x, dx, 0.0);
+  double most = 0.0;
+  for (const double rate : dx) most = std::max(most, std::abs(rate));
+  return most;
+}
+
+/// tests/reproducers/steady-sliding.toml.
+Loop fast_belt() {
+  auto law = with_levels<LuGre<double>>(2.23263, 0.929416);
+  law.vs = 0.214598;
+  law.sigma0 = 4369.04;
+  law.sigma2 = 0.292573;
+  LoopParts parts;
+  parts.plant = Belt{0.00304597, 11.3083, 0.0, 0.961147};
+  parts.friction = law;
+  return build_loop(parts);
+}
+
+/// tests/reproducers/persistent-motion.toml.
+Loop ringing_belt() {
+  auto law = with_levels<LuGre<double>>(0.947309, 0.829387);
+  law.vs = 0.726938;
+  law.sigma0 = 1.22012;
+  law.sigma1 = 0.0492811;
+  law.sigma2 = 0.000437707;
+  LoopParts parts;
+  parts.plant = Belt{0.00106628, 0.0288527, 7.93458e-05, 2.63828};
+  parts.friction = law;
+  return build_loop(parts);
+}
+
+/// tests/reproducers/ideal-relay-two-lags.toml.
+Loop two_lags(double reference) {
+  LoopParts parts;
+  const double a = 0.516256, b = 0.641899;
+  parts.plant = TransferFunction{{1.53267}, {1.0, a + b, a * b}, 0.0};
+  parts.element = relay(0.0568247);
+  parts.reference = reference;
+  return build_loop(parts);
+}
+
+/// tests/reproducers/gantry-stribeck.toml, with another exponent.
+Loop gantry(double delta) {
+  auto law = stribeck(42.0, 24.28, 0.001624);
+  law.delta = delta;
+  law.sigma2 = 123.2;
+  LoopParts parts;
+  parts.plant = Mass{31.74, 0.0, 0.0};
+  auto controller = pid(638000.0, 11.97e6, 7977.0);
+  controller.tf = 0.0005;
+  parts.controller = controller;
+  parts.friction = law;
+  return build_loop(parts);
+}
+
+}  // namespace
+
+TEST_CASE("a stuck body whose integrator winds up does not slide, whatever rounding moves it by") {
+  // tests/reproducers/sliding-while-stuck.toml
+  auto parts = servo_parts(coulomb(54.2729, 31.8252, 2.83006));
+  parts.plant = Mass{0.995585, 0.0, 0.0};
+  parts.controller = pid(3167.67, 124599.0, 124.463);
+  const Loop loop = build_loop(parts);
+  for (const double start : {0.05547, 5.547e-5, 5.547e-7}) {
+    const auto found = from(loop, start, 1e-8);
+    CHECK(found.outcome == Outcome::cycle);
+    REQUIRE(found.shot);
+    CHECK(found.shot->cycle.period == Approx(0.520293599).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("a constant reference moves the rest and makes nothing slide") {
+  // tests/reproducers/sliding-constant-reference.toml
+  auto parts = servo_parts(coulomb(0.950836, 0.950836));
+  parts.plant = Mass{0.00768172, 0.0, 0.0};
+  auto controller = pid(16.3538, 351.526, 0.912668);
+  controller.tf = 0.000304757;
+  parts.controller = controller;
+  for (const double reference : {0.0, 0.02151238978096834, -3.7, 1234.5}) {
+    parts.reference = reference;
+    const Loop loop = build_loop(parts);
+    for (const double start : {0.1676, 0.0001676}) {
+      CAPTURE(reference, start);
+      CHECK(from(loop, start, 1e-7).outcome == Outcome::rest);
+    }
+  }
+}
+
+TEST_CASE("a steady slide is found by substitution, and is where the motion ends") {
+  const Loop loop = fast_belt();
+  const auto found = from(loop, 0.3);
+  CHECK(found.outcome == Outcome::sliding);
+  CHECK(found.steps < 3000);
+  // k y = F(speed): one line of algebra.
+  LoopField field(loop);
+  const LoopState start = displaced(loop, 0.1);
+  field.modes() = start.modes;
+  State near = start.x;
+  near[0] = 0.1;
+  near[1] = 0.0;
+  near[2] = -0.0002;
+  const auto at = standstill_near(field, near, loop_sizes(loop));
+  REQUIRE(at);
+  CHECK(at->slides);
+  CHECK(residual(loop, *at, start.modes) < 1e-9);
+  const double g = 0.929416 + (2.23263 - 0.929416) * std::exp(-std::pow(0.961147 / 0.214598, 2));
+  CHECK(at->x[0] == Approx((g + 0.292573 * 0.961147) / 11.3083).epsilon(1e-9));
+}
+
+TEST_CASE("a body under a load with viscous friction only slides for ever") {
+  LoopParts parts;
+  parts.plant = Mass{1.0, 0.0, 0.0};
+  parts.controller = pid(0.0, 0.0, 2.0);
+  parts.friction = coulomb(1.0, 1.0);
+  parts.load = 3.0;  // v = (3 - 1)/2
+  CHECK(from(build_loop(parts), 0.1).outcome == Outcome::sliding);
+  parts.load = 0.9;
+  CHECK(from(build_loop(parts), 0.1).outcome == Outcome::rest);
+}
+
+TEST_CASE("an ideal relay behind two lags rests through ever faster switching") {
+  for (const double reference : {0.0, 0.0114723, -0.05}) {
+    CAPTURE(reference);
+    const Loop loop = two_lags(reference);
+    for (const double start : {0.7, 0.001}) {
+      const auto found = from(loop, start);
+      CHECK(found.outcome == Outcome::rest);
+      CHECK(found.by == "switching");
+      CHECK(found.why.find("0.386") != std::string::npos);  // (0.516 + 0.642)/3: q/3 of the transfer function
+    }
+  }
+  // Beyond what the relay can hold (level over gain at rest: 0.2628) it rests away from the surface.
+  const auto beyond = from(two_lags(0.3), 0.01);
+  CHECK(beyond.outcome == Outcome::rest);
+  CHECK(beyond.by.empty());
+}
+
+TEST_CASE("the swings before that rest decay as the algebra says") {
+  const Loop loop = two_lags(0.0114723);
+  const LoopState start = displaced(loop, 0.05);
+  LoopField field(loop);
+  field.modes() = start.modes;
+  March march(field, StepperKind::automatic, loop_weights(loop, 1e-7));
+  march.begin(start.x, 0.0);
+  std::vector<std::pair<double, double>> speeds;  // time and |dy/dt| at switches in one direction
+  while (speeds.size() < 700 && march.step(100.0) == Status::converged) {
+    if (!march.last().switched) continue;
+    if (const double v = field.y_rate(march.last().dx0); v > 0.0) speeds.emplace_back(march.t(), 0.0);
+    if (!speeds.empty() && speeds.back().second == 0.0) {
+      State dx;
+      field.rate(march.x(), dx, 0.0);
+      speeds.back().second = std::abs(field.y_rate(dx));
+    }
+  }
+  const auto [t0, v0] = speeds[speeds.size() / 2];
+  const auto [t1, v1] = speeds.back();
+  CHECK(std::log(v0 / v1) / (t1 - t0) == Approx((0.516256 + 0.641899) / 3.0).epsilon(0.02));
+}
+
+TEST_CASE("three states: the sliding mode of order two decides, and a relay that pulls the wrong way never rests") {
+  // Relative degree two with a zero at -2: rest; with q = C A^2 B/(C A B) = 4 - 1.5 > 0 (zero at -4, poles 1.5 in sum):
+  // no rest.
+  CHECK(from(forward(relay(1.0), {1.0, 2.0}, {1.0, 6.0, 11.0, 6.0}), 0.3).by == "switching");
+  CHECK(from(forward(relay(1.0), {1.0, 4.0}, {1.0, 1.5, 0.74, 0.12}), 0.3).outcome == Outcome::cycle);
+}
+
+TEST_CASE("a centre is a family of periodic motions") {
+  for (const double start : {1.0, 0.01}) {
+    CHECK(from(forward(relay(1.0), {1.0}, {1.0, 0.0, 0.0}), start).outcome == Outcome::family);
+    CHECK(from(forward(saturation(0.1), {1.0}, {1.0, 0.0, 1.0}), start).outcome == Outcome::family);
+  }
+}
+
+TEST_CASE("a slow decay is rest, with its rate") {
+  LoopParts parts;
+  parts.plant = TransferFunction{{1.0}, {1.0, 2e-5, 1.0}, 0.0};
+  parts.controller = pid(0.0, 0.0, 0.0);
+  parts.element = saturation(1.0);
+  const auto found = settled(build_loop(parts), displaced(build_loop(parts), 0.5), 1e-3);
+  CHECK(found.outcome == Outcome::rest);
+  CHECK(found.why.find("1e-05") != std::string::npos);
+}
+
+TEST_CASE("a motion that never repeats itself has a range and a mean period, not a cycle") {
+  const Loop loop = ringing_belt();
+  for (const double start : {46.0, 0.005}) {
+    const auto found = from(loop, start, 1e-4);
+    CHECK(found.outcome == Outcome::irregular);
+    CHECK(found.half_range == Approx(0.88514).epsilon(1e-3));
+    CHECK(found.mean_period == Approx(1.352).epsilon(0.01));
+  }
+}
+
+TEST_CASE("what decays, grows, or repeats itself after several swings is not irregular") {
+  const auto trace_of = [](auto y) {
+    Trace trace;
+    for (int i = 0; i < 60000; ++i) {
+      const double t = 0.02 * i, eps = 1e-5;
+      trace.t.push_back(t);
+      trace.y.push_back(y(t));
+      trace.rate.push_back((y(t + eps) - y(t - eps)) / (2.0 * eps));
+    }
+    return trace;
+  };
+  CHECK_FALSE(permanent_motion(trace_of([](double t) { return std::exp(-1e-4 * t) * std::sin(3.0 * t); })));
+  CHECK_FALSE(permanent_motion(trace_of([](double t) { return std::exp(1e-4 * t) * std::sin(3.0 * t); })));
+  CHECK_FALSE(permanent_motion(trace_of([](double t) { return std::sin(3.0 * t) + 0.4 * std::cos(0.6 * t); })));
+  const auto torus =
+      permanent_motion(trace_of([](double t) { return std::sin(3.0 * t) + 0.4 * std::cos(M_SQRT2 * t); }));
+  REQUIRE(torus);
+  CHECK(torus->half_range == Approx(1.4).epsilon(1e-3));
+}
+
+TEST_CASE("Stribeck curves with infinite slope at rest are marched, and tend to those of slope 0") {
+  // delta = 0.70: 3.33533 s and 4.0158 um, by an explicit integration in another language that begins each slide at
+  // v = 1e-22 m/s, too.
+  const auto sharp = from(gantry(0.7), 1.9e-5, 1e-10);
+  REQUIRE(sharp.shot);
+  CHECK(sharp.shot->cycle.period == Approx(3.33533).epsilon(3e-5));
+  CHECK(sharp.shot->cycle.amplitude == Approx(4.0158e-6).epsilon(3e-4));
+  double last = 0.0;
+  for (const double delta : {0.5, 0.6, 0.8, 0.9, 0.999, 1.001, 1.2, 2.0}) {
+    CAPTURE(delta);
+    const auto found = from(gantry(delta), 1.9e-5, 1e-10);
+    REQUIRE(found.shot);
+    CHECK(found.shot->cycle.stable == true);
+    CHECK(found.shot->cycle.period != last);
+    last = found.shot->cycle.period;
+  }
+  const double below = from(gantry(0.99999), 1.9e-5, 1e-10).shot->cycle.period;
+  const double above = from(gantry(1.00001), 1.9e-5, 1e-10).shot->cycle.period;
+  CHECK(below == Approx(above).epsilon(1e-4));
+}
