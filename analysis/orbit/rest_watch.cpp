@@ -43,15 +43,11 @@ bool RestWatch::stays(double t, const State& x) {
   return rate <= noise_;
 }
 
-double slow_time(const Loop& loop) {
-  const auto moduli = pole_moduli(loop);
-  return moduli.empty() ? 1.0 : 1.0 / moduli.front();
-}
-
 double rubbing_speed(const Loop& loop) {
   if (!loop.ports.back().rubs) return infinite;
   const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
-  return std::isfinite(scales.velocity) ? scales.velocity / 100.0 : 1e-12;
+  constexpr double rounding = 1e-9;  // of what the body does when it moves
+  return std::isfinite(scales.velocity) ? scales.velocity / 100.0 : rounding * typical_rubbing_velocity(loop);
 }
 
 bool slides_at_rest(const Loop& loop) {

@@ -37,9 +37,6 @@ class RestWatch {
   int calm_ = 0, still_ = 0, steady_ = 0;
 };
 
-/// Slowest time constant of the linear part, s; 1 if it has none.
-double slow_time(const Loop& loop);
-
 /// Speed above which a friction law counts as rubbing; infinite if nothing rubs.
 double rubbing_speed(const Loop& loop);
 
