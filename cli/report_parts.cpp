@@ -83,7 +83,8 @@ std::optional<SimulateOptions> run_to_count(const ReportQuestion& ask, std::stri
   if (names.size() != cycle->start.x.size()) return std::nullopt;
   SimulateOptions options;
   options.duration = cycle->period;
-  for (std::size_t i = 0; i < names.size(); ++i) options.initial[names[i]] = cycle->start.x[i];
+  const State values = own_values(ask.loop, cycle->start.x);
+  for (std::size_t i = 0; i < names.size(); ++i) options.initial[names[i]] = values[i];
   which = "one period from a point of the limit cycle";
   return options;
 }

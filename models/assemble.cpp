@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/models/rubbing_coordinates.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -36,7 +38,9 @@ class Assembly {
  public:
   explicit Assembly(const LoopParts& from)
       : parts_(from),
-        plant_(model_of(from.plant)),
+        coordinates_(from.friction ? rubbing_coordinates(model_of(from.plant))
+                                   : PlantCoordinates{model_of(from.plant), {}}),
+        plant_(coordinates_.plant),
         controller_(model_of(from.controller)),
         actuator_(actuator_of(from.controller)) {
     np_ = plant_.A.rows();
@@ -151,6 +155,9 @@ class Assembly {
     loop_.state_names = plant_.state_names;
     for (const auto& name : controller_.state_names) loop_.state_names.push_back(name);
     if (actuator_.lag > 0.0) loop_.state_names.emplace_back("u_lag");
+    if (coordinates_.own_states.size() == 0) return;
+    loop_.own_states = Eigen::MatrixXd::Identity(s_.n, s_.n);
+    loop_.own_states.topLeftCorner(np_, np_) = coordinates_.own_states;
   }
 
   /// Time derivative of an input that reads the state and r; a direct path from another element's output has no rate.
@@ -161,7 +168,8 @@ class Assembly {
   }
 
   const LoopParts& parts_;
-  PlantModel plant_;
+  PlantCoordinates coordinates_;
+  const PlantModel& plant_;
   ControllerModel controller_;
   Actuator actuator_;
   Index np_ = 0, nc_ = 0;

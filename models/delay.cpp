@@ -134,6 +134,10 @@ Loop with_pade(const Loop& from, const MatrixXd& signals, const StateSpace& pade
     port.C_v = stacked(port.C_v.transpose(), more).transpose();
     port.C_delayed = Eigen::RowVectorXd::Zero(n + more);
   }
+  if (from.own_states.size() > 0) {
+    loop.own_states = MatrixXd::Identity(n + more, n + more);
+    loop.own_states.topLeftCorner(n, n) = from.own_states;
+  }
   for (Index i = 1; i <= more; ++i) loop.state_names.push_back("delay" + std::to_string(i));
   loop.delay = 0.0;
   make_rates(loop);

@@ -215,11 +215,66 @@ Pull pull_at(const Loop& loop, const Eigen::VectorXd& X, const Eigen::VectorXd& 
   return sum;
 }
 
+/// Whether X solves matrix X + given = 0 but for rounding.
+bool solves(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& X, const Eigen::VectorXd& given) {
+  const double size = given.norm() + (matrix.cwiseAbs() * X.cwiseAbs()).norm();
+  return (matrix * X + given).norm() <= 1e-12 * size;
+}
+
+/// The solution of matrix X + given = 0 with rows and columns in units (powers of two) in which their largest entries
+/// are about 1, so that no row is taken for rounding because of the unit it is written in; empty if there is none.
+std::optional<Eigen::VectorXd> solution_in_own_units(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& given) {
+  Eigen::MatrixXd scaled = matrix;
+  Eigen::VectorXd rows = Eigen::VectorXd::Ones(matrix.rows()), columns = Eigen::VectorXd::Ones(matrix.cols());
+  const auto unit = [](double largest) { return largest > 0.0 ? std::exp2(-std::round(std::log2(largest))) : 1.0; };
+  for (int sweep = 0; sweep < 3; ++sweep) {
+    for (Index i = 0; i < matrix.rows(); ++i) {
+      const double by = unit(scaled.row(i).cwiseAbs().maxCoeff());
+      scaled.row(i) *= by;
+      rows(i) *= by;
+    }
+    for (Index k = 0; k < matrix.cols(); ++k) {
+      const double by = unit(scaled.col(k).cwiseAbs().maxCoeff());
+      scaled.col(k) *= by;
+      columns(k) *= by;
+    }
+  }
+  const Eigen::VectorXd right = rows.cwiseProduct(given), found = least_squares(scaled, -right);
+  if (!solves(scaled, found, right)) return std::nullopt;
+  return columns.cwiseProduct(found);
+}
+
+/// Of several points of rest, the one at which the elements that do not rub see the least: a servo with a dead zone on
+/// its error rests at its reference, wherever the origin is.
+void centre(const Loop& loop, Eigen::VectorXd& X) {
+  Eigen::MatrixXd inputs(0, loop.states());
+  Eigen::VectorXd seen(0);
+  bool off = false;
+  for (const Port& port : loop.ports) {
+    const Row C = port.C + port.C_delayed;
+    if (port.rubs || C.isZero(0.0)) continue;
+    const double size = C.norm(), input = (C * X + port.c * loop.external).value();
+    const double parts = (C.cwiseAbs() * X.cwiseAbs() + port.c.cwiseAbs() * loop.external.cwiseAbs()).value();
+    off = off || std::abs(input) > 1e-12 * parts;
+    inputs.conservativeResize(inputs.rows() + 1, Eigen::NoChange);
+    inputs.bottomRows(1) = C / size;
+    seen.conservativeResize(seen.size() + 1);
+    seen(seen.size() - 1) = input / size;
+  }
+  if (!off) return;
+  const Eigen::FullPivLU<Eigen::MatrixXd> still(loop.A + loop.A_delayed);
+  if (still.dimensionOfKernel() == 0) return;
+  const Eigen::MatrixXd free = still.kernel();
+  X += free * least_squares(inputs * free, -seen);
+}
+
 }  // namespace
 
 Eigen::VectorXd Loop::rest_point(bool& exact) const {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(std::ssize(elements));
-  return mean_point(none, none, exact);
+  Eigen::VectorXd X = mean_point(none, none, exact);
+  if (exact) centre(*this, X);
+  return X;
 }
 
 /// Newton's method, from the rest point of the tangents at 0. Under a constant torque it comes from below, and the sine
@@ -239,9 +294,15 @@ Eigen::VectorXd Loop::mean_point(const Eigen::VectorXd& mean_outputs, const Eige
     if (i == 0) first = X;
     if (!pull.any || step.norm() <= 1e-15 * X.norm()) break;
   }
-  const Eigen::VectorXd force = pull_at(*this, X, swings).force;
-  exact = (still * X + given + force).norm() <= 1e-12 * (1.0 + given.norm() + force.norm());
-  return exact ? X : first;
+  const Pull last = pull_at(*this, X, swings);
+  exact = solves(still, X, given + last.force);
+  if (exact) return X;
+  if (!last.any) {
+    const auto other = solution_in_own_units(still, given);
+    exact = other.has_value();
+    if (other) return *other;
+  }
+  return first;
 }
 
 Eigen::MatrixXd Loop::tangent() const {

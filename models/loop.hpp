@@ -55,7 +55,9 @@ struct Loop {
   External external = External::Zero();
   double delay = 0.0;
   double ramp_output_rate = 0.0;
-  std::vector<std::string> state_names;
+  std::vector<std::string> state_names;  ///< as the case writes them; see own_states
+  /// The states that state_names name = own_states X (see rubbing_coordinates()); empty: X itself.
+  Eigen::MatrixXd own_states;
 
   Eigen::Index states() const { return A.rows(); }
 
@@ -69,8 +71,8 @@ struct Loop {
   Eigen::RowVectorXcd output_response(double w) const;
 
   /// Rest point of the linear part without elements, but with those that pull back (gravity): A X + E ext + B w = 0 in
-  /// the least-squares sense; `exact` tells whether it solves the equation. Of several the one near hanging; where a
-  /// torque is more than gravity can hold, that of the tangent.
+  /// the least-squares sense; `exact` tells whether it solves the equation. Of several the one near hanging, or where
+  /// the elements see least; where a torque is more than gravity can hold, that of the tangent.
   Eigen::VectorXd rest_point(bool& exact) const;
   /// The same of the means of an oscillation: with the mean outputs of the elements given, but for those that pull
   /// back, whose mean outputs are found for a sinusoid of amplitude swings(i) on their input. A X + E ext + B w = 0.

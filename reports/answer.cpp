@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/study/interest.hpp"
 #include "limcycle/analysis/study/verdicts.hpp"
 #include "limcycle/reports/number.hpp"
 
@@ -90,13 +91,20 @@ std::string without_cycle(const PredictReport& report, const Units& units) {
 
 std::string with_cycles(const PredictReport& report, const Units& units) {
   std::vector<const Cycle*> stable, others;
-  for (const auto& cycle : report.cycles) (cycle.stable.value_or(false) ? stable : others).push_back(&cycle);
+  for (const auto& cycle : report.cycles)
+    if (is_of_interest(report.search, cycle)) (cycle.stable.value_or(false) ? stable : others).push_back(&cycle);
   std::string out;
+  if (stable.empty() && others.empty()) {
+    const Cycle& first = report.cycles.front();
+    return fmt::format("This loop does not hunt within the search range: its limit cycle of {} is outside it{}.",
+                       size_of(first, units),
+                       report.cycles.size() > 1 ? fmt::format(" (as are {} more)", report.cycles.size() - 1) : "");
+  }
   if (stable.empty()) {
-    const bool unstable = report.cycles.front().stable.has_value();
-    out = fmt::format("This loop has a limit cycle of {}, {}", size_of(report.cycles.front(), units),
+    const bool unstable = others.front()->stable.has_value();
+    out = fmt::format("This loop has a limit cycle of {}, {}", size_of(*others.front(), units),
                       unstable ? "but it is unstable: neighbours leave it" : "whose stability was not decided");
-    if (report.cycles.size() > 1) out += fmt::format(" (and {} more)", report.cycles.size() - 1);
+    if (others.size() > 1) out += fmt::format(" (and {} more)", others.size() - 1);
     return out + (report.outcomes.empty() ? "." : "; " + fates(report) + ".");
   }
   const bool sticks = std::any_of(stable.begin(), stable.end(), [](auto* c) { return c->sticking_fraction > 0.0; });

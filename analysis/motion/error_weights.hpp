@@ -20,6 +20,7 @@ namespace limcycle {
 struct ErrorWeights {
   double rtol = 0;  ///< relative tolerance, 0 or more, finite
   State atol;       ///< absolute tolerance of each component, more than 0, finite, in the component's own unit
+  double time = 1.0;  ///< s, a time of the motion as a whole: what is short or long to the march is so beside it
 
   /// Throws std::invalid_argument, quoting the value, unless every tolerance is in its range and there is at least one.
   void require_valid() const;
@@ -29,7 +30,7 @@ struct ErrorWeights {
 
   /// The same for another relative tolerance, the absolute ones in proportion.
   ErrorWeights scaled_to(double other_rtol) const {
-    ErrorWeights other{other_rtol, atol};
+    ErrorWeights other{other_rtol, atol, time};
     for (double& value : other.atol) value *= other_rtol / rtol;
     return other;
   }

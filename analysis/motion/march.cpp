@@ -49,7 +49,7 @@ AnyStepper make(StepperKind kind, const ErrorWeights& w, LoopField& field) {
   }
 }
 
-constexpr double longest_step = 1e15;  ///< s
+constexpr double longest_step = 1e15;  ///< times that of the motion
 constexpr int most_at_floor = 10'000;  ///< exact steps too long by their error; they get nowhere
 
 template <class E>
@@ -151,16 +151,17 @@ double March::first_dt() {
     size = std::max(size, std::abs(x_[i]) / scale);
     speed = std::max(speed, std::abs(step_.dx0[i]) / scale);
   }
-  const double h = size > 1e-5 && speed > 1e-5 ? 0.01 * size / speed : 1e-6;
-  const double least = 1e-12 * (1.0 + std::abs(t_));  // a motion at rest comes to such times
-  return std::clamp(h, least, std::max(least, 1.0));
+  const double h = size > 1e-5 && speed > 1e-5 ? 0.01 * size / speed : 1e-6 * weights_.time;
+  const double least = 1e-12 * (weights_.time + std::abs(t_));  // a motion at rest comes to such times
+  return std::clamp(h, least, std::max(least, weights_.time));
 }
 
 /// An exact step; fails if the cubic through its ends is too far from the motion in the middle. Unless it must end at a
 /// given time its length is a power of two, whose exponential is kept.
 bool March::try_exact(double& dt) {
   auto& exact = std::get<ExactStepper>(stepper_->any);
-  const int k = std::min(60, static_cast<int>(std::floor(std::log2(dt))));  // at rest steps grow for ever
+  const int longest = 60 + static_cast<int>(std::log2(weights_.time));
+  const int k = std::min(longest, static_cast<int>(std::floor(std::log2(dt))));  // at rest steps grow for ever
   const double h = truncated_ ? dt : std::ldexp(1.0, k);
   exact.last = truncated_ ? exact.flow.over(h) : exact.flow.over_power(k);
   AffineFlow::apply(exact.last, x_, step_.x1);
@@ -174,7 +175,7 @@ bool March::try_exact(double& dt) {
     error = std::isnan(miss) ? infinite : std::max(error, miss);  // beyond the range of numbers: too long
   }
   const double factor = std::clamp(0.9 * std::pow(std::max(error, 1e-12), -0.25), 0.125, 4.0);
-  const bool shortest = h <= 1e-14 * std::max(1.0, std::abs(t_));
+  const bool shortest = h <= 1e-14 * std::max(weights_.time, std::abs(t_));
   exact.at_floor = error > 1.0 && shortest ? exact.at_floor + 1 : 0;
   if (error > 1.0 && (!shortest || exact.at_floor > most_at_floor)) {
     dt = shortest ? 0.0 : std::min(0.5, factor) * h;
@@ -256,13 +257,13 @@ Status March::step(double t_end) {
     dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
     fresh_ = false;
   }
-  dt_ = std::min(dt_, longest_step);  // at rest steps grow for ever
+  dt_ = std::min(dt_, longest_step * weights_.time);  // at rest steps grow for ever
   double dt = std::min({dt_, dt_max_, t_end - t_});
   bool shortened = dt < dt_;  // by what is asked for, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_;
   while (!try_step(dt)) {
     shortened = false;
-    if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12)))
+    if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12 * weights_.time)))
       return is_finite(step_.x1) ? Status::stalled : Status::not_finite;
   }
   if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers call a step that does not move a success

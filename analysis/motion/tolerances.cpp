@@ -12,6 +12,144 @@ namespace limcycle {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double negligible = 1e-9;
+
+/// Typical sizes of the linear states: of their responses to the elements, at the frequencies of the loop.
+class LinearSizes {
+ public:
+  explicit LinearSizes(const Loop& loop) : loop_(loop), size_(VectorXd::Zero(loop.states())), at_(size_) {
+    if (loop.states() > 0) poles_ = eigenvalues(loop.A);
+    for (std::size_t k = 0; k < loop.elements.size(); ++k) levels_.push_back(output_level(loop, k));
+  }
+
+  State find() {
+    std::vector<double> frequencies = pole_moduli(loop_);  // at which the linear part has something to say
+    if (frequencies.empty()) frequencies.push_back(1.0);
+    for (const double w : frequencies) respond(w);
+    const double largest = size_.size() > 0 ? size_.maxCoeff() : 0.0;
+    State result;
+    for (Index i = 0; i < size_.size(); ++i)
+      result.push_back(size_(i) > negligible * largest || answers(i) ? size_(i) : by_what_it_moves(i, largest));
+    return result;
+  }
+
+ private:
+  /// s I - A at s = j w; at (0.1 + j) w where an undamped pole is, as a resonance does not count as infinite.
+  Eigen::MatrixXcd resolvent(double w) const {
+    const Index n = loop_.states();
+    std::complex<double> s(0.0, w);
+    for (const auto& pole : poles_)
+      if (std::abs(pole.imag() - w) < 1e-3 * w && std::abs(pole.real()) < 1e-3 * w) s = {0.1 * w, w};
+    return s * Eigen::MatrixXcd::Identity(n, n) - loop_.A.cast<std::complex<double>>();
+  }
+
+  void respond(double w) {
+    const Eigen::MatrixXcd response = resolvent(w).fullPivLu().solve(loop_.B.cast<std::complex<double>>());
+    for (Index i = 0; i < size_.size(); ++i)
+      for (Index k = 0; k < response.cols(); ++k) {
+        const double level = std::abs(response(i, k)) * levels_[static_cast<std::size_t>(k)];
+        if (!std::isfinite(level) || level <= size_(i)) continue;
+        size_(i) = level;
+        at_(i) = w;
+      }
+  }
+
+  /// Whether a response that is small beside the others, in whatever units, is more than their rounding.
+  bool answers(Index i) const {
+    if (!(size_(i) > 0.0)) return false;
+    const Eigen::MatrixXcd M = resolvent(at_(i));
+    const MatrixXd inverse = M.fullPivLu().inverse().cwiseAbs();
+    const MatrixXd noise = inverse.row(i) * M.cwiseAbs() * inverse * loop_.B.cwiseAbs();
+    double largest = 0.0;
+    for (Index k = 0; k < noise.cols(); ++k)
+      largest = std::max(largest, noise(0, k) * levels_[static_cast<std::size_t>(k)]);
+    return size_(i) > 1e-13 * largest;
+  }
+
+  /// A state that no element moves is as large as what it moves itself.
+  double by_what_it_moves(Index i, double largest) const {
+    double found = infinite;
+    for (Index k = 0; k < size_.size(); ++k)
+      if (k != i && loop_.A(k, i) != 0.0 && size_(k) > 0.0)
+        found = std::min(found, size_(k) * at_(k) / std::abs(loop_.A(k, i)));
+    if (std::isfinite(found) && found > 0.0) return found;
+    return largest > 0.0 ? negligible * largest : 1.0;
+  }
+
+  const Loop& loop_;
+  Eigen::VectorXcd poles_;
+  std::vector<double> levels_;  ///< of the elements' outputs
+  VectorXd size_, at_;          ///< and the frequency that gave it, rad/s
+};
+
+/// Gain of a memoryless element on its input, and on the rate of its input, where it works as it is meant to: inside a
+/// saturation, outside a dead zone; 0 for those without such a gain (friction, relay).
+std::pair<double, double> working_gain(const Element<double>& element) {
+  return std::visit(
+      []<class E>(const E& e) -> std::pair<double, double> {
+        if constexpr (SlopeBounded<E>) return {e.slope_bounds().second, 0.0};
+        if constexpr (requires { E::inside; E::outside; }) return {0.0, std::max(e.inside, e.outside)};
+        if constexpr (requires { e.half_gap; e.slope; }) return {e.slope, 0.0};
+        if constexpr (requires { e.step; }) return {1.0, 0.0};
+        return {0.0, 0.0};
+      },
+      element);
+}
+
+/// A with every element that has a gain replaced by it; empty where none has one.
+MatrixXd working_loop(const Loop& loop) {
+  const Index n = loop.states(), ne = std::ssize(loop.elements);
+  MatrixXd C(ne, n), D(ne, ne);
+  bool any = false;
+  for (Index i = 0; i < ne; ++i) {
+    const Port& port = loop.ports[static_cast<std::size_t>(i)];
+    const auto [gain, rate_gain] = working_gain(loop.elements[static_cast<std::size_t>(i)]);
+    any = any || gain != 0.0 || rate_gain != 0.0;
+    C.row(i) = gain * (port.C + port.C_delayed) + rate_gain * port.C_v;
+    D.row(i) = gain * port.D + rate_gain * port.D_v;
+  }
+  if (!any) return {};
+  const MatrixXd closed = MatrixXd::Identity(ne, ne) - D;
+  return loop.A + loop.A_delayed + loop.B * solve_columns_fully_pivoted(closed, C);
+}
+
+/// Input of the last element over which it changes what it does, and whether that is a rate.
+std::pair<double, bool> own_input(const Element<double>& element) {
+  const Scales scales = scales_of(element);
+  if (std::isfinite(scales.velocity)) return {scales.velocity, true};
+  if (std::isfinite(scales.displacement)) return {scales.displacement, false};
+  const double size = std::visit(
+      []<class E>(const E& e) -> double {
+        if constexpr (requires { e.hysteresis; e.dead_zone; }) return std::max(e.hysteresis, e.dead_zone);
+        if constexpr (requires { e.half_gap; }) return e.half_gap;
+        if constexpr (requires { e.step; }) return e.step;
+        return 0.0;
+      },
+      element);
+  return {size, false};
+}
+
+/// The frequency at which the output of the last element moves its own input by just what it changes over, in a loop
+/// whose poles are all at the origin, where the response is a power of s; 0 if there is none.
+double frequency_of_scales(const Loop& loop) {
+  const auto [size, is_rate] = own_input(loop.elements.back());
+  const Index last = std::ssize(loop.elements) - 1;
+  const auto moves = [&](double w) {
+    return std::abs(loop.element_response(w)(last, last)) * (is_rate ? w : 1.0) * scales_of(loop.elements.back()).output;
+  };
+  const double at_one = moves(1.0), at_two = moves(2.0), power = std::log2(at_one / at_two);
+  const double found = size > 0.0 && power > 0.5 ? std::pow(at_one / size, 1.0 / std::round(power)) : 0.0;
+  return std::isfinite(found) ? found : 0.0;
+}
+
+void add_moduli(const MatrixXd& A, std::vector<double>& found) {
+  const VectorXd moduli = eigenvalues(A).cwiseAbs();
+  for (const double modulus : moduli)
+    if (modulus > negligible * moduli.maxCoeff()) found.push_back(modulus);
+}
 
 /// Factor on the velocity scale of a set-valued law whose curve begins with infinite slope, g = Fs - (...)|v/vs|^delta
 /// with delta < 1: the force is right to rtol only where v is right to vs rtol^(1/delta), and implicit stages must not
@@ -33,32 +171,36 @@ double steepness(const Element<double>& element, double rtol) {
 std::vector<double> pole_moduli(const Loop& loop) {
   std::vector<double> found;
   if (loop.states() == 0) return found;
-  const Eigen::VectorXd moduli = eigenvalues(loop.tangent()).cwiseAbs();
-  for (const double modulus : moduli)
-    if (modulus > 1e-9 * moduli.maxCoeff()) found.push_back(modulus);
+  add_moduli(loop.tangent(), found);
+  if (const MatrixXd working = working_loop(loop); working.allFinite() && working.size() > 0)
+    add_moduli(working, found);
+  if (found.empty() && !loop.elements.empty())
+    if (const double own = frequency_of_scales(loop); own > 0.0) found.push_back(own);
   std::ranges::sort(found);
   return found;
 }
 
-State typical_sizes(const Loop& loop) {
-  const Index n = loop.states();
-  std::vector<double> frequencies = pole_moduli(loop);  // at which the linear part has something to say
+double slow_time(const Loop& loop) {
+  const auto moduli = pole_moduli(loop);
+  return moduli.empty() ? 1.0 : 1.0 / moduli.front();
+}
+
+double output_level(const Loop& loop, std::size_t element) {
+  const auto* cubic = std::get_if<Cubic<double>>(&loop.elements[element]);
+  if (!cubic || cubic->coefficient == 0.0) return scales_of(loop.elements[element]).output;
+  std::vector<double> frequencies = pole_moduli(loop);
   if (frequencies.empty()) frequencies.push_back(1.0);
-  Eigen::VectorXd size = Eigen::VectorXd::Zero(n);
-  for (const double w : frequencies) {
-    Eigen::MatrixXcd M =
-        std::complex<double>(0.0, w) * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<std::complex<double>>();
-    const Eigen::MatrixXcd response = M.fullPivLu().solve(loop.B.cast<std::complex<double>>());
-    for (Index i = 0; i < n; ++i)
-      for (Index k = 0; k < response.cols(); ++k) {
-        const double level = std::abs(response(i, k)) * scales_of(loop.elements[static_cast<std::size_t>(k)]).output;
-        if (std::isfinite(level)) size(i) = std::max(size(i), level);
-      }
-  }
-  const double largest = size.maxCoeff();
-  State result;
-  for (Index i = 0; i < n; ++i)
-    result.push_back(size(i) > 1e-9 * largest ? size(i) : largest > 0.0 ? 1e-9 * largest : 1.0);
+  double response = 0.0;
+  const auto k = static_cast<Index>(element);
+  for (const double w : frequencies)
+    if (const double here = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(k, k)); std::isfinite(here))
+      response = std::max(response, here);
+  if (!(response > 0.0)) return scales_of(loop.elements[element]).output;
+  return 1.0 / (response * std::sqrt(response * std::abs(cubic->coefficient)));
+}
+
+State typical_sizes(const Loop& loop) {
+  State result = LinearSizes(loop).find();
   for (const auto& element : loop.elements)
     std::visit(
         [&](const auto& e) {
@@ -68,12 +210,19 @@ State typical_sizes(const Loop& loop) {
   return result;
 }
 
+double typical_rubbing_velocity(const Loop& loop) {
+  const Port& port = loop.ports.back();
+  const State sizes = typical_sizes(loop);
+  const auto states = Eigen::Map<const VectorXd>(sizes.data(), loop.states());
+  return (port.C_v.cwiseAbs() * states + port.c_v.cwiseAbs() * loop.external.cwiseAbs()).value();
+}
+
 ErrorWeights loop_weights(const Loop& loop, double rtol) { return loop_weights(loop, rtol, typical_sizes(loop)); }
 
 ErrorWeights loop_weights(const Loop& loop, double rtol, State typical) {
   if (!(rtol > 0.0 && rtol <= 0.1))
     throw std::invalid_argument("rtol must be in (0, 0.1], got " + std::to_string(rtol));
-  ErrorWeights weights{rtol, std::move(typical)};
+  ErrorWeights weights{rtol, std::move(typical), std::exp2(std::round(std::log2(slow_time(loop))))};
   const auto n = static_cast<std::size_t>(loop.states());
   for (std::size_t i = 0; i < n; ++i) weights.atol[i] *= 1e-3;
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {

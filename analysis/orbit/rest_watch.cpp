@@ -43,20 +43,11 @@ bool RestWatch::stays(double t, const State& x) {
   return rate <= noise_;
 }
 
-double slow_time(const Loop& loop) {
-  const auto moduli = pole_moduli(loop);
-  return moduli.empty() ? 1.0 : 1.0 / moduli.front();
-}
-
 double rubbing_speed(const Loop& loop) {
   if (!loop.ports.back().rubs) return infinite;
   const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
-  if (std::isfinite(scales.velocity)) return scales.velocity / 100.0;
-  // Rounding is of the size of the velocities that the loop has, whatever its units.
-  const State sizes = typical_sizes(loop);
-  const Port& port = loop.ports.back();
-  const Eigen::Map<const Eigen::VectorXd> X(sizes.data(), loop.states());
-  return 1e-8 * ((port.C_v.cwiseAbs() * X).value() + std::abs((port.c_v * loop.external).value()));
+  constexpr double rounding = 1e-8;  // of what the body does when it moves
+  return std::isfinite(scales.velocity) ? scales.velocity / 100.0 : rounding * typical_rubbing_velocity(loop);
 }
 
 bool slides_at_rest(const Loop& loop) {

@@ -37,9 +37,6 @@ class RestWatch {
   int calm_ = 0, still_ = 0, steady_ = 0;
 };
 
-/// Slowest time constant of the linear part, s; 1 if it has none.
-double slow_time(const Loop& loop);
-
 /// Speed above which a friction law counts as rubbing: a hundredth of its own scale, or for a law without one 1e-8 of
 /// the velocities that the loop has; infinite if nothing rubs.
 double rubbing_speed(const Loop& loop);

@@ -36,10 +36,15 @@ std::optional<Reflection> symmetry(const Loop& loop) {
   bool exact = false;
   const Eigen::VectorXd rest = loop.rest_point(exact);
   if (!exact) return std::nullopt;
+  const State sizes = typical_sizes(loop);
+  const Eigen::VectorXd typical =
+      Eigen::Map<const Eigen::VectorXd>(sizes.data(), loop.states()).cwiseMax(rest.cwiseAbs());
+  const auto vanishes = [&](const Eigen::RowVectorXd& C, const Eigen::RowVector4d& c) {
+    const double size = (C.cwiseAbs() * typical + c.cwiseAbs() * loop.external.cwiseAbs()).value();
+    return std::abs((C * rest + c * loop.external).value()) <= 1e-11 * size;
+  };
   for (const Port& port : loop.ports) {
-    const double input = (port.C * rest + port.c * loop.external).value();
-    const double rate = (port.C_v * rest + port.c_v * loop.external).value();
-    if (std::abs(rate) > 1e-12 || (!port.rubs && std::abs(input) > 1e-12)) return std::nullopt;
+    if (!vanishes(port.C_v, port.c_v) || (!port.rubs && !vanishes(port.C, port.c))) return std::nullopt;
   }
   return Reflection{rest};
 }

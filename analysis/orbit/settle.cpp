@@ -288,16 +288,4 @@ Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& op
   return Settling(loop, start, options).run();
 }
 
-LoopState displaced(const Loop& loop, double displacement) {
-  bool exact = false;
-  const Eigen::VectorXd rest = loop.rest_point(exact);
-  const State sizes = typical_sizes(loop);
-  // The direction that moves y and, in units of their typical sizes, the other states as little as possible.
-  Eigen::VectorXd direction = loop.C_y.transpose();
-  for (Eigen::Index i = 0; i < direction.size(); ++i)
-    direction(i) *= sizes[static_cast<std::size_t>(i)] * sizes[static_cast<std::size_t>(i)];
-  direction /= (loop.C_y * direction).value();
-  return without_history(loop, rest + displacement * direction);
-}
-
 }  // namespace limcycle

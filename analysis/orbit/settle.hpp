@@ -46,7 +46,9 @@ struct Settled {
 /// budget is undecided. Throws std::invalid_argument for a loop with a dead time: see in_time_domain().
 Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options);
 
-/// State in which y (from the rest point of the linear part, elements without history) is displaced by `displacement`.
+/// State in which y (from the rest point of the linear part, elements without history) is displaced by `displacement`,
+/// and the other states as little as possible; where that would only move a fast pole (by a factor of 1000 from the
+/// others), so that y is back before anything else moves, the turning point of a slow oscillation of that amplitude.
 LoopState displaced(const Loop& loop, double displacement);
 
 }  // namespace limcycle

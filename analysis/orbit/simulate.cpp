@@ -8,6 +8,7 @@
 #include "limcycle/analysis/motion/stepper_limits.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/outcome_watch.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -24,7 +25,7 @@ State initial_state(const Loop& loop, const std::map<std::string, double>& named
     }
     x[static_cast<std::size_t>(at - names.begin())] = value;
   }
-  return x;
+  return state_of(loop, std::move(x));
 }
 
 /// External signals of a run: the loop's constants, replaced or joined by the case's signals. Up to the next break they
@@ -167,7 +168,8 @@ class Running {
   void add_row(const State& x, double t) {
     field_.rate(x, dx_, t);
     std::vector<double> row{t};
-    row.insert(row.end(), x.begin(), x.end());
+    const State values = own_values(loop_, x);
+    row.insert(row.end(), values.begin(), values.end());
     row.push_back(field_.y(x));
     row.push_back(field_.y_rate(dx_));
     for (std::size_t i = 0; i < loop_.elements.size(); ++i) {
@@ -218,6 +220,20 @@ std::vector<std::string> state_names(const Loop& loop) {
     for (int k = 0; k < count; ++k) names.push_back(count == 1 ? base : base + std::to_string(k + 1));
   }
   return names;
+}
+
+State own_values(const Loop& loop, State x) {
+  if (loop.own_states.size() == 0) return x;
+  Eigen::Map<Eigen::VectorXd> X(x.data(), loop.states());
+  X = (loop.own_states * X).eval();
+  return x;
+}
+
+State state_of(const Loop& loop, State values) {
+  if (loop.own_states.size() == 0) return values;
+  Eigen::Map<Eigen::VectorXd> X(values.data(), loop.states());
+  X = solve(loop.own_states, Eigen::VectorXd(X));
+  return values;
 }
 
 Simulation simulate(const Loop& loop, const SimulateOptions& options) {

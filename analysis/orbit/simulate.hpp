@@ -73,5 +73,8 @@ Simulation simulate(const Loop& loop, const SimulateOptions& options);
 /// Names of all states in the order of LoopState: linear states, then "z" of the friction law (z1, z2, ... if it has
 /// several) and "z_element" of a forward element.
 std::vector<std::string> state_names(const Loop& loop);
+/// The values that those names have in a state of the loop (see Loop::own_states), and the state that has them.
+State own_values(const Loop& loop, State x);
+State state_of(const Loop& loop, State values);
 
 }  // namespace limcycle

@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/frequency/drive_dependence.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
+#include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/study/quasi_linear.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
@@ -50,7 +51,7 @@ CompositeBalance::CompositeBalance(const Loop& loop)
   bool exact = false;
   const Port& port = loop.ports.back();
   mean_velocity_ = (port.C_v * loop.rest_point(exact) + port.c_v * loop.external).value();
-  if (std::abs(mean_velocity_) < 1e-14 * (1.0 + std::abs((port.c_v * loop.external).value()))) mean_velocity_ = 0.0;
+  if (std::abs(mean_velocity_) < 1e-13 * typical_rubbing_velocity(loop)) mean_velocity_ = 0.0;
   const auto [odd, level] =
       std::visit([](const auto& e) { return std::pair(e.odd(), e.scales().output); }, loop.elements.back());
   biased_ = mean_velocity_ != 0.0 || !odd;

@@ -11,6 +11,7 @@
 #include "limcycle/analysis/study/composite_predictions.hpp"
 #include "limcycle/analysis/study/cycle_hunt.hpp"
 #include "limcycle/analysis/study/df_predictions.hpp"
+#include "limcycle/analysis/study/interest.hpp"
 #include "limcycle/analysis/study/loop_in_time.hpp"
 #include "limcycle/analysis/study/method_names.hpp"
 #include "limcycle/analysis/study/output_per_input.hpp"
@@ -186,6 +187,8 @@ class PredictionStudy {
     report_.outcomes = hunt_->outcomes();
     report_.efforts.push_back({"shooting", hunt_->maps(), "return maps"});
     note_memory();
+    std::ranges::move(compare_with_interest(report_.cycles, options_.search.has_value(), report_.search),
+                      std::back_inserter(report_.notes));
     std::ranges::move(derivative_notes(loop_), std::back_inserter(report_.notes));
     for (const auto& method : used_) {
       const auto missed = missed_by(method, report_.cycles, report_.predictions);

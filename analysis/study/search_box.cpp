@@ -27,11 +27,11 @@ SearchBox default_search_box(const Loop& loop) {
   // A delay makes roots without end, at every turn of its phase: the first few turns are what can matter.
   if (loop.delay > 0.0) box.frequency_max = std::min(box.frequency_max, std::max(10.0 * fast, 30.0 / loop.delay));
   const auto main = std::ssize(loop.elements) - 1;
-  const Scales scales = std::visit([](const auto& e) { return e.scales(); }, loop.elements.back());
+  const double output = output_level(loop, loop.elements.size() - 1);
   double largest = 0.0;
   for (int i = 0; i <= 200; ++i) {
     const double w = 0.1 * slow * std::pow(100.0 * fast / slow, i / 200.0);
-    const double level = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(main, main)) * scales.output;
+    const double level = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(main, main)) * output;
     if (std::isfinite(level)) largest = std::max(largest, level);
   }
   if (!(largest > 0.0)) largest = 1.0;
