@@ -1,9 +1,11 @@
 """Reproducers: tests/reproducers/*.toml against what is known to be true of each (reproducers.json).
 
-`cycles` are [period, amplitude or null, stable]; `some`: at least one start comes to one of these; `never`: none does.
+`cycles` are [period, amplitude or null, stable]; `frequencies`: how near a prediction of a method comes to the first of
+them (relative); `some`: at least one start comes to one of these; `never`: none does.
 """
 
 import json
+import math
 import pathlib
 
 FOLDER = pathlib.Path("tests/reproducers")
@@ -17,6 +19,11 @@ def faults(document, truth):
     for period, amplitude, stable in truth.get("cycles", []):
         if not any(_is(cycle, period, amplitude, stable, tolerance) for cycle in document["cycles"]):
             found.append(f"no {'stable' if stable else 'unstable'} cycle of {period:g} s")
+    for method, within in truth.get("frequencies", {}).items():
+        wanted = 2.0 * math.pi / truth["cycles"][0][0]
+        said = [p["frequency"] for p in document["predictions"] if p["method"] == method and p["frequency"]]
+        if not any(abs(frequency / wanted - 1.0) < within for frequency in said):
+            found.append(f"{method}: none of {said} rad/s is within {within:g} of {wanted:.6g} rad/s")
     outcomes = [outcome["outcome"] for outcome in document["outcomes"]]
     if "some" in truth and not set(truth["some"]) & set(outcomes):
         found.append(f"no start comes to {' or '.join(truth['some'])}")
