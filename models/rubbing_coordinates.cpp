@@ -26,6 +26,7 @@ bool does_not_reach(const RowVectorXd& C, const VectorXd& B) {
 
 bool needs_change(const PlantModel& plant) {
   if (plant.A.rows() < 2 || plant.C_v.size() == 0 || plant.gravity) return false;
+  if (plant.C_x.isZero(0.0)) return false;  // no state holds the displacement
   if (is_one_state(plant.C_x) && is_one_state(plant.C_v) && is_one_state(plant.B_F)) return false;
   return !does_not_reach(plant.C_v, plant.B_F) && does_not_reach(plant.C_x, plant.B_F) && does_not_reach(plant.C_y, plant.B_F);
 }
