@@ -28,7 +28,8 @@ bool needs_change(const PlantModel& plant) {
   if (plant.A.rows() < 2 || plant.C_v.size() == 0 || plant.gravity) return false;
   if (plant.C_x.isZero(0.0)) return false;  // no state holds the displacement
   if (is_one_state(plant.C_x) && is_one_state(plant.C_v) && is_one_state(plant.B_F)) return false;
-  return !does_not_reach(plant.C_v, plant.B_F) && does_not_reach(plant.C_x, plant.B_F) && does_not_reach(plant.C_y, plant.B_F);
+  return !does_not_reach(plant.C_v, plant.B_F) && does_not_reach(plant.C_x, plant.B_F) &&
+         does_not_reach(plant.C_y, plant.B_F);
 }
 
 /// Product of matrices, entries that are no more than rounding set to zero.
@@ -57,9 +58,7 @@ class Rows {
   const MatrixXd& rows() const { return rows_; }
 
  private:
-  RowVectorXd direction(const RowVectorXd& row) const {
-    return row.cwiseProduct(units_.transpose()).normalized();
-  }
+  RowVectorXd direction(const RowVectorXd& row) const { return row.cwiseProduct(units_.transpose()).normalized(); }
   RowVectorXd rest(const RowVectorXd& unit) const { return unit - unit * basis_.transpose() * basis_; }
 
   VectorXd units_;

@@ -91,8 +91,16 @@ std::pair<double, double> working_gain(const Element<double>& element) {
   return std::visit(
       []<class E>(const E& e) -> std::pair<double, double> {
         if constexpr (SlopeBounded<E>) return {e.slope_bounds().second, 0.0};
-        if constexpr (requires { E::inside; E::outside; }) return {0.0, std::max(e.inside, e.outside)};
-        if constexpr (requires { e.half_gap; e.slope; }) return {e.slope, 0.0};
+        if constexpr (requires {
+                        E::inside;
+                        E::outside;
+                      })
+          return {0.0, std::max(e.inside, e.outside)};
+        if constexpr (requires {
+                        e.half_gap;
+                        e.slope;
+                      })
+          return {e.slope, 0.0};
         if constexpr (requires { e.step; }) return {1.0, 0.0};
         return {0.0, 0.0};
       },
@@ -123,7 +131,11 @@ std::pair<double, bool> own_input(const Element<double>& element) {
   if (std::isfinite(scales.displacement)) return {scales.displacement, false};
   const double size = std::visit(
       []<class E>(const E& e) -> double {
-        if constexpr (requires { e.hysteresis; e.dead_zone; }) return std::max(e.hysteresis, e.dead_zone);
+        if constexpr (requires {
+                        e.hysteresis;
+                        e.dead_zone;
+                      })
+          return std::max(e.hysteresis, e.dead_zone);
         if constexpr (requires { e.half_gap; }) return e.half_gap;
         if constexpr (requires { e.step; }) return e.step;
         return 0.0;
@@ -138,7 +150,8 @@ double frequency_of_scales(const Loop& loop) {
   const auto [size, is_rate] = own_input(loop.elements.back());
   const Index last = std::ssize(loop.elements) - 1;
   const auto moves = [&](double w) {
-    return std::abs(loop.element_response(w)(last, last)) * (is_rate ? w : 1.0) * scales_of(loop.elements.back()).output;
+    return std::abs(loop.element_response(w)(last, last)) * (is_rate ? w : 1.0) *
+           scales_of(loop.elements.back()).output;
   };
   const double at_one = moves(1.0), at_two = moves(2.0), power = std::log2(at_one / at_two);
   const double found = size > 0.0 && power > 0.5 ? std::pow(at_one / size, 1.0 / std::round(power)) : 0.0;
@@ -193,7 +206,8 @@ double output_level(const Loop& loop, std::size_t element) {
   double response = 0.0;
   const auto k = static_cast<Index>(element);
   for (const double w : frequencies)
-    if (const double here = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(k, k)); std::isfinite(here))
+    if (const double here = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(k, k));
+        std::isfinite(here))
       response = std::max(response, here);
   if (!(response > 0.0)) return scales_of(loop.elements[element]).output;
   return 1.0 / (response * std::sqrt(response * std::abs(cubic->coefficient)));

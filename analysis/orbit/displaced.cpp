@@ -9,7 +9,7 @@
 namespace limcycle {
 namespace {
 
-constexpr double wide_gap = 1e3;     ///< between the frequencies of a loop that are told apart as slow and fast
+constexpr double wide_gap = 1e3;       ///< between the frequencies of a loop that are told apart as slow and fast
 constexpr double lasting_share = 0.1;  ///< of y, that must be left once the fast part of a motion has died out
 
 /// A frequency in the widest gap between those of the loop; 0 if there is no wide one.
