@@ -7,7 +7,7 @@
 namespace limcycle {
 namespace {
 
-constexpr double edge = 1e-6;  ///< relative width of the border of a box
+constexpr double border_width = 1e-6;  ///< relative width of the border of a box
 
 /// Half the range of the element's input over the cycle; that of y if the cycle has no trace.
 double input_amplitude(const Cycle& cycle) {
@@ -17,7 +17,7 @@ double input_amplitude(const Cycle& cycle) {
 }
 
 bool is_too_small(const SearchBox& box, const Cycle& cycle) {
-  return input_amplitude(cycle) < box.amplitude_min * (1.0 - edge);
+  return input_amplitude(cycle) < box.amplitude_min * (1.0 - border_width);
 }
 
 std::string outside(const SearchBox& box, const Cycle& cycle) {
@@ -44,7 +44,8 @@ void widen(SearchBox& box, const Cycle& cycle) {
 bool is_of_interest(const SearchBox& box, const Cycle& cycle) {
   if (!(box.frequency_max > 0.0)) return true;  // no box at all
   const double w = cycle.frequency();
-  return !is_too_small(box, cycle) && w >= box.frequency_min * (1.0 - edge) && w <= box.frequency_max * (1.0 + edge);
+  return !is_too_small(box, cycle) && w >= box.frequency_min * (1.0 - border_width) &&
+         w <= box.frequency_max * (1.0 + border_width);
 }
 
 std::vector<std::string> compare_with_interest(const std::vector<Cycle>& cycles, bool given, SearchBox& box) {
