@@ -7,10 +7,10 @@ namespace limcycle {
 WorkShare work_share(long steps) {
   const auto share = [steps](long times, long least, long most) { return std::clamp(times * steps, least, most); };
   return {.between_steps = share(4, 300'000, 1'000'000),
-          .composite_steps = share(4, 600'000, 800'000),
-          .df_values = share(4, 200'000, 400'000),
+          .composite_steps = 2'000'000,
+          .df_values = share(4, 600'000, 1'000'000),
           .check_steps = share(4, 500'000, 2'000'000),
-          .balance_evaluations = share(10, 200'000, 1'000'000)};
+          .balance_evaluations = share(10, 1'000'000, 2'000'000)};
 }
 
 }  // namespace limcycle
