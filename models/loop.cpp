@@ -265,7 +265,8 @@ void centre(const Loop& loop, Eigen::VectorXd& X) {
   const Eigen::FullPivLU<Eigen::MatrixXd> still(loop.A + loop.A_delayed);
   if (still.dimensionOfKernel() == 0) return;
   const Eigen::MatrixXd free = still.kernel();
-  X += free * least_squares(inputs * free, -seen);
+  const Eigen::VectorXd moved = X + free * least_squares(inputs * free, -seen);
+  if (solves(loop.A + loop.A_delayed, moved, loop.E * loop.external)) X = moved;
 }
 
 }  // namespace
