@@ -215,10 +215,14 @@ Pull pull_at(const Loop& loop, const Eigen::VectorXd& X, const Eigen::VectorXd& 
   return sum;
 }
 
-/// Whether X solves matrix X + given = 0 but for rounding.
+/// Whether X solves matrix X + given + pull = 0 but for rounding.
+bool solves(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& X, const Eigen::VectorXd& given,
+            const Eigen::VectorXd& pull) {
+  const double size = given.norm() + pull.norm() + (matrix.cwiseAbs() * X.cwiseAbs()).norm();
+  return (matrix * X + given + pull).norm() <= 1e-12 * size;
+}
 bool solves(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& X, const Eigen::VectorXd& given) {
-  const double size = given.norm() + (matrix.cwiseAbs() * X.cwiseAbs()).norm();
-  return (matrix * X + given).norm() <= 1e-12 * size;
+  return solves(matrix, X, given, Eigen::VectorXd::Zero(X.size()));
 }
 
 /// The solution of matrix X + given = 0 with rows and columns in units (powers of two) in which their largest entries
@@ -265,7 +269,8 @@ void centre(const Loop& loop, Eigen::VectorXd& X) {
   const Eigen::FullPivLU<Eigen::MatrixXd> still(loop.A + loop.A_delayed);
   if (still.dimensionOfKernel() == 0) return;
   const Eigen::MatrixXd free = still.kernel();
-  X += free * least_squares(inputs * free, -seen);
+  const Eigen::VectorXd moved = X + free * least_squares(inputs * free, -seen);
+  if (solves(loop.A + loop.A_delayed, moved, loop.E * loop.external)) X = moved;
 }
 
 }  // namespace
@@ -295,7 +300,7 @@ Eigen::VectorXd Loop::mean_point(const Eigen::VectorXd& mean_outputs, const Eige
     if (!pull.any || step.norm() <= 1e-15 * X.norm()) break;
   }
   const Pull last = pull_at(*this, X, swings);
-  exact = solves(still, X, given + last.force);
+  exact = solves(still, X, given, last.force);
   if (exact) return X;
   if (!last.any) {
     const auto other = solution_in_own_units(still, given);

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "limcycle/models/linear/balance.hpp"
-#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -96,7 +95,7 @@ PlantCoordinates rubbing_coordinates(PlantModel plant) {
   const MatrixXd T = states_that_rub(plant);
   if (T.size() == 0) return {std::move(plant), {}};
   const Index n = plant.A.rows();
-  const MatrixXd back = solve_columns_fully_pivoted(T, MatrixXd::Identity(n, n)), one = MatrixXd::Identity(1, 1);
+  const MatrixXd back = T.partialPivLu().solve(MatrixXd::Identity(n, n)), one = MatrixXd::Identity(1, 1);
   if (!back.allFinite()) return {std::move(plant), {}};
   const RowVectorXd C_rate = plant.C_x * plant.A, size = plant.C_x.cwiseAbs() * plant.A.cwiseAbs();
   const bool is_rate = ((C_rate - plant.C_v).array().abs() <= 1e-9 * size.array()).all();

@@ -46,8 +46,15 @@ class LinearSizes {
     return s * Eigen::MatrixXcd::Identity(n, n) - loop_.A.cast<std::complex<double>>();
   }
 
+  /// Full pivoting takes pivots that are small beside the largest for zero, which they may be by their units alone.
+  static Eigen::MatrixXcd solution(const Eigen::MatrixXcd& M, const Eigen::MatrixXcd& right) {
+    const Eigen::FullPivLU<Eigen::MatrixXcd> pivoted(M);
+    if (pivoted.isInvertible()) return pivoted.solve(right);
+    return solve_columns(M, right);
+  }
+
   void respond(double w) {
-    const Eigen::MatrixXcd response = resolvent(w).fullPivLu().solve(loop_.B.cast<std::complex<double>>());
+    const Eigen::MatrixXcd response = solution(resolvent(w), loop_.B.cast<std::complex<double>>());
     for (Index i = 0; i < size_.size(); ++i)
       for (Index k = 0; k < response.cols(); ++k) {
         const double level = std::abs(response(i, k)) * levels_[static_cast<std::size_t>(k)];
@@ -61,7 +68,7 @@ class LinearSizes {
   bool answers(Index i) const {
     if (!(size_(i) > 0.0)) return false;
     const Eigen::MatrixXcd M = resolvent(at_(i));
-    const MatrixXd inverse = M.fullPivLu().inverse().cwiseAbs();
+    const MatrixXd inverse = solve_columns(M, Eigen::MatrixXcd::Identity(M.rows(), M.cols())).cwiseAbs();
     const MatrixXd noise = inverse.row(i) * M.cwiseAbs() * inverse * loop_.B.cwiseAbs();
     double largest = 0.0;
     for (Index k = 0; k < noise.cols(); ++k)

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/models/linear/balance.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -26,7 +27,11 @@ double rubbing_ratio(const Loop& loop, const Port& main, double s) {
   const Complex at(0.0, s);
   const Eigen::MatrixXcd M = at * Eigen::MatrixXcd::Identity(n, n) -
                              (loop.A + loop.A_delayed).cast<Complex>();  // slow against the delay, which both share
-  const Eigen::VectorXcd force = loop.E.col(external_force).cast<Complex>(), X = solve(M, force);
+  // Both y and x vanish with s where the controller integrates: in other units of the states they would be rounding.
+  const Eigen::VectorXd units = balancing_units(loop.A + loop.A_delayed);
+  const Eigen::MatrixXcd balanced = units.cwiseInverse().asDiagonal() * M * units.asDiagonal();
+  const Eigen::VectorXcd force = units.cwiseInverse().cwiseProduct(loop.E.col(external_force)).cast<Complex>();
+  const Eigen::VectorXcd X = units.cast<Complex>().cwiseProduct(solve(balanced, force));
   const Complex x =
       main.C.isZero(0.0) ? (main.C_v.cast<Complex>() * X).value() / at : (main.C.cast<Complex>() * X).value();
   return std::abs((loop.C_y.cast<Complex>() * X).value() / x);

@@ -45,9 +45,9 @@ TEST_CASE("units: the default search box of a servo with a limited command is th
   const SearchBox box = default_search_box(weak_servo(1.0, 1.0));
   for (const auto& [L, T] : {std::pair(1e-4, 0.01), std::pair(1e3, 1e-6), std::pair(1.0, 1e4)}) {
     const SearchBox other = default_search_box(weak_servo(L, T));
-    CHECK(other.amplitude_max == Approx(L * box.amplitude_max).epsilon(1e-9));
-    CHECK(other.frequency_min == Approx(box.frequency_min / T).epsilon(1e-9));
-    CHECK(other.frequency_max == Approx(box.frequency_max / T).epsilon(1e-9));
+    CHECK(other.amplitude_max == Approx(L * box.amplitude_max).epsilon(1e-6));
+    CHECK(other.frequency_min == Approx(box.frequency_min / T).epsilon(1e-6));
+    CHECK(other.frequency_max == Approx(box.frequency_max / T).epsilon(1e-6));
   }
 }
 
@@ -106,4 +106,24 @@ TEST_CASE("displaced: a start moves the motion, not a state that is back at once
   CHECK(s * (loop.C_y * solve(M, Eigen::VectorXd(x))).value() == Approx(0.01).epsilon(0.01));
   const auto report = predict(loop);
   CHECK(report.outcomes.front().outcome == Outcome::divergence);
+}
+
+TEST_CASE("units: typical sizes of a stiff drive are those of a slow one in another unit of time") {
+  const auto drive = [](double T) {
+    TwoMass plant;
+    plant.motor_mass = 15.779 * T * T;
+    plant.load_mass = 4.17122 * T * T;
+    plant.stiffness = 45275800.0;
+    plant.damping = 2268.16 * T;
+    plant.friction_on.index = plant.measured.index = 0;
+    LoopParts parts;
+    parts.plant = plant;
+    parts.controller = pid(170117.0, 5532580.0 / T, 1991.82 * T);
+    parts.friction = coulomb(404.438, 300.665, 146.49 * T);
+    return build_loop(parts);
+  };
+  const State sizes = typical_sizes(drive(1.0)), fast = typical_sizes(drive(0.0023));
+  for (const std::size_t position : {0, 2}) CHECK(fast[position] == Approx(sizes[position]).epsilon(1e-6));
+  for (const std::size_t velocity : {1, 3}) CHECK(0.0023 * fast[velocity] == Approx(sizes[velocity]).epsilon(1e-6));
+  CHECK(fast[4] / 0.0023 == Approx(sizes[4]).epsilon(1e-6));
 }
