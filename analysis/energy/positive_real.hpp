@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "limcycle/analysis/energy/decision.hpp"
-#include "limcycle/analysis/energy/transfer.hpp"
+#include "limcycle/models/linear/transfer.hpp"
 
 namespace limcycle {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "limcycle/analysis/energy/transfer.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/linear/dense.hpp"
+#include "limcycle/models/linear/transfer.hpp"
 
 namespace limcycle {
 namespace {

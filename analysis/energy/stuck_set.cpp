@@ -5,11 +5,11 @@
 #include <cmath>
 #include <vector>
 
-#include "limcycle/analysis/energy/transfer.hpp"
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/linear/dense.hpp"
+#include "limcycle/models/linear/transfer.hpp"
 
 namespace limcycle {
 namespace {

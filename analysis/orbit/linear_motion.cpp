@@ -7,7 +7,7 @@
 #include <cmath>
 #include <complex>
 
-#include "limcycle/analysis/energy/transfer.hpp"
+#include "limcycle/models/linear/transfer.hpp"
 #include "limcycle/models/parameter.hpp"
 
 namespace limcycle {

@@ -1,4 +1,4 @@
-#include "limcycle/analysis/energy/transfer.hpp"
+#include "limcycle/models/linear/transfer.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
