@@ -215,10 +215,12 @@ Pull pull_at(const Loop& loop, const Eigen::VectorXd& X, const Eigen::VectorXd& 
   return sum;
 }
 
-/// Whether X solves matrix X + given = 0 but for rounding.
-bool solves(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& X, const Eigen::VectorXd& given) {
-  const double size = given.norm() + (matrix.cwiseAbs() * X.cwiseAbs()).norm();
-  return (matrix * X + given).norm() <= 1e-12 * size;
+/// Whether X solves matrix X + given + pull = 0 but for rounding; given and pull may nearly cancel (gravity under a
+/// constant torque).
+bool solves(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& X, const Eigen::VectorXd& given,
+            const Eigen::VectorXd& pull) {
+  const double size = given.norm() + pull.norm() + (matrix.cwiseAbs() * X.cwiseAbs()).norm();
+  return (matrix * X + given + pull).norm() <= 1e-12 * size;
 }
 
 /// The solution of matrix X + given = 0 with rows and columns in units (powers of two) in which their largest entries
@@ -240,7 +242,7 @@ std::optional<Eigen::VectorXd> solution_in_own_units(const Eigen::MatrixXd& matr
     }
   }
   const Eigen::VectorXd right = rows.cwiseProduct(given), found = least_squares(scaled, -right);
-  if (!solves(scaled, found, right)) return std::nullopt;
+  if (!solves(scaled, found, right, Eigen::VectorXd::Zero(right.size()))) return std::nullopt;
   return columns.cwiseProduct(found);
 }
 
@@ -295,7 +297,7 @@ Eigen::VectorXd Loop::mean_point(const Eigen::VectorXd& mean_outputs, const Eige
     if (!pull.any || step.norm() <= 1e-15 * X.norm()) break;
   }
   const Pull last = pull_at(*this, X, swings);
-  exact = solves(still, X, given + last.force);
+  exact = solves(still, X, given, last.force);
   if (exact) return X;
   if (!last.any) {
     const auto other = solution_in_own_units(still, given);
