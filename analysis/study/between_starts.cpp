@@ -6,9 +6,10 @@
 namespace limcycle {
 namespace {
 
-constexpr int bisections = 6;         ///< of one border
-constexpr double close_enough = 1.1;  ///< ratio of two starts between which nothing more is looked for
-constexpr double beside = 0.01;       ///< how far from an unstable cycle, relative
+constexpr int bisections = 6;             ///< of one border
+constexpr double close_enough = 1.1;      ///< ratio of two starts between which nothing more is looked for
+constexpr long steps_of_a_trend = 6'000;  ///< of one of the fifty motions along a border
+constexpr double beside = 0.01;           ///< how far from an unstable cycle, relative
 
 /// The state moved away from the rest point of the linear part by a factor; elements keep theirs.
 LoopState scaled(const Loop& loop, const LoopState& state, double factor) {
@@ -43,13 +44,14 @@ OutcomeOfStart BetweenStarts::probe(const LoopState& start, std::string name) {
   return outcome;
 }
 
-/// The unstable cycle at the border, which is near `place`; a motion that diverges from there tells its period.
-void BetweenStarts::find_border(double place, const std::function<LoopState(double)>& ray, const Trace& diverging) {
-  const auto period = first_period(diverging);
-  if (!period || over()) return;
-  const long before = hunt_.steps();
-  hunt_.edge_along([&](double scale) { return ray(scale * place); }, *period);
-  left_ -= hunt_.steps() - before;
+void BetweenStarts::find_borders() {
+  const auto unstable = [](const Cycle& cycle) { return cycle.stable == false; };
+  for (const Border& border : borders_) {
+    if (over() || std::ranges::any_of(hunt_.cycles(), unstable)) return;
+    const long before = hunt_.steps();
+    hunt_.edge_along(border.ray, border.period, steps_of_a_trend);
+    left_ -= hunt_.steps() - before;
+  }
 }
 
 void BetweenStarts::look_inside_divergence(std::vector<Start> starts, const std::function<LoopState(double place)>& ray,
@@ -70,7 +72,9 @@ void BetweenStarts::look_inside_divergence(std::vector<Start> starts, const std:
       (also == below ? low : high) = middle;
       if (also) diverging = std::move(outcome.trace);
     }
-    find_border(below ? high : low, ray, diverging);
+    const double place = below ? high : low;
+    if (const auto period = first_period(diverging))
+      borders_.push_back({[ray, place](double scale) { return ray(scale * place); }, *period});
   }
 }
 

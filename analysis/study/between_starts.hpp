@@ -19,10 +19,13 @@ class BetweenStarts {
     std::size_t outcome;
   };
   /// Between neighbouring starts of which one diverges and the other does not, the border is bisected (in the logarithm
-  /// of the place) and every motion on the way followed to its end; the unstable cycle that is the border joins the
-  /// cycles of the hunt. `name`: of a start at a place, in words.
+  /// of the place) and every motion on the way followed to its end. `name`: of a start at a place, in words.
   void look_inside_divergence(std::vector<Start> starts, const std::function<LoopState(double place)>& ray,
                               const std::function<std::string(double place)>& name);
+
+  /// The unstable cycles at the borders found, where no other method has shown any: they join the cycles of the hunt.
+  /// Cost: some fifty short simulations for each border.
+  void find_borders();
 
   /// From just inside and just outside every unstable cycle (1 % nearer to the rest point of the linear part and
   /// farther from it) for which that was not done before: it is the border between what these two lead to. Returns the
@@ -32,13 +35,19 @@ class BetweenStarts {
  private:
   bool over() const { return left_ <= 0 || (stop_ && stop_()); }
   OutcomeOfStart probe(const LoopState& start, std::string name);
-  void find_border(double place, const std::function<LoopState(double place)>& ray, const Trace& diverging);
+
+  /// Where motions begin to diverge, and how long one of them took to go round there.
+  struct Border {
+    std::function<LoopState(double scale)> ray;  ///< 1: at the border
+    double period;                               ///< s
+  };
 
   const Loop& loop_;
   CycleHunt& hunt_;
   long left_;  ///< steps
   const std::function<bool()>& stop_;
   std::size_t looked_at_ = 0;  ///< cycles
+  std::vector<Border> borders_;
 };
 
 }  // namespace limcycle

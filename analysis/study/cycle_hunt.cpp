@@ -60,7 +60,8 @@ std::optional<std::size_t> CycleHunt::shoot_from(const OrbitGuess& guess) {
   return keep(shoot_multiple(loop_, guess, options));
 }
 
-std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(double scale)>& ray, double period) {
+std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(double scale)>& ray, double period,
+                                                 long max_steps) {
   settle_.known = cycles_;
   // Where small and large oscillations come to the same in the end there is no border between them.
   const Settled small = settle(loop_, ray(smallest_edge_scale), settle_),
@@ -71,7 +72,9 @@ std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(d
   for (const Settled* end : {&small, &large})
     if (end->shot) merge(cycles_, end->shot->cycle);
   settle_.known = cycles_;
-  return keep(edge_cycle(loop_, ray, period, settle_));
+  SettleOptions along = settle_;
+  if (max_steps > 0) along.max_steps = max_steps;
+  return keep(edge_cycle(loop_, ray, period, along));
 }
 
 }  // namespace limcycle

@@ -20,8 +20,10 @@ class CycleHunt {
   /// Newton for the cycle near a guess, stable or not; index of the cycle found (and whether it is near is for the
   /// caller to say).
   std::optional<std::size_t> shoot_from(const OrbitGuess& guess);
-  /// The unstable cycle between the smaller and larger oscillations of a family that grow and shrink.
-  std::optional<std::size_t> edge_along(const std::function<LoopState(double scale)>& ray, double period);
+  /// The unstable cycle between the smaller and larger oscillations of a family that grow and shrink, each followed for
+  /// `max_steps` at most (0: as long as any other motion).
+  std::optional<std::size_t> edge_along(const std::function<LoopState(double scale)>& ray, double period,
+                                        long max_steps = 0);
 
   const std::vector<Cycle>& cycles() const { return cycles_; }
   const std::vector<OutcomeOfStart>& outcomes() const { return outcomes_; }

@@ -56,7 +56,7 @@ class RootStudy {
     RootSearchOptions options;
     options.interrupted = [this] { return used_up() || (stop_ && stop_()); };
     // The other element's kink crosses the whole box; of gravity it is a ridge of the free swing, on which f is small.
-    if (balance_.main_element() > 0) options.max_evaluations = 40000;
+    if (balance_.main_element() > 0) options.max_evaluations = 20000;
     // Each sample of a law of many states takes long; a root is polished to the fine accuracy in any case.
     if (std::visit([](const auto& e) { return e.states(); }, loop_.elements[balance_.main_element()]) > 2)
       options.coarse_accuracy = 1e-4;

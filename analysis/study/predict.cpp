@@ -43,6 +43,7 @@ class PredictionStudy {
     if (exact_in_time(loop_)) predict_by_df(share);
     end_composite();
     check_predictions(share);
+    between_->find_borders();
     look_beside_unstable_cycles();
     balance_harmonics(share);
     look_beside_unstable_cycles();
