@@ -18,8 +18,8 @@ namespace limcycle {
 /// that may miss that breaks stiction early and settles on a false but plausible cycle. Use atol = tol vs for a
 /// velocity (vs: Stribeck velocity) and state the bristle force, not the bristle deflection.
 struct ErrorWeights {
-  double rtol = 0;  ///< relative tolerance, 0 or more, finite
-  State atol;       ///< absolute tolerance of each component, more than 0, finite, in the component's own unit
+  double rtol = 0;    ///< relative tolerance, 0 or more, finite
+  State atol;         ///< absolute tolerance of each component, more than 0, finite, in the component's own unit
   double time = 1.0;  ///< s, a time of the motion as a whole: what is short or long to the march is so beside it
 
   /// Throws std::invalid_argument, quoting the value, unless every tolerance is in its range and there is at least one.

@@ -6,11 +6,11 @@
 
 namespace limcycle {
 
-/// The frequencies of a loop, rad/s, slowest first: the moduli of the poles of its linear part without the elements (but
-/// with the tangent of gravity), and with those that have a gain (saturation, dead zone, backlash, quantizer) replaced
-/// by it; without those at the origin (less than 1e-9 of the largest). Where all poles are there, the frequency at
-/// which the last element's output moves its input by the size over which it changes (a relay's hysteresis, a Stribeck
-/// velocity); none where there is no such size. Without the delay, if there is one. Cost O(n^3).
+/// The frequencies of a loop, rad/s, slowest first: the moduli of the poles of its linear part without the elements
+/// (but with the tangent of gravity), and with those that have a gain (saturation, dead zone, backlash, quantizer)
+/// replaced by it; without those at the origin (less than 1e-9 of the largest). Where all poles are there, the
+/// frequency at which the last element's output moves its input by the size over which it changes (a relay's
+/// hysteresis, a Stribeck velocity); none where there is no such size. Without the delay, if there is one. Cost O(n^3).
 std::vector<double> pole_moduli(const Loop& loop);
 
 /// Slowest time constant of a loop, s: the inverse of the first of pole_moduli(); 1 where the loop has no time of its
