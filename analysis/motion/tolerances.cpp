@@ -156,8 +156,8 @@ std::pair<double, bool> own_input(const Element<double>& element) {
 double frequency_of_scales(const Loop& loop) {
   const auto [size, is_rate] = own_input(loop.elements.back());
   const Index last = std::ssize(loop.elements) - 1;
-  const auto moves = [&](double w) {
-    return std::abs(loop.element_response(w)(last, last)) * (is_rate ? w : 1.0) *
+  const auto moves = [&, by_rate = is_rate](double w) {
+    return std::abs(loop.element_response(w)(last, last)) * (by_rate ? w : 1.0) *
            scales_of(loop.elements.back()).output;
   };
   const double at_one = moves(1.0), at_two = moves(2.0), power = std::log2(at_one / at_two);

@@ -9,7 +9,7 @@ namespace {
 constexpr int bisections = 6;             ///< of one border
 constexpr double close_enough = 1.1;      ///< ratio of two starts between which nothing more is looked for
 constexpr long steps_of_a_trend = 6'000;  ///< of one of the fifty motions along a border
-constexpr double beside = 0.01;           ///< how far from an unstable cycle, relative
+constexpr double step_aside = 0.01;       ///< how far from an unstable cycle, relative
 
 /// The state moved away from the rest point of the linear part by a factor; elements keep theirs.
 LoopState scaled(const Loop& loop, const LoopState& state, double factor) {
@@ -87,7 +87,7 @@ std::vector<std::size_t> BetweenStarts::look_beside_unstable_cycles() {
     bool decided = false;
     for (const bool inside : {true, false}) {
       if (over()) return undecided;
-      const LoopState start = scaled(loop_, cycle.start, inside ? 1.0 - beside : 1.0 + beside);
+      const LoopState start = scaled(loop_, cycle.start, inside ? 1.0 - step_aside : 1.0 + step_aside);
       const auto outcome = probe(start, std::string(inside ? "just inside " : "just outside ") + which);
       decided = decided || outcome.outcome != Outcome::undecided;
     }
