@@ -18,8 +18,8 @@ struct LinearMotion {
   double decay = 0.0;                     ///< least -Re lambda of the others
   bool settles = false;                   ///< all others decay, and nothing winds up along the neutral ones
 
-  /// centre + S Re(V amounts).
-  State around(const State& centre, const Eigen::VectorXcd& amounts) const;
+  /// centre + S Re(V of_modes).
+  State around(const State& centre, const Eigen::VectorXcd& of_modes) const;
 };
 
 /// The motion with this Jacobian and these rates at the present state (both in sizes per slowest time constant), which

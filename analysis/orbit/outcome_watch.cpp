@@ -63,7 +63,7 @@ double OutputStep::crossing(double level) const {
   return t + h * root([&](double at) { return value(at) - level; }, 1e-14);
 }
 
-OutcomeWatch::OutcomeWatch(const Loop& loop, const OutcomeOptions& options, State sizes, double slow)
+OutcomeWatch::OutcomeWatch(const Loop& loop, const OutcomeOptions& options, const State& sizes, double slow)
     : loop_(loop), options_(options), stillness_(loop, sizes, slow, options.rtol), switching_(loop, {sizes, slow}) {}
 
 void OutcomeWatch::look(double t, const State& x, const State& dx, const std::vector<Mode>& modes) {

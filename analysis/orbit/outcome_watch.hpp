@@ -42,7 +42,7 @@ struct OutcomeOptions {
 class OutcomeWatch {
  public:
   /// `sizes` and `slow` as for RestWatch. The loop must outlive the watch.
-  OutcomeWatch(const Loop& loop, const OutcomeOptions& options, State sizes, double slow);
+  OutcomeWatch(const Loop& loop, const OutcomeOptions& options, const State& sizes, double slow);
 
   void begin(double t, double y) { turning_.feed(t, y); }
   /// A step within which the rate of y changes sign.

@@ -130,8 +130,7 @@ bool is_ideal_relay(const Loop& loop, std::size_t i) {
 
 }  // namespace
 
-SwitchingWatch::SwitchingWatch(const Loop& loop, LoopSizes scale)
-    : loop_(loop), scale_(std::move(scale)), applies_(false), fastest_(0.0) {
+SwitchingWatch::SwitchingWatch(const Loop& loop, LoopSizes scale) : loop_(loop), scale_(std::move(scale)) {
   for (std::size_t i = 0; i < loop.elements.size(); ++i) applies_ = applies_ || is_ideal_relay(loop, i);
   applies_ = applies_ && AffineFlow::applies(loop);
   const auto moduli = applies_ ? pole_moduli(loop) : std::vector<double>{};

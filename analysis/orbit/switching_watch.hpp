@@ -35,8 +35,8 @@ class SwitchingWatch {
 
   const Loop& loop_;
   LoopSizes scale_;
-  bool applies_;
-  double fastest_;  ///< pole of the linear part, 1/s
+  bool applies_ = false;
+  double fastest_ = 0.0;  ///< pole of the linear part, 1/s
   std::map<std::size_t, Swings> swings_;
 };
 
