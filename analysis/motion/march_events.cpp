@@ -129,7 +129,8 @@ Status March::land(std::size_t guard, double h) {
   ++events_;
   event_times_.push_back(t_);
   if (event_times_.size() > 50) event_times_.pop_front();
-  const double short_time = 1e-10 * std::max(weights_.time, std::abs(t_));
+  // In seconds, not in times of the motion: the slowest pole may be slower, the fastest faster, than any swing by far.
+  const double short_time = 1e-10 * std::max(1.0, std::abs(t_));
   const bool accumulate = event_times_.size() == 50 && t_ - event_times_.front() < short_time;
   return accumulate ? Status::chattering : Status::converged;
 }

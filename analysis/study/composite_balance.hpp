@@ -36,7 +36,7 @@ struct CompositeSearchOptions {
   double force_min = 0.0, force_max = 0.0;              ///< N; 0: 0.2 and 100 times the level of the friction
   double coarse_accuracy = 1e-3;                        ///< of N in the search, 1e-8..1e-2
   double accuracy = 1e-8;                               ///< of N at a root, 1e-10..1e-4
-  long max_steps = 400'000;                             ///< of the integrator, for the whole search: about a second
+  long max_steps = 2'000'000;                           ///< of the integrator, for the whole search: some seconds
   std::function<bool()> stop;                           ///< asked often; true ends the search
 };
 
