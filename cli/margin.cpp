@@ -56,8 +56,10 @@ std::vector<MarginParameter> parameters_of(const Case& from, const MarginFlags& 
 
 int exit_code(const MarginReport& report) {
   const bool nothing = report.parameters.empty() && !report.balance;
-  return report.status == Status::interrupted || (nothing && report.status != Status::converged) ? exit_no_answer
-                                                                                                 : exit_done;
+  return !report.refused.empty() || report.status == Status::interrupted ||
+                 (nothing && report.status != Status::converged)
+             ? exit_no_answer
+             : exit_done;
 }
 
 int run(MarginFlags flags) {

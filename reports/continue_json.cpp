@@ -57,6 +57,7 @@ std::string continue_json(const Provenance& provenance, const ContinueReport& re
     for (const auto& event : report.found.branches[part].events) top["events"].push_back(event_json(part, event));
   }
   top["notes"] = report.found.notes;
+  if (!report.found.refused.empty()) top["notes"].push_back(report.found.refused);
   top["status"] = to_string(report.found.status);
   return json_document("continue", provenance, json_text(top));
 }

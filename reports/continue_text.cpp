@@ -95,6 +95,9 @@ std::string continue_answer(const ContinueReport& report, const Units&) {
                                         Units::attach(with_digits(found.to, 4), unit_of(report)));
   std::string out;
   if (found.status == Status::interrupted) out = "Interrupted; as far as it went: ";
+  if (!found.refused.empty())
+    return out + "Not answered: " + found.refused + " over " + report.path +
+           ". `limcycle map` answers over a plane of parameters, with the dead time approximated.";
   if (found.branches.empty()) return out + (out.empty() ? "No" : "no") + " limit cycle was found for " + range + ".";
   const Span span = stable_span(report);
   if (span.any())

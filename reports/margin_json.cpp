@@ -48,6 +48,7 @@ std::string margin_json(const Provenance& provenance, const MarginReport& report
                                   {"amplitude", number(report.balance->amplitude)},
                                   {"frequency", number(report.balance->frequency)}};
   top["notes"] = report.notes;
+  if (!report.refused.empty()) top["notes"].push_back(report.refused);
   top["status"] = to_string(report.status);
   return json_document("margin", provenance, json_text(top));
 }

@@ -92,6 +92,11 @@ Table margin_table(const MarginReport& report, bool friction) {
 
 std::string margin_answer(const MarginReport& report, const Units& units) {
   std::string out = report.status == Status::interrupted ? "Interrupted; as far as it went: " : "";
+  if (!report.refused.empty()) {
+    out += "Not answered: " + report.refused +
+           " over a parameter. `limcycle map` answers over a plane of parameters, with the dead time approximated.";
+    return out + of_balance(report);
+  }
   if (report.hunts) {
     const auto stable = std::ranges::find(report.cycles, std::optional<bool>(true), &Cycle::stable);
     out += fmt::format("This loop has a stable limit cycle (period {} s, amplitude {}).",

@@ -50,6 +50,11 @@ const LocalSensitivity* strongest(const SensitivityReport& report) {
   return best;
 }
 
+std::string without_derivatives(const SensitivityReport& report) {
+  if (report.local.empty()) return "The derivatives of the limit cycle were not computed: this loop has a dead time.";
+  return "The limit cycle has no derivative by any number: " + report.local.front().why + ".";
+}
+
 }  // namespace
 
 std::string sensitivity_answer(const SensitivityReport& report) {
@@ -57,7 +62,9 @@ std::string sensitivity_answer(const SensitivityReport& report) {
   if (const auto* best = strongest(report); best != nullptr && report.cycle)
     out += fmt::format("The cycle's amplitude is moved most by {}: {} % for each per cent.", best->path,
                        with_digits(per_cent_a_per_cent(*best, best->amplitude, report.cycle->amplitude), 3));
-  else if (!report.cycle)
+  else if (report.cycle)
+    out += without_derivatives(report);
+  else
     out += "The loop has no stable limit cycle as it is, so there is none to differentiate.";
   if (!report.global) return out;
   const Probability& hunting = report.global->hunting;

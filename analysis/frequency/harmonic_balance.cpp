@@ -213,7 +213,12 @@ class Search {
     first_ = first;
   }
 
-  double tail() const { return tail_of(output_series(equations_.means(point_.mean_outputs, point_.free))); }
+  /// Of y, and of the rubbing displacement: a lag between the two filters the harmonics of y, not those that the
+  /// friction feels.
+  double tail() const {
+    const double of_y = tail_of(output_series(equations_.means(point_.mean_outputs, point_.free)));
+    return loop_.ports.back().rubs ? std::max(of_y, tail_of(point_.inputs.back())) : of_y;
+  }
 
   static double tail_of(const VectorXcd& y) {
     const Index H = y.size() - 1, from = std::max<Index>(2, 2 * H / 3 + 1);
@@ -237,7 +242,7 @@ class Search {
     result.first_harmonic = std::abs(result.y(1));
     result.offset = result.y(0).imag();
     result.amplitude = half_peak_to_peak(result.y);
-    result.tail = tail_of(result.y);
+    result.tail = tail();
     result.change = change_;
     result.residual = residual_;
     return result;

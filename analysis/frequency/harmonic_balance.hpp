@@ -11,9 +11,9 @@ namespace limcycle {
 
 /// How many harmonics, and when a balance is good.
 struct HarmonicBalanceOptions {
-  int max_harmonics = 75;            ///< 1..400
-  double accuracy = 1e-9;            ///< of the scaled equations, 1e-12..1e-3
-  double tail = 1e-6;                ///< wanted size of the highest third of the harmonics of y over the first, > 0
+  int max_harmonics = 75;  ///< 1..400
+  double accuracy = 1e-9;  ///< of the scaled equations, 1e-12..1e-3
+  double tail = 1e-6;  ///< wanted size of the highest third of the harmonics of y and of what rubs over the first, > 0
   bool half_wave_symmetric = false;  ///< odd harmonics only: every element is odd and none is biased at the rest point
   int max_iterations = 30;           ///< of Newton's method for each number of harmonics
   long max_evaluations = 1'000'000;  ///< of the elements' equations, all together, > 0
@@ -42,7 +42,7 @@ struct HarmonicBalance {
   double amplitude = 0.0;       ///< half the peak-to-peak of y
   double first_harmonic = 0.0;  ///< amplitude of y's first harmonic
   double offset = 0.0;          ///< mean of y
-  double tail = 0.0;            ///< largest of the highest third of the harmonics of y over the first; 1 where H is 1
+  double tail = 0.0;            ///< the same, reached: the larger of the two; 1 where H is 1
   double change = 1.0;    ///< of frequency or y's first harmonic, the larger relative one, by the last orders that
                           ///< were added; 1 if only one number of harmonics had a balance
   double residual = 0.0;  ///< largest scaled defect of the equations, on finer panels than they were solved on

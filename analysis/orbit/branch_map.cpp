@@ -82,7 +82,9 @@ BranchMap::Value BranchMap::at(const VectorXd& u, double s, With with, double rt
   here.map->set_extremes(with != With::nothing);
   here.map->set_trace(with == With::trace);
   value.start = {frame_.chart.lift(frame_.origin.x, u), frame_.origin.modes};
+  const long before = here.map->steps();
   value.motion = (*here.map)(value.start);
+  steps_ += here.map->steps() - before;
   ++maps_;
   value.status = value.motion.status;
   if (value.status != Status::converged) return value;

@@ -70,6 +70,8 @@ class BranchMap {
   double rtol() const { return rtol_; }
   void set_rtol(double rtol) { rtol_ = rtol; }
   long maps() const { return maps_; }
+  /// Steps of all integrations: what a map costs differs by a thousand.
+  long steps() const { return steps_; }
   bool stopped() const { return stop_ && stop_(); }
 
   Value at(const Eigen::VectorXd& u, double s, With with, double rtol);
@@ -93,7 +95,7 @@ class BranchMap {
   std::function<bool()> stop_;
   Frame frame_;
   std::vector<Prepared> recent_;
-  long maps_ = 0;
+  long maps_ = 0, steps_ = 0;
 };
 
 }  // namespace limcycle

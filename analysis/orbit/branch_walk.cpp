@@ -32,10 +32,12 @@ class Walk {
 
   void run() {
     double h = options_.first_step;
+    const long begun = map_.steps();
     while (!ended_) {
       if (map_.stopped()) return finish(Status::interrupted);
-      if (std::ssize(branch_.points) > options_.max_points) {
-        end_here("the budget of points was used up");
+      const bool many = std::ssize(branch_.points) > options_.max_points;
+      if (many || map_.steps() - begun > options_.max_steps) {
+        end_here(many ? "the budget of points was used up" : "the budget of integration steps was used up");
         return finish(Status::max_iterations);
       }
       h = std::clamp(h, options_.min_step, options_.max_step);

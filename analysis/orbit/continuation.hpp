@@ -18,6 +18,7 @@ struct ContinuationOptions {
   double min_step = 1e-7;
   double max_step = 0.24;                 ///< 25 points or more over the range
   int max_points = 300;                   ///< in each direction
+  long max_steps = 100'000'000;           ///< of the integrations, in each direction
   double accuracy = 1e-8;                 ///< wanted relative error of period and amplitude
   bool until_event = false;               ///< stop at the first fold or change of stability in each direction
   bool upwards = true, downwards = true;  ///< towards `to`, towards `from`, from the start
@@ -60,7 +61,7 @@ struct Branch {
 /// the second order), `stability` (a multiplier crosses the unit circle away from a fold; the sentence says which),
 /// `end` (why the branch goes no farther). Errors of parameters come from the disagreement of two integration
 /// tolerances. Status: converged (every end explained), incomplete (an end that is not understood), max_iterations (out
-/// of points), interrupted (what was computed is kept), stalled or another (the start is not on a cycle).
+/// of points or steps), interrupted (what was computed is kept), stalled or another (the start is not on a cycle).
 /// Throws std::invalid_argument for a bad range or a start outside it.
 /// Limits: a pair of folds, or of changes of stability, that lies within one step is not seen (max_step narrows that);
 /// a cycle whose multipliers exceed some thousands is followed only for a while.

@@ -5,6 +5,7 @@
 
 #include "limcycle/analysis/derivative_notes.hpp"
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/in_exact_time.hpp"
 
 namespace limcycle {
 namespace {
@@ -46,8 +47,8 @@ class Following {
       report_.notes.push_back("the case is not valid at " + short_number(p, 6));
       return {};
     }
-    if (loop->delay > 0.0) {
-      report_.notes.emplace_back("continuation does not treat a delay yet: no cycle can be followed");
+    if (!in_exact_time(*loop)) {
+      report_.refused = no_exact_time;
       report_.status = Status::incomplete;
       return {};
     }
@@ -93,7 +94,7 @@ class Following {
       most = std::max(most, share);
       tell(begin + part * std::min(1.0, most - least), "following a cycle");
     };
-    Branch branch = continue_cycle(family_, cycle, report_.start, continuing);
+    Branch branch = continue_cycle(in_exact_time(family_), cycle, report_.start, continuing);
     if (branch.points.empty()) {
       report_.notes.push_back("the cycle of period " + short_number(cycle.period, 6) +
                               " s could not be followed: " + branch.why);

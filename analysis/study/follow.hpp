@@ -22,6 +22,7 @@ struct FollowReport {
   double start = 0.0;  ///< the value at which cycles were looked for
   std::vector<Branch> branches;
   std::vector<std::string> notes;
+  std::string refused{};              ///< why this loop was not followed at all, a clause; else empty
   Status status = Status::converged;  ///< no_cycle: none was found at any value that was tried
 };
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "limcycle/analysis/derivative_notes.hpp"
+#include "limcycle/analysis/study/in_exact_time.hpp"
 #include "limcycle/analysis/study/margin_side.hpp"
 
 namespace limcycle {
@@ -20,8 +21,8 @@ class Margins {
   }
 
   MarginReport run() {
-    if (loop_.delay > 0.0) {
-      report_.notes.emplace_back("margins do not treat a delay yet: only the describing function was asked");
+    if (!in_exact_time(loop_)) {
+      report_.refused = no_exact_time;
       report_.status = Status::incomplete;
       measure_balance();
       return std::move(report_);
@@ -53,6 +54,7 @@ class Margins {
 
   void one(std::size_t index) {
     ParameterMargin result{parameters_[index], {}, {}};
+    result.parameter.family = in_exact_time(std::move(result.parameter.family));
     const double each = 0.85 / static_cast<double>(parameters_.size());
     for (const bool up : {true, false}) {
       const double begin = 0.15 + each * (static_cast<double>(index) + (up ? 0.0 : 0.5));

@@ -65,6 +65,7 @@ struct MarginReport {
   std::optional<BalanceDistance> balance;   ///< of the describing function at the own values
   double factor = 10.0;
   std::vector<std::string> notes;
+  std::string refused{};  ///< why the question was not answered for this loop, a clause; else empty
   Status status = Status::converged;
 };
 

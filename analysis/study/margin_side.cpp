@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "limcycle/analysis/short_number.hpp"
@@ -12,9 +13,12 @@ namespace limcycle {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double beyond = 1e-2;    ///< how far past a lost cycle, relative, one looks whether the loop still hunts
-constexpr double at_limit = 1e-9;  ///< relative: the scale of a branch is logarithmic
-constexpr int successors = 3;      ///< other cycles that are followed in turn
+/// How far past a lost cycle, relative, simulations tell whether the loop still hunts: farther where they do not
+/// decide, as right beside a pitchfork, where the cycles that take over are reached slowly.
+constexpr double beyond_lost[] = {1e-2, 3e-2, 0.1};
+constexpr double at_limit = 1e-9;            ///< relative: the scale of a branch is logarithmic
+constexpr int successors = 3;                ///< other cycles that are followed in turn
+constexpr long steps_a_branch = 10'000'000;  ///< some minutes at most, where each map takes long
 
 }  // namespace
 
@@ -35,6 +39,7 @@ SideSearch::Lost SideSearch::follow(const Cycle& cycle, double p, double limit) 
   continuing.first_step = 0.1;
   continuing.max_step = 0.6;
   continuing.max_points = 150;
+  continuing.max_steps = steps_a_branch;
   continuing.stop = options_.predict.stop;
   continuing.progress = progress_;
   const Branch branch = continue_cycle(parameter_.family, cycle, p, continuing);
@@ -62,66 +67,89 @@ MarginSide SideSearch::found(MarginSide::What what, const Lost& lost, std::strin
   return {what, lost.value, lost.error, std::move(why), lost.event, lost.cycle};
 }
 
-std::optional<Cycle> SideSearch::cycle_at(double p, const LoopState* from, Outcome& outcome) {
+SideSearch::Reached SideSearch::reached_at(double p, const std::vector<LoopState>& from) {
   const auto loop = parameter_.family(p);
-  outcome = Outcome::undecided;
-  if (!loop) return std::nullopt;
+  if (!loop) return {};
   const SearchBox box = default_search_box(*loop);
   const double widest = output_per_input(*loop) * box.amplitude_max;
   const SettleOptions settling = cycle_search(*loop, box, options_.accuracy, options_.predict.stop);
-  std::vector<LoopState> starts;
-  const LoopState rest = displaced(*loop, widest);
-  if (from && from->x.size() == rest.x.size()) starts.push_back(*from);
-  starts.push_back(rest);
-  starts.push_back(displaced(*loop, 0.01 * widest));
+  std::vector<LoopState> starts{displaced(*loop, widest), displaced(*loop, 0.01 * widest)};
+  std::ranges::copy_if(from, std::inserter(starts, starts.begin()),
+                       [&](const LoopState& state) { return state.x.size() == starts.back().x.size(); });
+  Reached reached;
+  bool open = false;
   for (const LoopState& start : starts) {
     auto settled = settle(*loop, start, settling);
-    if (settled.shot && settled.shot->cycle.stable == true) {
-      outcome = Outcome::cycle;
-      return std::move(settled.shot->cycle);
-    }
+    if (settled.shot && settled.shot->cycle.stable == true) return {std::move(settled.shot->cycle), Outcome::cycle};
+    if (stopped()) return {};
     // What goes on for ever in another way has not ended.
-    const bool persists = settled.outcome == Outcome::family || settled.outcome == Outcome::irregular;
-    if (outcome == Outcome::undecided && !persists) outcome = settled.outcome;
-    if (settled.outcome == Outcome::divergence || stopped()) break;
+    const bool ended = settled.outcome == Outcome::rest || settled.outcome == Outcome::sliding ||
+                       settled.outcome == Outcome::divergence;
+    open = open || !ended;
+    if (ended && reached.outcome == Outcome::undecided) reached.outcome = settled.outcome;
+    if (settled.outcome == Outcome::divergence && from.empty()) return reached;
   }
-  return std::nullopt;
+  if (open) reached.outcome = Outcome::undecided;
+  return reached;
+}
+
+MarginSide SideSearch::beyond(const Lost& lost, std::optional<Cycle>& other, double& at) {
+  using What = MarginSide::What;
+  std::vector<LoopState> starts{lost.last};
+  std::ranges::copy(starts_, std::back_inserter(starts));
+  const double outwards = std::abs(limit_) > std::abs(parameter_.value) ? 1.0 : -1.0;
+  for (const double reach : beyond_lost) {
+    double next = lost.value * (1.0 + outwards * reach);
+    if (std::abs(std::log(next / parameter_.value)) > std::abs(std::log(limit_ / parameter_.value))) next = limit_;
+    const bool first = reach == beyond_lost[0];
+    if (!parameter_.family(next)) {
+      if (first) return found(What::ends, lost, lost.why);
+      break;
+    }
+    Reached reached = reached_at(next, starts);
+    if (reached.cycle) {
+      other = std::move(reached.cycle);
+      at = next;
+      return {};
+    }
+    if (stopped()) return {};
+    if (reached.outcome != Outcome::undecided) {
+      const std::string after = reached.outcome == Outcome::divergence
+                                    ? " the motion diverges"
+                                    : " the motion ends in " + std::string(to_string(reached.outcome));
+      MarginSide side = found(What::ends, lost, lost.why + "; beyond it" + after);
+      side.diverges = reached.outcome == Outcome::divergence;
+      if (first) return side;
+      side.why = "the cycle is lost at " + short_number(lost.value, 5) + ": " + lost.why + "; at " +
+                 short_number(next, 5) + after + "; the motion between the two was not determined";
+      side.value = next;
+      side.error = unknown;
+      return side;
+    }
+    if (next == limit_) break;
+  }
+  return {What::unknown, 0.0, unknown,
+          "the cycle is lost at " + short_number(lost.value, 5) + ": " + lost.why +
+              "; whether the loop hunts beyond it was not determined"};
 }
 
 MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
   using What = MarginSide::What;
-  const auto stable = std::ranges::find(cycles, std::optional<bool>(true), &Cycle::stable);
-  Cycle cycle = *stable;
+  starts_.clear();
+  for (const Cycle& one : cycles)
+    if (one.stable == true) starts_.push_back(one.start);
+  Cycle cycle = *std::ranges::find(cycles, std::optional<bool>(true), &Cycle::stable);
   double p = parameter_.value;
   for (int i = 0; i <= successors; ++i) {
     const Lost lost = follow(cycle, p, limit_);
     if (lost.kind == Lost::Kind::border)
       return {What::none, 0.0, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
     if (lost.kind == Lost::Kind::failed) return {What::unknown, 0.0, unknown, lost.why};
-    const double step = limit_ > p ? beyond : -beyond;
-    double next = lost.value * (1.0 + (parameter_.value > 0.0 ? step : -step));
-    if (std::abs(std::log(next / parameter_.value)) > std::abs(std::log(limit_ / parameter_.value))) next = limit_;
-    if (!parameter_.family(next)) return found(What::ends, lost, lost.why);
-    Outcome outcome{};
-    auto other = cycle_at(next, &lost.last, outcome);
-    if (stopped()) break;
-    if (!other) {
-      if (outcome != Outcome::undecided) {
-        const std::string after = outcome == Outcome::divergence
-                                      ? "; beyond it the motion diverges"
-                                      : "; beyond it the motion ends in " + std::string(to_string(outcome));
-        MarginSide side = found(What::ends, lost, lost.why + after);
-        side.diverges = outcome == Outcome::divergence;
-        return side;
-      }
-      if (!lost.event && std::isnan(lost.error))  // neither side of the end is understood
-        return {What::unknown, 0.0, unknown,
-                "the cycle was lost near " + short_number(lost.value, 5) + ": " + lost.why +
-                    "; what the motion does just beyond was not decided"};
-      return found(What::ends, lost, lost.why + "; what the motion does just beyond was not decided");
-    }
+    std::optional<Cycle> other;
+    const MarginSide side = beyond(lost, other, p);
+    if (!other) return side;
     cycle = std::move(*other);
-    p = next;
+    if (p == limit_) return {What::none, 0.0, 0.0, "it hunts at " + short_number(limit_, 5) + ", on another cycle"};
   }
   return {What::unknown, 0.0, unknown,
           "one cycle takes over from the next; the last was lost near " + short_number(p, 5)};
@@ -137,8 +165,7 @@ MarginSide SideSearch::where_hunting_begins() {
     if (!parameter_.family(p))
       return {What::none, 0.0, 0.0,
               "none up to " + short_number(last, 5) + "; the case is not valid at " + short_number(p, 5)};
-    Outcome outcome{};
-    const auto cycle = cycle_at(p, nullptr, outcome);
+    const auto [cycle, outcome] = reached_at(p, {});
     if (outcome == Outcome::divergence)
       return {What::none, 0.0, 0.0,
               "none up to " + short_number(last, 5) + "; at " + short_number(p, 5) + " the motion diverges"};

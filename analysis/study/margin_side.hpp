@@ -29,14 +29,22 @@ class SideSearch {
   /// Follows a stable cycle from p towards `limit` until it is lost.
   Lost follow(const Cycle& cycle, double p, double limit);
   static MarginSide found(MarginSide::What what, const Lost& lost, std::string why);
-  /// A stable cycle at p, reached from a state or from rest displaced; `outcome`: what was reached.
-  std::optional<Cycle> cycle_at(double p, const LoopState* from, Outcome& outcome);
+  /// What simulations from these states, and from rest displaced, come to at p.
+  struct Reached {
+    std::optional<Cycle> cycle;  ///< the first stable one
+    /// Without a cycle: that of the first start. Undecided where one of them was, or goes on for ever in another way.
+    Outcome outcome = Outcome::undecided;
+  };
+  Reached reached_at(double p, const std::vector<LoopState>& from);
+  /// The side of a lost cycle: outwards until simulations decide.
+  MarginSide beyond(const Lost& lost, std::optional<Cycle>& other, double& at);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
 
   const MarginParameter& parameter_;
   const MarginOptions& options_;
   std::function<void(double)> progress_;
   double limit_;
+  std::vector<LoopState> starts_;  ///< on the stable cycles at the own value
 };
 
 }  // namespace limcycle

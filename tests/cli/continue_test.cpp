@@ -145,6 +145,39 @@ TEST_CASE("margin: bad input ends with 2") {
   CHECK_THAT(zero.err, Contains("no factor changes it"));
 }
 
+TEST_CASE("continue, margin: the cycle of a relay with a dead time, against its closed form") {
+  const std::string late = shipped("relay-delay.toml");
+  const auto ran = run({"continue", late, "--parameter", "loop.plant.delay=0.2:2", "--json", "-"});
+  REQUIRE(ran.code == 0);
+  int stable = 0;
+  for (const auto& point : Json::parse(ran.out)["branch"]) {
+    if (point["stable"] != true) continue;
+    ++stable;
+    const double L = point["parameter"];
+    CHECK(point["period"].get<double>() == Approx(2.0 * std::log(2.0 * std::exp(L) - 1.0)).epsilon(1e-8));
+    CHECK(point["amplitude"].get<double>() == Approx(1.0 - std::exp(-L)).epsilon(1e-8));
+  }
+  CHECK(stable > 10);
+  const auto margin = run({"margin", late, "--parameter", "loop.plant.delay", "--json", "-"});
+  REQUIRE(margin.code == 0);
+  const auto document = Json::parse(margin.out);
+  CHECK(document["hunts"] == true);
+  for (const char* side : {"up", "down"}) CHECK(document["parameters"][0][side]["hunting"] == "none");
+}
+
+TEST_CASE("continue, margin: a dead time that is not behind a relay is refused, the reason first") {
+  const std::vector<std::string> late{shipped("saturation.toml"), "--set", "loop.plant.delay=0.2"};
+  for (const auto& command : {with({"continue"}, with(late, {"--parameter", "loop.element.slope=1:2"})),
+                              with({"margin"}, with(late, {"--parameter", "loop.element.slope"}))}) {
+    const auto ran = run(command);
+    CHECK(ran.code == 3);
+    CHECK_THAT(ran.out, Contains("\nNot answered: the dead time of this loop"));
+  }
+  const auto local = run({"sensitivity", shipped("relay-delay.toml"), "--local"});
+  CHECK(local.code == 0);
+  CHECK_THAT(local.out, Contains("The derivatives of the limit cycle were not computed"));
+}
+
 TEST_CASE("continue: a cycle that shrinks to nothing ends there, and not as points without size or period") {
   const auto ran =
       run({"continue", shipped("tutorial-servo.toml"), "--parameter", "loop.friction.Fs=8:12", "--json", "-"});
