@@ -71,6 +71,8 @@ class LoopField {
   bool fire(State& x, double t, std::size_t guard, SwitchSlopes& slopes);
   /// The element whose guard this is.
   std::size_t owner(std::size_t guard) const;
+  /// Whether element i holds its body now, as one that sticks does.
+  bool holds(std::size_t i) const { return held(i) != Held::nothing; }
   /// Modes of elements without history at this state, whose own states are set too.
   void start(State& x, double t);
 

@@ -105,6 +105,7 @@ class March {
   std::pair<double, double> crossing(std::size_t guard, double from, double to);
   std::size_t first_of_candidates(const std::vector<double>& at_start, double from, double to);
   double locate(std::size_t guard, double from, double to);
+  double just_beyond(std::size_t guard, double at, double last);
   Status land(std::size_t guard, double h);
 
   LoopField& field_;

@@ -95,7 +95,19 @@ double March::locate(std::size_t guard, double from, double to) {
     if (value == 0.0 || std::abs(next - at) <= 2e-16 * std::max(h, std::abs(step_.t0)) || high - low < 1e-16 * h) break;
     at = next;
   }
-  return best;
+  return guard != section_guard && field_.holds(field_.owner(guard)) ? just_beyond(guard, best, to * h) : best;
+}
+
+/// A body that breaks away must be beyond its guard: with a force that rounding leaves short of break-away it would slide
+/// back, stick and break away again at the same instant.
+double March::just_beyond(std::size_t guard, double at, double last) {
+  double step = 2e-16 * std::max(last, std::abs(step_.t0));
+  for (int i = 0; i < 20; ++i, step *= 2.0) {
+    repeat(at, work_);
+    if (event_value(guard, work_, step_.t0 + at) < 0.0 || at + step > last) break;
+    at += step;
+  }
+  return at;
 }
 
 Status March::land(std::size_t guard, double h) {

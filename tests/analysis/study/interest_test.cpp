@@ -26,7 +26,7 @@ TEST_CASE("interest: a cycle below the least amplitude, or of a frequency outsid
   CHECK(is_of_interest(box, cycle_of(50.0, 10.0)));  // larger than feared is of interest
 }
 
-TEST_CASE("interest: a box of the user stays and the cycle is told; a default box is widened") {
+TEST_CASE("interest: a box of the user stays, a default box is widened") {
   const std::vector<Cycle> cycles{cycle_of(1e-3, 10.0), cycle_of(8e-9, 1733.0)};
   SearchBox given = box;
   auto notes = compare_with_interest(cycles, true, given);
