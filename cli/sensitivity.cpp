@@ -242,7 +242,7 @@ void add_sensitivity(CLI::App& program, Action& action) {
   CLI::App* command = add_command(program, action, "sensitivity",
                                   "How the cycle moves with every number, and whether the loop hunts over a spread",
                                   true, flags, [flags] { return run(*flags); });
-  command->add_option("--samples", flags->samples, "Base samples of the Sobol study (default: of the case, or 1024)")
+  command->add_option("--samples", flags->samples, "Base samples of the Sobol study (default: of the case, or 256)")
       ->type_name("N")
       ->check(CLI::Range(1, 1 << 24));
   command->add_option("--trajectories", flags->trajectories, "Trajectories of the Morris study")

@@ -29,7 +29,7 @@ struct SpreadParameter {
 /// [sensitivity] of a case: over what its parameters are spread, and how many samples a study of it takes.
 struct ParameterSpread {
   std::vector<SpreadParameter> parameters;
-  int samples = 1024;
+  int samples = 256;
   std::uint64_t seed = 0;
 };
 
