@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "limcycle/models/linear/dense.hpp"
+#include "limcycle/models/linear/transfer.hpp"
 
 namespace limcycle {
 namespace {
@@ -165,10 +166,13 @@ double frequency_of_scales(const Loop& loop) {
   return std::isfinite(found) ? found : 0.0;
 }
 
+/// Moduli of the poles that are not zero. A double pole at the origin (a free body) is computed as two small ones, of
+/// the root of rounding: how many are zero is decided by ranks.
 void add_moduli(const MatrixXd& A, std::vector<double>& found) {
-  const VectorXd moduli = eigenvalues(A).cwiseAbs();
-  for (const double modulus : moduli)
-    if (modulus > negligible * moduli.maxCoeff()) found.push_back(modulus);
+  VectorXd moduli = eigenvalues(A).cwiseAbs();
+  std::ranges::sort(moduli);
+  for (Index i = zero_modes(A).times; i < moduli.size(); ++i)
+    if (moduli(i) > negligible * moduli.maxCoeff()) found.push_back(moduli(i));
 }
 
 /// Factor on the velocity scale of a set-valued law whose curve begins with infinite slope, g = Fs - (...)|v/vs|^delta

@@ -38,23 +38,6 @@ Worth worth_of(const std::string& method, const PredictReport& report) {
   return known ? Worth::right : Worth::undecided;
 }
 
-/// The prediction nearest to the cycle that it is about.
-MethodAtPoint method_at(const std::string& method, const PredictReport& report) {
-  MethodAtPoint at{worth_of(method, report)};
-  double nearest = infinite;
-  for (const Prediction& p : report.predictions) {
-    if (p.method != method || !p.cycle) continue;
-    const Cycle& cycle = report.cycles[*p.cycle];
-    const double amplitude = p.amplitude / cycle.first_harmonic, frequency = p.frequency / cycle.frequency();
-    const double distance = std::abs(std::log(amplitude)) + std::abs(std::log(frequency));
-    if (!(distance < nearest)) continue;
-    nearest = distance;
-    at.amplitude = amplitude;
-    at.frequency = frequency;
-  }
-  return at;
-}
-
 MapPoint seen(const PredictReport& report) {
   MapPoint point;
   for (const Outcome outcome : every_outcome)
@@ -72,6 +55,22 @@ MapPoint seen(const PredictReport& report) {
 }
 
 }  // namespace
+
+MethodAtPoint method_at(const std::string& method, const PredictReport& report) {
+  MethodAtPoint at{worth_of(method, report)};
+  double nearest = infinite;
+  for (const Prediction& p : report.predictions) {
+    if (p.method != method || !p.cycle) continue;
+    const Cycle& cycle = report.cycles[*p.cycle];
+    const double amplitude = p.amplitude / cycle.first_harmonic, frequency = p.frequency / cycle.frequency();
+    const double distance = std::abs(std::log(amplitude)) + std::abs(std::log(frequency));
+    if (!(distance < nearest)) continue;
+    nearest = distance;
+    at.amplitude = amplitude;
+    at.frequency = frequency;
+  }
+  return at;
+}
 
 std::string_view to_string(Worth worth) {
   constexpr std::string_view names[] = {"right", "biased", "missed", "false", "undecided", "not applicable"};

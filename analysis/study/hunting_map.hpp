@@ -31,6 +31,10 @@ struct MethodAtPoint {
   double frequency = NAN;  ///< likewise
 };
 
+/// The same, of the prediction nearest to the cycle that it is about. Nothing predicted is right only where every start
+/// was decided.
+MethodAtPoint method_at(const std::string& method, const PredictReport& report);
+
 /// What happens at one point of a map.
 struct MapPoint {
   std::vector<Outcome> outcomes;  ///< each once, that motions came to; none: the values are not a valid case

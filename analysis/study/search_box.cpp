@@ -16,6 +16,25 @@ double widest_swing(const Loop& loop) {
   return gravity ? 2.0 / output_per_input(loop) : infinite;
 }
 
+/// The loop as large swings see it: a quantizer passes them as they are.
+Loop at_large_swings(Loop loop) {
+  Port& main = loop.ports.back();
+  for (std::size_t k = 0; k + 1 < loop.elements.size(); ++k) {
+    const bool passes = std::visit(
+        []<class E>(const E&) {
+          return requires(const E& e) { e.step; };
+        },
+        loop.elements[k]);
+    if (!passes) continue;
+    const Port& port = loop.ports[k];
+    const auto column = static_cast<Eigen::Index>(k);
+    loop.A += loop.B.col(column) * port.C;
+    if (loop.A_delayed.size() > 0 && port.C_delayed.size() > 0) loop.A_delayed += loop.B.col(column) * port.C_delayed;
+    main.C += main.D(column) * port.C;
+  }
+  return loop;
+}
+
 }  // namespace
 
 /// Two decades around the loop's poles; amplitudes up to three times the largest response to the element's level there
@@ -28,10 +47,11 @@ SearchBox default_search_box(const Loop& loop) {
   if (loop.delay > 0.0) box.frequency_max = std::min(box.frequency_max, std::max(10.0 * fast, 30.0 / loop.delay));
   const auto main = std::ssize(loop.elements) - 1;
   const double output = output_level(loop, loop.elements.size() - 1);
+  const Loop swung = at_large_swings(loop);
   double largest = 0.0;
   for (int i = 0; i <= 200; ++i) {
     const double w = 0.1 * slow * std::pow(100.0 * fast / slow, i / 200.0);
-    const double level = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(main, main)) * output;
+    const double level = std::abs(swung.element_response(std::complex<double>(0.1 * w, w))(main, main)) * output;
     if (std::isfinite(level)) largest = std::max(largest, level);
   }
   if (!(largest > 0.0)) largest = 1.0;

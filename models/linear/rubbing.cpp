@@ -46,7 +46,11 @@ Row integral_of(const Row& velocity, const Eigen::MatrixXd& A, const Eigen::Matr
     equations.row(i) *= scale;
     wanted(i) *= scale;
   }
-  const Row found = unit.cwiseProduct(least_squares(equations, wanted, 1e-12)).transpose();
+  Eigen::VectorXd in_units = least_squares(equations, wanted, 1e-12);
+  // What is zero but for rounding would look like a displacement that a force moves at once.
+  const double rounding = 1e-12 * in_units.norm();
+  in_units = (in_units.array().abs() > rounding).select(in_units, 0.0);
+  const Row found = unit.cwiseProduct(in_units).transpose();
   return is_rate_of(velocity, found, A, B, 1e-9) ? found : Row::Zero(n);
 }
 

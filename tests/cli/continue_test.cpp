@@ -150,7 +150,8 @@ TEST_CASE("continue, margin: the cycle of a relay with a dead time, against its 
   const auto ran = run({"continue", late, "--parameter", "loop.plant.delay=0.2:2", "--json", "-"});
   REQUIRE(ran.code == 0);
   int stable = 0;
-  for (const auto& point : Json::parse(ran.out)["branch"]) {
+  const auto followed = Json::parse(ran.out);
+  for (const auto& point : followed["branch"]) {
     if (point["stable"] != true) continue;
     ++stable;
     const double L = point["parameter"];

@@ -71,21 +71,6 @@ TEST_CASE("map: the same bytes for any number of threads, and from a store that 
   CHECK(other.code == 2);
 }
 
-TEST_CASE("map: where nothing is decided a method that predicts nothing is not called right") {
-  // An undamped spring on a belt that runs far above the Stribeck velocity: swings neither grow nor die out.
-  const Ran ran = run({"map", shipped("belt-lugre.toml"), "--x", "loop.plant.speed=0.02:0.5:2", "--y",
-                       "loop.friction.Fs=1.05:2:2", "--json", "-", "--quiet"});
-  REQUIRE(ran.code == 0);
-  const auto document = nlohmann::json::parse(ran.out);
-  int undecided = 0;
-  for (const auto& point : document["points"]) {
-    if (point["happens"] != "undecided") continue;
-    ++undecided;
-    CHECK(point["methods"][0]["worth"] == "undecided");
-  }
-  CHECK(undecided == 2);
-}
-
 TEST_CASE("map: what cannot be a map is refused") {
   const auto refused = [](std::vector<std::string> flags, const std::string& words) {
     std::vector<std::string> all{"map", servo_case};

@@ -52,6 +52,16 @@ TEST_CASE("hunting map: the describing function is right of a relay loop and bli
   CHECK(still.methods[0].worth == Worth::right);
 }
 
+TEST_CASE("hunting map: where a start is undecided a method that predicts nothing is not called right") {
+  PredictReport report;
+  report.outcomes.resize(2);
+  report.outcomes[0].outcome = Outcome::rest;
+  report.outcomes[1].outcome = Outcome::undecided;
+  CHECK(method_at("describing-function", report).worth == Worth::undecided);
+  report.outcomes[1].outcome = Outcome::rest;
+  CHECK(method_at("describing-function", report).worth == Worth::right);
+}
+
 TEST_CASE("hunting map: a point survives being a row, and no other row is taken for one") {
   MapPoint point;
   point.outcomes = {Outcome::rest, Outcome::cycle};
