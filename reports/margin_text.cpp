@@ -73,6 +73,12 @@ std::string reasons(const MarginReport& report, bool friction) {
   return out;
 }
 
+bool has_unknown_side(const MarginReport& report) {
+  return std::ranges::any_of(report.parameters, [](const ParameterMargin& one) {
+    return one.up.what == MarginSide::What::unknown || one.down.what == MarginSide::What::unknown;
+  });
+}
+
 }  // namespace
 
 Table margin_table(const MarginReport& report, bool friction) {
@@ -110,7 +116,8 @@ std::string margin_answer(const MarginReport& report, const Units& units) {
   if (design)
     out += fmt::format(" The smallest change of plant or controller that {} it: {}.", verb, step(*design));
   else if (std::ranges::any_of(report.parameters, [](const auto& one) { return !one.parameter.friction; }))
-    out += fmt::format(" No single change of plant or controller within a factor of {:g} {} it.", report.factor, verb);
+    out += fmt::format(" No single change of plant or controller within a factor of {:g} {} it{}.", report.factor, verb,
+                       has_unknown_side(report) ? ", as far as was determined" : "");
   if (law) out += fmt::format(" Of the friction: {}.", step(*law));
   return out + of_balance(report);
 }

@@ -167,12 +167,17 @@ double frequency_of_scales(const Loop& loop) {
 }
 
 /// Moduli of the poles that are not zero. A double pole at the origin (a free body) is computed as two small ones, of
-/// the root of rounding: how many are zero is decided by ranks.
+/// the root of rounding: how many of such a size are zero is decided by ranks.
 void add_moduli(const MatrixXd& A, std::vector<double>& found) {
+  constexpr double root_of_rounding = 1e-7;
   VectorXd moduli = eigenvalues(A).cwiseAbs();
   std::ranges::sort(moduli);
-  for (Index i = zero_modes(A).times; i < moduli.size(); ++i)
-    if (moduli(i) > negligible * moduli.maxCoeff()) found.push_back(moduli(i));
+  const double largest = moduli.maxCoeff();
+  const bool doubtful =
+      std::ranges::any_of(moduli, [&](double m) { return m > negligible * largest && m < root_of_rounding * largest; });
+  const int zero = doubtful ? zero_modes(balanced(A)).times : 0;
+  for (Index i = 0; i < moduli.size(); ++i)
+    if (moduli(i) > (i < zero ? root_of_rounding : negligible) * largest) found.push_back(moduli(i));
 }
 
 /// Factor on the velocity scale of a set-valued law whose curve begins with infinite slope, g = Fs - (...)|v/vs|^delta

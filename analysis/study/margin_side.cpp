@@ -128,6 +128,10 @@ MarginSide SideSearch::beyond(const Lost& lost, std::optional<Cycle>& other, dou
     }
     if (next == limit_) break;
   }
+  // Where the branch turns back there is no such cycle beyond; one that loses its symmetry or its stability may go on
+  // as another.
+  if (lost.event == BranchEvent::Type::fold)
+    return found(What::ends, lost, lost.why + "; whether the loop hunts on another cycle beyond it was not determined");
   return {What::unknown, 0.0, unknown,
           "the cycle is lost at " + short_number(lost.value, 5) + ": " + lost.why +
               "; whether the loop hunts beyond it was not determined"};

@@ -127,3 +127,22 @@ TEST_CASE("units: typical sizes of a stiff drive are those of a slow one in anot
   for (const std::size_t velocity : {1, 3}) CHECK(0.0023 * fast[velocity] == Approx(sizes[velocity]).epsilon(1e-6));
   CHECK(fast[4] / 0.0023 == Approx(sizes[4]).epsilon(1e-6));
 }
+
+TEST_CASE("units: a free drive of two masses has no slowest pole by the root of rounding") {
+  for (const double T : {1.0, 1e-3, 1e4}) {
+    TwoMass plant;
+    plant.motor_mass = 0.000460727 * T * T;
+    plant.load_mass = 0.00060315 * T * T;
+    plant.stiffness = 71557.2;
+    plant.damping = 0.543673 * T;
+    plant.friction_on.index = plant.measured.index = 1;
+    LoopParts parts;
+    parts.plant = plant;
+    auto controller = pid(436.788, 15668.1 / T, 1.76729 * T);
+    controller.saturation = 69570.6;
+    parts.controller = controller;
+    parts.friction = coulomb(6272.59, 3539.38);
+    // The slowest is that of the integral action, near ki/kp.
+    CHECK(pole_moduli(build_loop(parts)).front() * T == Approx(15668.1 / 436.788).epsilon(0.3));
+  }
+}
