@@ -98,8 +98,8 @@ double March::locate(std::size_t guard, double from, double to) {
   return guard != section_guard && field_.holds(field_.owner(guard)) ? just_beyond(guard, best, to * h) : best;
 }
 
-/// A body that breaks away must be beyond its guard: with a force that rounding leaves short of break-away it would slide
-/// back, stick and break away again at the same instant.
+/// A body that breaks away must be beyond its guard: with a force that rounding leaves short of break-away it would
+/// slide back, stick and break away again at the same instant.
 double March::just_beyond(std::size_t guard, double at, double last) {
   double step = 2e-16 * std::max(last, std::abs(step_.t0));
   for (int i = 0; i < 20; ++i, step *= 2.0) {
