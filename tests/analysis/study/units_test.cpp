@@ -123,8 +123,8 @@ TEST_CASE("units: typical sizes of a stiff drive are those of a slow one in anot
     return build_loop(parts);
   };
   const State sizes = typical_sizes(drive(1.0)), fast = typical_sizes(drive(0.0023));
-  for (const std::size_t position : {0, 2}) CHECK(fast[position] == Approx(sizes[position]).epsilon(1e-6));
-  for (const std::size_t velocity : {1, 3}) CHECK(0.0023 * fast[velocity] == Approx(sizes[velocity]).epsilon(1e-6));
+  for (const std::size_t position : {0u, 2u}) CHECK(fast[position] == Approx(sizes[position]).epsilon(1e-6));
+  for (const std::size_t velocity : {1u, 3u}) CHECK(0.0023 * fast[velocity] == Approx(sizes[velocity]).epsilon(1e-6));
   CHECK(fast[4] / 0.0023 == Approx(sizes[4]).epsilon(1e-6));
 }
 
