@@ -150,7 +150,7 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
       return {What::none, 0.0, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
     if (lost.kind == Lost::Kind::failed) return {What::unknown, 0.0, unknown, lost.why};
     std::optional<Cycle> other;
-    const MarginSide side = beyond(lost, other, p);
+    MarginSide side = beyond(lost, other, p);
     if (!other) return side;
     cycle = std::move(*other);
     if (p == limit_) return {What::none, 0.0, 0.0, "it hunts at " + short_number(limit_, 5) + ", on another cycle"};
