@@ -17,11 +17,12 @@ struct LoopState {
 /// What a run looks like from outside, for tables and pictures. Columns are of equal length.
 struct Trace {
   std::vector<double> t;         ///< s
-  std::vector<double> y;         ///< measured output
+  std::vector<double> y;         ///< measured output, from y_origin
   std::vector<double> rate;      ///< dy/dt
   std::vector<double> input;     ///< input of the element of interest (the friction if there is one, else the last)
   std::vector<double> velocity;  ///< rate of that input
   std::vector<double> output;    ///< output of that element (friction force, N)
+  double y_origin = 0.0;         ///< see Loop::output_origin; `input` of a friction law begins there too
 };
 
 /// A periodic motion of a loop.

@@ -5,7 +5,9 @@ add_executable(limcycle ${cli_sources})
 target_link_libraries(limcycle PRIVATE limcycle_options limcycle_cases limcycle_reports CLI11::CLI11 fmt::fmt
   nlohmann_json::nlohmann_json)
 limcycle_unoptimised_if_watched(limcycle)
-limcycle_optimised_first(limcycle limcycle_analysis limcycle_models)
+if(LIMCYCLE_SANITIZE)
+  limcycle_optimised_first(limcycle limcycle_analysis limcycle_models)
+endif()
 limcycle_unity(limcycle)
 if(LIMCYCLE_MPI)
   # Only the C interface is called (from C++, the one language here); one source sees it, and by itself.

@@ -127,6 +127,8 @@ Loop with_pade(const Loop& from, const MatrixXd& signals, const StateSpace& pade
   loop.A_delayed = MatrixXd::Zero(n + more, n + more);
   loop.B = stacked(from.B, more);
   loop.E = stacked(from.E, more);
+  if (from.origin.size() > 0) loop.origin = stacked(from.origin, more);
+  if (from.origin_rate.size() > 0) loop.origin_rate = stacked(from.origin_rate, more);
   loop.C_y = stacked(from.C_y.transpose(), more).transpose();
   for (auto& port : loop.ports) {
     const Eigen::RowVectorXd now = stacked(port.C.transpose(), more).transpose();

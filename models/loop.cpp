@@ -66,6 +66,7 @@ std::optional<BrokenRule> move_along(Loop& loop, double rate) {
   }
   loop.external(reference_slope) = rate;
   loop.E.col(constant_one) -= X_r;
+  loop.origin_rate = X_r;
   loop.ramp_output_rate = (loop.C_y * X_r).value();
   return std::nullopt;
 }
@@ -141,6 +142,7 @@ Loop build_loop(const LoopParts& parts) {
   if (const auto broken = validate(parts)) throw std::invalid_argument(broken->key + ": " + broken->rule);
   Loop loop = assemble(parts);
   if (parts.reference_rate != 0.0) move_along(loop, parts.reference_rate);
+  loop.measure_from_rest();
   return loop;
 }
 

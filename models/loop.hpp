@@ -44,8 +44,9 @@ struct Port {
 /// Lur'e form: linear part  dX/dt = A X + A_delayed X(t - delay) + B w + E ext,  y = C_y X,  with nonlinear elements
 /// w_i = element_i(x_i, v_i, own state) in feedback. Friction enters with its sign: its column of B is negative.
 ///
-/// With a ramp reference the states are measured from the steadily moving point X_r t, so that cycles about it are
-/// periodic; `ramp_output_rate` = C_y X_r tells how fast y moves on the average.
+/// States, y and the signals from outside are measured from where the loop rests, `origin`, if it rests at all: a
+/// motion of micrometres about a set-point of metres has as many digits as the same motion about zero. With a ramp
+/// reference that point moves steadily, origin + origin_rate t, so that cycles about it are periodic.
 struct Loop {
   Eigen::MatrixXd A, A_delayed, B;
   Eigen::Matrix<double, Eigen::Dynamic, 4> E;
@@ -54,9 +55,12 @@ struct Loop {
   std::vector<Port> ports;
   External external = External::Zero();
   double delay = 0.0;
+  Eigen::VectorXd origin, origin_rate;          ///< states of the case are origin + origin_rate t + X; empty: zero
+  External external_origin = External::Zero();  ///< signals from outside are these and `external`
+  double output_origin = 0.0;                   ///< y of the case is this, ramp_output_rate t, and C_y X
   double ramp_output_rate = 0.0;
   std::vector<std::string> state_names;  ///< as the case writes them; see own_states
-  /// The states that state_names name = own_states X (see rubbing_coordinates()); empty: X itself.
+  /// The states that state_names name = own_states (origin + X) (see rubbing_coordinates()); empty: origin + X.
   Eigen::MatrixXd own_states;
 
   Eigen::Index states() const { return A.rows(); }
@@ -66,6 +70,9 @@ struct Loop {
   Eigen::MatrixXcd element_response(double w) const { return element_response(std::complex<double>(0.0, w)); }
   /// The same at any s off the poles.
   Eigen::MatrixXcd element_response(std::complex<double> s) const;
+
+  /// The same loop with everything measured from its rest point; unchanged where rest_point() is not exact.
+  void measure_from_rest();
 
   /// Response of y to the outputs of the elements, 1 x n_e.
   Eigen::RowVectorXcd output_response(double w) const;

@@ -55,9 +55,9 @@ bool solves(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& X, const Eigen
   return solves(matrix, X, given, Eigen::VectorXd::Zero(X.size()));
 }
 
-/// The solution of matrix X + given = 0 with rows and columns in units (powers of two) in which their largest entries
-/// are about 1, so that no row is taken for rounding because of the unit it is written in; empty if there is none.
-std::optional<Eigen::VectorXd> solution_in_own_units(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& given) {
+/// The X that solves matrix X + given = 0 best with rows and columns in units (powers of two) in which their largest
+/// entries are about 1, so that no row is taken for rounding because of the unit it is written in; and whether it does.
+Eigen::VectorXd solution_in_own_units(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& given, bool& exact) {
   Eigen::MatrixXd scaled = matrix;
   Eigen::VectorXd rows = Eigen::VectorXd::Ones(matrix.rows()), columns = Eigen::VectorXd::Ones(matrix.cols());
   const auto unit = [](double largest) { return largest > 0.0 ? std::exp2(-std::round(std::log2(largest))) : 1.0; };
@@ -74,8 +74,38 @@ std::optional<Eigen::VectorXd> solution_in_own_units(const Eigen::MatrixXd& matr
     }
   }
   const Eigen::VectorXd right = rows.cwiseProduct(given), found = least_squares(scaled, -right);
-  if (!solves(scaled, found, right)) return std::nullopt;
+  exact = solves(scaled, found, right);
   return columns.cwiseProduct(found);
+}
+
+/// A + A_delayed times X, plus E times what comes from outside, in more digits than these have.
+Eigen::VectorXd pushed(const Loop& loop, const Eigen::VectorXd& X) {
+  Eigen::VectorXd out(X.size());
+  for (Index i = 0; i < X.size(); ++i) {
+    long double sum = 0.0L;
+    for (Index k = 0; k < X.size(); ++k)
+      sum += (static_cast<long double>(loop.A(i, k)) + loop.A_delayed(i, k)) * static_cast<long double>(X(k));
+    for (Index k = 0; k < loop.E.cols(); ++k)
+      sum += static_cast<long double>(loop.E(i, k)) * static_cast<long double>(loop.external(k));
+    out(i) = static_cast<double>(sum);
+  }
+  return out;
+}
+
+/// X to the last digit of each of its components, large or small: a velocity that should be zero is, beside a position
+/// of kilometres. What is left of a component after its first correction, or as large as its last one, was rounding.
+void refine(const Loop& loop, Eigen::VectorXd& X) {
+  Eigen::VectorXd first, step;
+  for (int i = 0; i < 3; ++i) {
+    bool exact = false;
+    const Pull pull = pull_at(loop, X, Eigen::VectorXd::Zero(std::ssize(loop.elements)));
+    step = solution_in_own_units(loop.A + loop.A_delayed + pull.slope, pushed(loop, X) + pull.force, exact);
+    if (!step.allFinite()) return;
+    if (i == 0) first = step;
+    X += step;
+  }
+  for (Index i = 0; i < X.size(); ++i)
+    if (std::abs(X(i)) <= std::max(8.0 * std::abs(step(i)), 1e-6 * std::abs(first(i)))) X(i) = 0.0;
 }
 
 /// Of several points of rest, the one at which the elements that do not rub see the least: a servo with a dead zone on
@@ -103,12 +133,25 @@ void centre(const Loop& loop, Eigen::VectorXd& X) {
   if (solves(loop.A + loop.A_delayed, moved, loop.E * loop.external)) X = moved;
 }
 
+/// Whether the elements that hold a loop where it moves see less at its rest point than at zero. A relay that holds a
+/// body against its weight keeps it far from where it would rest on a soft spring alone.
+bool nearer_to_its_elements(const Loop& loop, const Eigen::VectorXd& rest) {
+  for (std::size_t i = 0; i < loop.elements.size(); ++i) {
+    const Port& port = loop.ports[i];
+    if (port.rubs || pull_of(loop.elements[i], 0.0, 0.0)) continue;
+    const double at_zero = port.c * loop.external, moved = (port.C + port.C_delayed) * rest;
+    if (std::abs(at_zero + moved) > std::abs(at_zero) + 1e-12 * std::abs(moved)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Eigen::VectorXd Loop::rest_point(bool& exact) const {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(std::ssize(elements));
   Eigen::VectorXd X = mean_point(none, none, exact);
   if (exact) centre(*this, X);
+  if (exact && !X.isZero(0.0)) refine(*this, X);
   return X;
 }
 
@@ -133,11 +176,32 @@ Eigen::VectorXd Loop::mean_point(const Eigen::VectorXd& mean_outputs, const Eige
   exact = solves(still, X, given, last.force);
   if (exact) return X;
   if (!last.any) {
-    const auto other = solution_in_own_units(still, given);
-    exact = other.has_value();
-    if (other) return *other;
+    const Eigen::VectorXd other = solution_in_own_units(still, given, exact);
+    if (exact) return other;
   }
   return first;
+}
+
+void Loop::measure_from_rest() {
+  bool exact = false;
+  const Eigen::VectorXd rest = rest_point(exact);
+  if (!exact || rest.isZero(0.0) || !nearer_to_its_elements(*this, rest)) return;
+  const auto at_rest = [&](const Row& C, const Eigen::RowVector4d& c) {
+    const double value = (C * rest + c * external).value();
+    const double parts = (C.cwiseAbs() * rest.cwiseAbs() + c.cwiseAbs() * external.cwiseAbs()).value();
+    return std::abs(value) <= 1e-12 * parts ? 0.0 : value;
+  };
+  for (Port& port : ports) {
+    port.c(constant_one) = at_rest(port.C + port.C_delayed, port.c);
+    port.c_v(constant_one) = at_rest(port.C_v, port.c_v);
+  }
+  external_origin = external;
+  external_origin(constant_one) = 0.0;
+  external = External::Unit(constant_one);
+  origin = rest;
+  output_origin = C_y.dot(rest.transpose());
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(std::ssize(elements));
+  E.col(constant_one) = -pull_at(*this, Eigen::VectorXd::Zero(states()), none).force;
 }
 
 Eigen::MatrixXd Loop::tangent() const {

@@ -77,6 +77,11 @@ inline Loop belt(Element<double> friction) {
   return build_loop(parts);
 }
 
+/// States as the case has them, of states measured from where a loop rests.
+inline Eigen::VectorXd in_the_case(const Loop& loop, const Eigen::VectorXd& X) {
+  return loop.origin.size() > 0 ? Eigen::VectorXd(loop.origin + X) : X;
+}
+
 inline Loop forward(Element<double> element, std::vector<double> numerator, std::vector<double> denominator) {
   LoopParts parts;
   parts.plant = TransferFunction{std::move(numerator), std::move(denominator), 0.0};

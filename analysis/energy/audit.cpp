@@ -43,10 +43,8 @@ std::optional<std::size_t> port_named(const Loop& loop, std::string_view path) {
   return std::nullopt;
 }
 
-/// Steady motion of the point from which a loop measures its states along a ramp.
-VectorXd motion_of_origin(const LoopParts& parts, const Loop& loop) {
-  if (parts.reference_rate == 0.0) return VectorXd::Zero(loop.states());
-  return assemble(parts).E.col(constant_one) - loop.E.col(constant_one);
+VectorXd zero_if_empty(const VectorXd& origin, Index states) {
+  return origin.size() > 0 ? VectorXd(origin.head(states)) : VectorXd(VectorXd::Zero(states));
 }
 
 }  // namespace
@@ -57,7 +55,9 @@ class EnergyAudit::Count {
       : plant_(model_of(parts.plant)),
         energy_(energy_of(parts.plant)),
         weights_(loop_weights(loop, rtol)),
-        origin_(motion_of_origin(parts, loop).head(plant_.A.rows())),
+        origin_(zero_if_empty(loop.origin, plant_.A.rows())),
+        origin_rate_(zero_if_empty(loop.origin_rate, plant_.A.rows())),
+        constant_load_(loop.external_origin(external_force)),
         friction_(port_named(loop, "loop.friction")),
         gravity_(port_named(loop, "loop.plant.gravity")),
         commanded_(uses_error(parts) || actuator_of(parts.controller).friction_compensation > 0.0) {
@@ -91,7 +91,7 @@ class EnergyAudit::Count {
 
  private:
   VectorXd plant_state(const State& x, double t) const {
-    return Eigen::Map<const VectorXd>(x.data(), origin_.size()) + origin_ * t;
+    return Eigen::Map<const VectorXd>(x.data(), origin_.size()) + origin_ + origin_rate_ * t;
   }
 
   /// The law's states on dual numbers, with the derivatives given.
@@ -132,10 +132,11 @@ class EnergyAudit::Count {
     sum.storing = in_law(field, x, dx_.data()).d[0];
     if (!energy_) return sum;
     const VectorXd X = plant_state(x, t);
-    VectorXd acted = Eigen::Map<const VectorXd>(dx_.data(), X.size()) + origin_ - plant_.A * X;
+    VectorXd acted = Eigen::Map<const VectorXd>(dx_.data(), X.size()) + origin_rate_ - plant_.A * X;
     if (friction_) acted += plant_.B_F * field.output(*friction_);
     if (gravity_) acted += plant_.B_gravity * field.output(*gravity_);
-    const double input = plant_.B_u.dot(acted) / plant_.B_u.squaredNorm(), load = field.external()(external_force);
+    const double input = plant_.B_u.dot(acted) / plant_.B_u.squaredNorm();
+    const double load = constant_load_ + field.external()(external_force);
     const double velocity = plant_.B_u.dot(energy_->kinetic * X);  // the one that is conjugate to the input
     if (commanded_) sum.command = (input - load) * velocity;       // else rounding
     sum.load = load * velocity;
@@ -181,7 +182,8 @@ class EnergyAudit::Count {
   PlantModel plant_;
   std::optional<PlantEnergy> energy_;
   ErrorWeights weights_;
-  VectorXd origin_;
+  VectorXd origin_, origin_rate_;
+  double constant_load_;
   std::optional<std::size_t> friction_, gravity_;
   bool commanded_;
   std::optional<ErasedElement<D>> law_;

@@ -200,7 +200,7 @@ Extent ends(double a, double b) { return {std::min(a, b), std::max(a, b)}; }
 Extent outputs(const Loop& loop, const Equilibria& set, const Extent& force) {
   const Index n = loop.states();
   if (set.free(loop.C_y)) return {-infinite, infinite};
-  const double y = loop.C_y * set.point.head(n), F = set.point(n);
+  const double y = loop.output_origin + (loop.C_y * set.point.head(n)).value(), F = set.point(n);
   const auto along = set.along_force();
   if (!along) return {y, y};
   const double slope = (loop.C_y * along->head(n)).value();

@@ -196,7 +196,7 @@ class Search {
   VectorXcd output_series(const BalanceMeans& means) const {
     const auto H = static_cast<int>(point_.inputs.front().size()) - 1;
     VectorXcd y = VectorXcd::Zero(H + 1), W(std::ssize(loop_.elements));
-    y(0) = {0.0, (loop_.C_y * means.state).value()};
+    y(0) = {0.0, loop_.output_origin + (loop_.C_y * means.state).value()};
     for (int n = 1; n <= H; n += options_.half_wave_symmetric ? 2 : 1) {
       for (Index k = 0; k < W.size(); ++k) W(k) = outputs_.harmonics[static_cast<std::size_t>(k)](n);
       y(n) = (loop_.output_response(n * point_.frequency) * W).value();

@@ -157,7 +157,8 @@ Eigen::RowVectorXd ParameterRates::output(const State& x) const {
   const auto X = as_vector(x).head(loop_->states());
   for (Index k = 0; k < count(); ++k) {
     const auto& [low, high, step, share] = pairs_[static_cast<std::size_t>(k)];
-    change(k) = ((high->loop->C_y - low->loop->C_y) * X).value() / (2.0 * step);
+    const double moved = high->loop->output_origin - low->loop->output_origin;
+    change(k) = (moved + ((high->loop->C_y - low->loop->C_y) * X).value()) / (2.0 * step);
   }
   return change;
 }

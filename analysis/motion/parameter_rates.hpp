@@ -85,7 +85,7 @@ class ParameterRates {
   /// The step as a share of the parameter.
   double share(Eigen::Index k) const { return pairs_[static_cast<std::size_t>(k)].share; }
 
-  /// d(C_y)/dp x, the part of dy/dp that comes of how y is read.
+  /// d(output_origin)/dp + d(C_y)/dp x, the part of dy/dp that comes of how y is read.
   Eigen::RowVectorXd output(const State& x) const;
 
  private:

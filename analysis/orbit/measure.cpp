@@ -92,6 +92,9 @@ Eigen::VectorXcd harmonics(const std::vector<double>& t, const std::vector<doubl
   return sum;
 }
 
+/// Where a trace measures a rubbing displacement from: a body far from zero moves by micrometres.
+double rubbing_origin(const Loop& loop, const Port& port) { return port.rubs ? (port.c * loop.external).value() : 0.0; }
+
 }  // namespace
 
 Eigen::VectorXcd input_harmonics(const Cycle& cycle, int H) {
@@ -106,14 +109,16 @@ Eigen::VectorXcd input_harmonics(const Cycle& cycle, int H) {
 
 void append(Trace& trace, LoopField& field, const State& x, const State& dx, double t) {
   const std::size_t i = element_of_interest(field.loop());
+  const Port& port = field.loop().ports[i];
   const double travelled =
-      !rubs_along_no_state(field.loop().ports[i]) || trace.t.empty()
+      !rubs_along_no_state(port) || trace.t.empty()
           ? 0.0
           : trace.input.back() + 0.5 * (t - trace.t.back()) * (trace.velocity.back() + field.input(i).v);
   trace.t.push_back(t);
   trace.y.push_back(field.y(x));
+  trace.y_origin = field.loop().output_origin;
   trace.rate.push_back(field.y_rate(dx));
-  trace.input.push_back(field.input(i).x + travelled);
+  trace.input.push_back(field.input(i).x - rubbing_origin(field.loop(), port) + travelled);
   trace.velocity.push_back(field.input(i).v);
   trace.output.push_back(field.output(i));
 }
@@ -144,8 +149,9 @@ Status record(const Loop& loop, const LoopState& from, double duration, double r
 void append_reflected(const Loop& loop, const Eigen::VectorXd& centre, Trace& trace) {
   const Port& port = loop.ports[element_of_interest(loop)];
   const double y_middle = loop.C_y.dot(centre.transpose());
-  const double input_middle = rubs_along_no_state(port) ? 0.5 * (trace.input.front() + trace.input.back())
-                                                        : (port.C * centre + port.c * loop.external).value();
+  const double input_middle = rubs_along_no_state(port)
+                                  ? 0.5 * (trace.input.front() + trace.input.back())
+                                  : (port.C * centre + port.c * loop.external).value() - rubbing_origin(loop, port);
   const double half = trace.t.back();
   const std::size_t count = trace.t.size();
   for (std::size_t i = 1; i < count; ++i) {
@@ -207,7 +213,7 @@ void measure(const Loop& loop, Cycle& cycle) {
   const auto [low, high] = extremes(trace);
   cycle.amplitude = 0.5 * (high - low);
   const Eigen::VectorXcd y = harmonics(trace.t, trace.y, trace.rate, cycle.period, 1);
-  cycle.offset = y(0).imag();
+  cycle.offset = cycle.trace.y_origin + y(0).imag();
   cycle.first_harmonic = std::abs(y(1));
   cycle.sticking_fraction = std::clamp(sticking_time(trace, sticking_speed(loop, trace)) / cycle.period, 0.0, 1.0);
 }

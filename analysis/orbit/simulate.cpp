@@ -31,14 +31,15 @@ State initial_state(const Loop& loop, const std::map<std::string, double>& named
 /// External signals of a run: the loop's constants, replaced or joined by the case's signals. Up to the next break they
 /// are continued smoothly from before it, so that a step that ends there does not see the jump.
 ExternalSignals external(const Loop& loop, const SimulateOptions& options, const double& next_break) {
-  return [constants = loop.external, options, &next_break](double time, External& value, External& rate) {
+  return [constants = loop.external, origin = loop.external_origin, options, &next_break](double time, External& value,
+                                                                                          External& rate) {
     const double t = std::min(time, std::nextafter(next_break, 0.0));
     value = constants;
     rate.setZero();
     if (options.reference) {
-      value(reference_value) = options.reference->at(t);
-      value(reference_slope) = options.reference->slope(t);
-      rate(reference_value) = value(reference_slope);
+      rate(reference_value) = options.reference->slope(t);
+      value(reference_value) = options.reference->at(t) - origin(reference_value);
+      value(reference_slope) = rate(reference_value) - origin(reference_slope);
       if (options.reference->kind == Signal::Kind::sine && t >= options.reference->start)
         rate(reference_slope) = -options.reference->at(t) * options.reference->frequency * options.reference->frequency;
     }
@@ -162,6 +163,7 @@ class Running {
     field_.rate(x, dx_, t);
     run_.trace.t.push_back(t);
     run_.trace.y.push_back(field_.y(x));
+    run_.trace.y_origin = loop_.output_origin;
     run_.trace.rate.push_back(field_.y_rate(dx_));
   }
 
@@ -170,7 +172,7 @@ class Running {
     std::vector<double> row{t};
     const State values = own_values(loop_, x);
     row.insert(row.end(), values.begin(), values.end());
-    row.push_back(field_.y(x));
+    row.push_back(loop_.output_origin + field_.y(x));
     row.push_back(field_.y_rate(dx_));
     for (std::size_t i = 0; i < loop_.elements.size(); ++i) {
       row.push_back(field_.input(i).x);
@@ -223,16 +225,16 @@ std::vector<std::string> state_names(const Loop& loop) {
 }
 
 State own_values(const Loop& loop, State x) {
-  if (loop.own_states.size() == 0) return x;
   Eigen::Map<Eigen::VectorXd> X(x.data(), loop.states());
-  X = (loop.own_states * X).eval();
+  if (loop.origin.size() > 0) X += loop.origin;
+  if (loop.own_states.size() > 0) X = (loop.own_states * X).eval();
   return x;
 }
 
 State state_of(const Loop& loop, State values) {
-  if (loop.own_states.size() == 0) return values;
   Eigen::Map<Eigen::VectorXd> X(values.data(), loop.states());
-  X = solve(loop.own_states, Eigen::VectorXd(X));
+  if (loop.own_states.size() > 0) X = solve(loop.own_states, Eigen::VectorXd(X));
+  if (loop.origin.size() > 0) X -= loop.origin;
   return values;
 }
 

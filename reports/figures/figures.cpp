@@ -73,12 +73,12 @@ Shown shown(const PredictReport& report) {
   return {};
 }
 
-Json labels(const Units& units) {
+Json labels(const Trace& trace, const Units& units) {
   const auto with_unit = [](const char* name, const std::string& unit) {
     return unit.empty() ? std::string(name) : fmt::format("{} ({})", name, unit);
   };
   const auto per_second = [](const std::string& unit) { return unit.empty() ? "1/s" : unit + "/s"; };
-  return {{"y", with_unit("y", units.y)},
+  return {{"y", with_unit(name_of_y(trace).c_str(), units.y)},
           {"rate", with_unit("dy/dt", per_second(units.y))},
           {"input", with_unit("element's input", units.input)},
           {"velocity", with_unit("its rate", per_second(units.input))},
@@ -112,18 +112,20 @@ Figure time_figure(const Shown& what, const Units& units) {
                    what.cycle != nullptr, whole);
   std::string finding = what.cycle ? fmt::format("Over the period of {} s", with_digits(what.cycle->period, 4))
                                    : fmt::format("In the {}{}", what.name, whole ? "" : " (its first part)");
-  finding += " y moves " + between(what.trace->y, units.y);
+  finding += fmt::format(" {} moves {}", name_of_y(*what.trace), between(what.trace->y, units.y));
   if (has_element(*what.trace))
     finding += fmt::format(" and the {} {}", units.force.empty() ? "element's output" : "force",
                            between(what.trace->output, units.force));
   if (what.cycle && what.cycle->sticking_fraction > 0.0)
     finding += fmt::format("; it sticks for {} of the time", as_percent(what.cycle->sticking_fraction));
   return {"time", what.cycle ? "One period in time, twice" : "Simulation in time", finding + ".",
-          figure_data(json_text(
-              {{"run", run}, {"labels", labels(units)}, {"name", what.name}, {"repeat", what.cycle != nullptr}}))};
+          figure_data(json_text({{"run", run},
+                                 {"labels", labels(*what.trace, units)},
+                                 {"name", what.name},
+                                 {"repeat", what.cycle != nullptr}}))};
 }
 
-Figure phase_figure(const PredictReport& report, const Units& units) {
+Figure phase_figure(const PredictReport& report, const Trace& measured, const Units& units) {
   Json cycles = Json::array(), runs = Json::array();
   bool all_whole = true;
   bool whole = true;
@@ -145,8 +147,8 @@ Figure phase_figure(const PredictReport& report, const Units& units) {
   std::string finding = cycles.empty()
                             ? "No closed orbit"
                             : fmt::format("{} closed {}", cycles.size(), cycles.size() == 1 ? "orbit" : "orbits");
-  finding += fmt::format(" in the plane of y and dy/dt, and {} {} from different starts", runs.size(),
-                         runs.size() == 1 ? "simulation" : "simulations");
+  finding += fmt::format(" in the plane of {} and dy/dt, and {} {} from different starts", name_of_y(measured),
+                         runs.size(), runs.size() == 1 ? "simulation" : "simulations");
   std::vector<std::string> ends;
   for (const auto& outcome : report.outcomes) {
     const std::string end(to_string(outcome.outcome));
@@ -156,7 +158,7 @@ Figure phase_figure(const PredictReport& report, const Units& units) {
   if (!cycles.empty() && !runs.empty()) finding += "; the first view is on the cycles";
   if (!all_whole) finding += "; of long simulations only the first part is drawn";
   return {"phase", "Phase plane", finding + ".",
-          figure_data(json_text({{"cycles", cycles}, {"runs", runs}, {"labels", labels(units)}}))};
+          figure_data(json_text({{"cycles", cycles}, {"runs", runs}, {"labels", labels(measured, units)}}))};
 }
 
 Figure loop_figure(const Shown& what, const Units& units) {
@@ -169,7 +171,7 @@ Figure loop_figure(const Shown& what, const Units& units) {
                       between(what.trace->output, units.force), between(what.trace->input, units.input),
                       between(what.trace->velocity, units.input.empty() ? "1/s" : units.input + "/s"),
                       whole ? "" : " (only the first part is drawn)"),
-          figure_data(json_text({{"run", run}, {"labels", labels(units)}, {"name", what.name}}))};
+          figure_data(json_text({{"run", run}, {"labels", labels(*what.trace, units)}, {"name", what.name}}))};
 }
 
 }  // namespace
@@ -180,7 +182,7 @@ std::vector<Figure> predict_figures(const PredictReport& report, const Units& un
   const Shown what = shown(report);
   if (!what.trace) return out;
   out.push_back(time_figure(what, units));
-  out.push_back(phase_figure(report, units));
+  out.push_back(phase_figure(report, *what.trace, units));
   if (has_element(*what.trace)) out.push_back(loop_figure(what, units));
   if (auto multipliers = multiplier_figure(report)) out.push_back(*std::move(multipliers));
   return out;

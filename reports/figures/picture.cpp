@@ -65,6 +65,7 @@ std::string range_of(const std::vector<double>& values, const std::string& unit)
 
 Trace picked(const Trace& from, const std::vector<std::size_t>& index) {
   Trace out;
+  out.y_origin = from.y_origin;
   for (const std::size_t i : index) {
     out.t.push_back(from.t[i] - from.t.front());
     out.y.push_back(from.y[i]);
@@ -109,11 +110,12 @@ std::string panels(const Cycle& cycle, const Units& units) {
   const double margin = 0.06 * (right.x_to - right.x_from);
   right.x_from -= margin, right.x_to += margin;
   const std::string rate = units.y.empty() ? "1/s" : units.y + "/s";
-  return above.frame("y: " + range_of(once.y, units.y), "") + path(above, "one", two.t, two.y) +
+  const std::string y = name_of_y(once);
+  return above.frame(y + ": " + range_of(once.y, units.y), "") + path(above, "one", two.t, two.y) +
          below.frame(
              (units.force.empty() ? "element's output: " : "friction force: ") + range_of(once.output, units.force),
              time) +
-         path(below, "two", two.t, two.output) + right.frame("dy/dt: " + range_of(once.rate, rate), "y") +
+         path(below, "two", two.t, two.output) + right.frame("dy/dt: " + range_of(once.rate, rate), y) +
          path(right, "one", once.y, once.rate) + path(right, "stuck", once.y, once.rate, marks);
 }
 

@@ -1,5 +1,7 @@
 #include "limcycle/reports/figures/thin.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -77,6 +79,11 @@ std::vector<bool> stuck_samples(const Trace& trace, double fraction) {
     stuck[i] = true;
   }
   return stuck;
+}
+
+std::string name_of_y(const Trace& trace) {
+  if (trace.y_origin == 0.0) return "y";
+  return fmt::format("y {} {:.6g}", trace.y_origin > 0.0 ? "-" : "+", std::abs(trace.y_origin));
 }
 
 }  // namespace limcycle

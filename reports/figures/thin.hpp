@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include "limcycle/analysis/cycle.hpp"
@@ -18,5 +19,8 @@ Thinned thin(const Trace& trace, std::size_t most, const std::vector<bool>& keep
 
 /// Which samples are stuck: those with the least |velocity| that together last `fraction` of the time of the trace.
 std::vector<bool> stuck_samples(const Trace& trace, double fraction);
+
+/// What the y of a trace is called in a picture: "y", or "y - 0.3" where it is measured from there.
+std::string name_of_y(const Trace& trace);
 
 }  // namespace limcycle

@@ -30,6 +30,31 @@ TEST_CASE("simulate: -o takes the samples, the summary stays on stdout") {
   CHECK(run(arguments).out == csv);
 }
 
+TEST_CASE("simulate: states, y and inputs are those of the case, wherever the loop rests") {
+  const auto document = Json::parse(
+      run({"simulate", shipped("pid-lugre.toml"), "--set", "loop.reference=10.0", "--set", "loop.load=2.0", "--set",
+           "simulate.initial={ y = 1.0, I = 0.25 }", "--set", "simulate.duration=400.0", "--json", "-"})
+          .out);
+  REQUIRE(document["columns"][1] == "state.y");
+  const auto& first = document["rows"].front();
+  const auto named = [&](const char* name) {
+    const auto& columns = document["columns"];
+    return first[static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin())];
+  };
+  CHECK(named("state.y") == 1.0);
+  CHECK(named("state.I") == 0.25);
+  CHECK(named("y") == 1.0);
+  CHECK(named("loop.friction.input").get<double>() == Approx(1.0));
+  double low = 1e9, high = -1e9;  // in the last period, hunting about the set-point
+  for (const auto& row : document["rows"]) {
+    if (row[0].get<double>() < 375.0) continue;
+    low = std::min(low, row[1].get<double>());
+    high = std::max(high, row[1].get<double>());
+  }
+  CHECK(0.5 * (low + high) == Approx(10.0).margin(1e-4));
+  CHECK(0.5 * (high - low) == Approx(0.0639).epsilon(0.01));
+}
+
 TEST_CASE("simulate: a second run at tighter tolerances checks the first one") {
   const std::vector<std::string> hunting = {"simulate", shipped("pid-lugre.toml"), "--set", "simulate.duration=200.0"};
   const auto with = [&](std::vector<std::string> more) {

@@ -119,7 +119,7 @@ def moved(case, dice):
         return None
     other = copy.deepcopy(case)
     scale = loop["friction"]["Fc"] / loop["controller"]["kp"]
-    shift = dice.between(-3.0, 3.0) * scale
+    shift = dice.between(-3.0, 3.0) * scale * 10.0 ** dice.between(0.0, 6.0)
     other["loop"]["reference"] = loop.get("reference", 0.0) + shift
     return Rewriting(other, shift=shift, tolerance=1e-4, same_starts=False)
 

@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "limcycle/models/linear/dense.hpp"
+
 using namespace limcycle;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -30,7 +32,7 @@ MatrixXd random_basis(Index n) { return MatrixXd::Identity(n, n) + 0.3 * random_
 Values of_product(const std::vector<MatrixXd>& factors) {
   MatrixXd product = factors.front();
   for (std::size_t k = 1; k < factors.size(); ++k) product = (factors[k] * product).eval();
-  const Eigen::VectorXcd found = product.eigenvalues();
+  const Eigen::VectorXcd found = eigenvalues(product);
   Values values(found.begin(), found.end());
   std::ranges::sort(values, [](auto a, auto b) {
     return std::abs(std::abs(a) - std::abs(b)) > 1e-12 * std::abs(a) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();

@@ -81,7 +81,7 @@ Loop two_lags(double reference) {
 }
 
 /// tests/reproducers/gantry-stribeck.toml, with another exponent.
-Loop gantry(double delta) {
+Loop gantry(double delta, double reference = 0.0, double load = 0.0) {
   auto law = stribeck(42.0, 24.28, 0.001624);
   law.delta = delta;
   law.sigma2 = 123.2;
@@ -91,6 +91,8 @@ Loop gantry(double delta) {
   controller.tf = 0.0005;
   parts.controller = controller;
   parts.friction = law;
+  parts.reference = reference;
+  parts.load = load;
   return build_loop(parts);
 }
 
@@ -250,6 +252,20 @@ TEST_CASE("what decays, grows, or repeats itself after several swings is not irr
       permanent_motion(trace_of([](double t) { return std::sin(3.0 * t) + 0.4 * std::cos(M_SQRT2 * t); }));
   REQUIRE(torus);
   CHECK(torus->half_range == Approx(1.4).epsilon(1e-3));
+}
+
+TEST_CASE("a set-point a million million motions away, or a load, changes the place of a cycle and nothing else") {
+  const auto home = from(gantry(0.7), 1.9e-5, 1e-10);
+  REQUIRE(home.shot);
+  for (const auto& [reference, load] : {std::pair(0.3, 0.0), std::pair(-10.0, 30.0), std::pair(1e6, -1e5)}) {
+    const auto away = from(gantry(0.7, reference, load), 1.9e-5, 1e-10);
+    REQUIRE(away.shot);
+    CHECK(away.outcome == Outcome::cycle);
+    CHECK(away.shot->cycle.period == Approx(home.shot->cycle.period).epsilon(1e-12));
+    CHECK(away.shot->cycle.amplitude == Approx(home.shot->cycle.amplitude).epsilon(1e-12));
+    CHECK(away.shot->cycle.offset == Approx(reference).epsilon(1e-15));
+    CHECK(away.shot->cycle.trace.y_origin == Approx(reference).epsilon(1e-15));
+  }
 }
 
 TEST_CASE("Stribeck curves with infinite slope at rest are marched") {

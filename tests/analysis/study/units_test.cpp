@@ -88,7 +88,7 @@ TEST_CASE("units: a moved set-point moves the point of rest, and leaves the loop
     parts.reference = reference;
     const Loop loop = build_loop(parts);
     bool exact = false;
-    const Eigen::VectorXd rest = loop.rest_point(exact);
+    const Eigen::VectorXd rest = in_the_case(loop, loop.rest_point(exact));
     CHECK(exact);
     CHECK(rest(0) == Approx(reference));
     CHECK(symmetry(loop).has_value());

@@ -79,3 +79,12 @@ TEST_CASE("changes that must be kept are kept") {
   const auto kept = thin(trace, 50, marks, 10.0).index;
   for (const std::size_t i : {3332u, 3333u, 3334u}) CHECK(std::find(kept.begin(), kept.end(), i) != kept.end());
 }
+
+TEST_CASE("y is named by where a trace measures it from") {
+  Trace trace;
+  CHECK(name_of_y(trace) == "y");
+  trace.y_origin = 0.3;
+  CHECK(name_of_y(trace) == "y - 0.3");
+  trace.y_origin = -1250.0;
+  CHECK(name_of_y(trace) == "y + 1250");
+}
