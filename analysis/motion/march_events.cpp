@@ -111,6 +111,7 @@ double March::just_beyond(std::size_t guard, double at, double last) {
 }
 
 Status March::land(std::size_t guard, double h) {
+  const double tried = step_.t1 - step_.t0;
   if (h > 0.0) {
     repeat(h, step_.x1);
   } else {
@@ -129,6 +130,8 @@ Status March::land(std::size_t guard, double h) {
     return Status::converged;
   }
   step_.switched = field_.owner(guard);
+  // A body that is back at rest at once was carried there by a step so long that its velocity is within the tolerance.
+  if (h == 0.0 && !field_.holds(*step_.switched)) dt_ = 0.125 * tried;
   if (tracks_) {
     Eigen::MatrixXd saltation;
     if (field_.fire(x_, t_, guard, saltation))

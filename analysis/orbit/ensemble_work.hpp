@@ -85,7 +85,8 @@ inline void conclude(EnsembleResult& result, const OutcomeWatch& watch, Status s
 }
 
 /// What the watch leaves open is asked of settle(), which shoots: whether a motion that repeated itself from the first
-/// is a cycle or one of a family, and what goes on for ever without a period. For runs without an end only.
+/// is a cycle or one of a family, what goes on for ever without a period, and what switches without end. For runs
+/// without an end only.
 inline void ask_settle(EnsembleResult& result, const EnsembleMember& member, const EnsembleOptions& options,
                        const std::function<bool()>& stop) {
   SettleOptions settling;
@@ -110,8 +111,8 @@ inline void ask_settle(EnsembleResult& result, const EnsembleMember& member, con
 /// Whether that is to be done.
 inline bool leaves_open(const EnsembleResult& result, const OutcomeWatch& watch, const EnsembleOptions& options) {
   if (!options.until_decided || options.duration < infinite) return false;
-  const bool budget = result.status == Status::max_iterations && result.outcome == Outcome::undecided;
-  return budget || (result.status == Status::converged && watch.doubtful());
+  const bool ended = result.status == Status::max_iterations || result.status == Status::chattering;
+  return (ended && result.outcome == Outcome::undecided) || (result.status == Status::converged && watch.doubtful());
 }
 
 /// Status of a member that reached the end of the duration.

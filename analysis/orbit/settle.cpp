@@ -54,6 +54,10 @@ class Settling {
     if (march_.steps() > options_.max_steps) return look_for_irregular();
     const Status status = march_.step(1e15);
     if (status == Status::not_finite) return decide(Outcome::divergence, "the state left the range of numbers");
+    if (status == Status::chattering) {
+      field_.rate(march_.x(), dx_, march_.t());
+      if (auto still = stillness_.within_rounding(dx_)) return come_to(*still);
+    }
     if (status != Status::converged)
       return decide(Outcome::undecided, "the simulation ended with status " + std::string(to_string(status)));
     note();
@@ -63,8 +67,9 @@ class Settling {
     if (turning_.feed(march_.t(), y)) look_at_swings();
     if (decided_) return;
     if (auto still = stillness_.look(march_.t(), march_.x(), dx_, field_.modes())) come_to(*still);
-    if (!decided_ && march_.last().switched)
-      if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
+    if (decided_ || !march_.last().switched) return;
+    if (auto still = stillness_.switched(dx_)) return come_to(*still);
+    if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
   }
 
   /// Neither rest nor a cycle within the budget: permanent all the same, if two tolerances tell the same of it.

@@ -14,7 +14,7 @@ constexpr int patience = 12;
 }  // namespace
 
 StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, double rtol)
-    : loop_(loop), scale_{sizes, slow}, rest_(std::move(sizes), slow, rtol) {}
+    : loop_(loop), scale_{sizes, slow}, noise_(0.01 * rtol), rest_(std::move(sizes), slow, rtol) {}
 
 std::optional<Stillness> StillnessWatch::look(double t, const State& x, const State& dx,
                                               const std::vector<Mode>& modes) {
@@ -34,15 +34,34 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
                    "the motion decays linearly, at a rate of at least " + short_number(approach->decay, 3) + " 1/s"};
 }
 
+std::optional<Stillness> StillnessWatch::switched(const State& dx) {
+  constexpr int many = 50;
+  const auto still = within_rounding(dx);
+  idle_ = still ? idle_ + 1 : 0;
+  return idle_ >= many ? still : std::nullopt;
+}
+
+std::optional<Stillness> StillnessWatch::within_rounding(const State& dx) const {
+  if (!(rate(dx) <= noise_)) return std::nullopt;
+  return Stillness{slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest,
+                   "all rates died out; what is left switches within rounding"};
+}
+
+/// The largest, in sizes per slowest time constant.
+double StillnessWatch::rate(const State& dx) const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < dx.size(); ++i)
+    largest = std::max(largest, std::abs(dx[i]) * scale_.slow / scale_.sizes[i]);
+  return largest;
+}
+
 std::optional<Stillness> StillnessWatch::at_rest(LoopField& field, const State& x, const State& dx) const {
   constexpr double near = 0.01, fades = 1e-6;
   const char* const why = "all rates died out, but for noise";
   const auto found = standstill_near(field, x, scale_);
   if (found && found->moved <= near) return Stillness{found->slides ? Outcome::sliding : Outcome::rest, why};
   // A law whose slope jumps where it rests defeats Newton's method: then the rates themselves must be nothing.
-  double rate = 0.0;
-  for (std::size_t i = 0; i < dx.size(); ++i) rate = std::max(rate, std::abs(dx[i]) * scale_.slow / scale_.sizes[i]);
-  if (!(rate <= fades)) return std::nullopt;
+  if (!(rate(dx) <= fades)) return std::nullopt;
   return Stillness{slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest, why};
 }
 

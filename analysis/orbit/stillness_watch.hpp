@@ -28,14 +28,21 @@ class StillnessWatch {
   double next() const { return rest_.next(); }
   /// The state, its rates and the modes at a time not before next(), or after every step.
   std::optional<Stillness> look(double t, const State& x, const State& dx, const std::vector<Mode>& modes);
+  /// The rates after a switch. A body that creeps to rest at the edge of stiction sticks and breaks away by rounding in
+  /// the end: it rests once many switches in a row leave rates that are nothing.
+  std::optional<Stillness> switched(const State& dx);
+  /// The same where the march itself gave up, as its switches accumulate.
+  std::optional<Stillness> within_rounding(const State& dx) const;
 
  private:
+  double rate(const State& dx) const;
   std::optional<Stillness> at_rest(LoopField& field, const State& x, const State& dx) const;
 
   const Loop& loop_;
   LoopSizes scale_;
+  double noise_;
   RestWatch rest_;
-  int looks_ = 0;
+  int looks_ = 0, idle_ = 0;
 };
 
 }  // namespace limcycle

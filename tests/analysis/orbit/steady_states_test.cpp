@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/ensemble.hpp"
 #include "limcycle/analysis/orbit/irregular.hpp"
@@ -252,6 +253,58 @@ TEST_CASE("what decays, grows, or repeats itself after several swings is not irr
       permanent_motion(trace_of([](double t) { return std::sin(3.0 * t) + 0.4 * std::cos(M_SQRT2 * t); }));
   REQUIRE(torus);
   CHECK(torus->half_range == Approx(1.4).epsilon(1e-3));
+}
+
+TEST_CASE("a body that creeps to rest at the edge of stiction rests, though rounding makes it stick and break away") {
+  // The level of stiction is that of sliding, or a PID damps the slide more than the falling curve drives it: the body
+  // never sticks before its velocity is rounding.
+  struct Creep {
+    double mass, kp, ki, kd, Fs, Fc, vs, sigma2;
+  };
+  for (const auto& [mass, kp, ki, kd, Fs, Fc, vs, sigma2] :
+       {Creep{0.0795399, 102.569, 412.819, 4.02363, 116.545, 116.545, 0.305837, 0.0285199},
+        Creep{0.185648, 21.7171, 38.065, 3.66186, 0.0629749, 0.0573527, 0.00220016, 0.0}}) {
+    auto law = stribeck(Fs, Fc, vs);
+    law.delta = 1.0;
+    law.sigma2 = sigma2;
+    auto parts = servo_parts(law);
+    parts.plant = Mass{mass, 0.0, 0.0};
+    parts.controller = pid(kp, ki, kd);
+    const Loop loop = build_loop(parts);
+    for (const double start : {100.0 * Fs / kp, Fs / kp, 0.1 * Fs / kp}) {
+      CAPTURE(Fs, start);
+      const auto found = from(loop, start, 1e-9 * Fs / kp);
+      CHECK(found.outcome == Outcome::rest);
+      CHECK(found.steps < 5000);
+    }
+  }
+}
+
+TEST_CASE("a belt whose body breaks away at once is marched at any tolerance") {
+  auto law = stribeck(0.34817, 0.139534, 0.0472815);
+  law.delta = 1.0;
+  LoopParts parts;
+  parts.plant = Belt{1.13312e-05, 3.44875, 0.000151654, 0.524752};
+  parts.friction = law;
+  const Loop loop = build_loop(parts);
+  for (const double start : {1.0, 0.01, 1e-5}) {
+    const auto found = from(loop, start);
+    REQUIRE(found.shot);
+    CHECK(found.shot->cycle.period == Approx(0.231978514).epsilon(1e-6));  // the checker of tests/random_loops
+    CHECK(found.shot->cycle.amplitude == Approx(0.0593637).epsilon(1e-4));
+  }
+  for (const auto kind : {StepperKind::dopri5, StepperKind::rodas5p})
+    for (const double rtol : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+      CAPTURE(to_string(kind), rtol);
+      LoopField field(loop);
+      field.modes() = {Mode{0}};
+      March march(field, kind, loop_weights(loop, rtol));
+      march.begin({0.01, 0.524752}, 0.0);
+      Status status = Status::converged;
+      while (status == Status::converged && march.t() < 1.0 && march.steps() < 20000) status = march.step(1.0);
+      CHECK(status == Status::converged);
+      CHECK(march.t() >= 1.0);
+    }
 }
 
 TEST_CASE("a set-point a million million motions away, or a load, changes the place of a cycle and nothing else") {
