@@ -95,7 +95,6 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
     find_inputs(x);
   }
   const Mode before = modes_[i];
-  const bool stuck = held(i) == Held::rate;
   std::visit(
       [&]<class E>(const E& e) {
         if constexpr (HasModes<E, double>) {
@@ -106,21 +105,7 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
       loop_->elements[i]);
   // The located v is zero to the accuracy of the location: take what is left out. A body that comes to v = 0 and goes
   // on as before would else be behind its guard already, and switch for ever.
-  const bool slides = slides_through_zero(*loop_, i);
-  if (held(i) == Held::rate || (before == modes_[i] && slides))
-    arrest(x, i);
-  else if (stuck && slides)
-    release(x, t, i);
-}
-
-/// A body that sticks has a velocity of rounding, which would put it behind its guard when it breaks away the other way.
-void LoopField::release(State& x, double t, std::size_t i) {
-  arrest(x, i);
-  evaluate(x, t);
-  find_inputs(x);
-  if (inputs_[i].v == 0.0 || (inputs_[i].v > 0.0) == (modes_[i].value > 0)) return;
-  arrest(x, i);
-  arrest(x, i);
+  if (held(i) == Held::rate || (before == modes_[i] && slides_through_zero(*loop_, i))) arrest(x, i);
 }
 
 bool LoopField::fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation) {

@@ -12,6 +12,15 @@ namespace {
 
 constexpr std::size_t section_guard = std::numeric_limits<std::size_t>::max();
 
+bool may_stick(const Element<double>& element) {
+  return std::visit(
+      []<class E>(const E&) {
+        if constexpr (CanHold<E>) return E::holds == Held::rate;
+        return false;
+      },
+      element);
+}
+
 }  // namespace
 
 double March::event_value(std::size_t guard, const State& x, double t) {
@@ -131,7 +140,8 @@ Status March::land(std::size_t guard, double h) {
   }
   step_.switched = field_.owner(guard);
   // A body that is back at rest at once was carried there by a step so long that its velocity is within the tolerance.
-  if (h == 0.0 && !field_.holds(*step_.switched)) dt_ = 0.125 * tried;
+  if (h == 0.0 && may_stick(field_.loop().elements[*step_.switched]) && !field_.holds(*step_.switched))
+    dt_ = 0.125 * tried;
   if (tracks_) {
     Eigen::MatrixXd saltation;
     if (field_.fire(x_, t_, guard, saltation))
