@@ -176,7 +176,7 @@ Eigen::VectorXd Loop::mean_point(const Eigen::VectorXd& mean_outputs, const Eige
   exact = solves(still, X, given, last.force);
   if (exact) return X;
   if (!last.any) {
-    const Eigen::VectorXd other = solution_in_own_units(still, given, exact);
+    Eigen::VectorXd other = solution_in_own_units(still, given, exact);
     if (exact) return other;
   }
   return first;
