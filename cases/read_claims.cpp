@@ -54,11 +54,11 @@ const ClaimQuantity& read_quantity(const Section& section, const Case& from) {
   if (quantity.of == QuantityOf::cycle && !from.loop)
     throw place.error("needs a loop, and the case holds a lone element: add [loop.plant]");
   if (quantity.of == QuantityOf::law && from.loop && !from.loop->friction)
-    throw place.error("is asked of a friction law, and the loop has none");
+    throw place.error("needs a friction law, and the loop has none");
   if (quantity.of == QuantityOf::describing_function && !section.find("at"))
     throw section.error("at", "is required with this quantity: {amplitude, frequency}");
   if (quantity.of != QuantityOf::describing_function && section.find("at"))
-    throw section.error("at", "goes with describing functions (gain.real, gain.imag, dissipation, mean) only");
+    throw section.error("at", "is allowed only with describing functions (gain.real, gain.imag, dissipation, mean)");
   return quantity;
 }
 
@@ -69,7 +69,7 @@ void read_random(const Section& section, const std::vector<CaseNumber>& case_num
       numbers.push_back({at_paths[i], i == 1 ? "rad/s" : "1", "", coordinate(*into.at, i), false});
   if (const auto over = section.find("over")) into.over = read_spread_list(*over, numbers);
   if (const auto random = section.find("random")) {
-    if (into.over.empty()) throw section.error("random", "goes with over, the numbers that are drawn");
+    if (into.over.empty()) throw section.error("random", "needs over, the numbers to draw");
     into.random_points = read_integer(*random, 0, 100'000);
   }
 }
@@ -110,7 +110,8 @@ UserClaim read_claim(const Section& section, const Case& from, const std::vector
     claim.comparison = kinds[read_choice(*comparison, signs)];
   }
   if (const auto tolerance = section.find("tolerance")) {
-    if (claim.comparison != Comparison::equal) throw section.error("tolerance", "goes with comparison = \"=\" only");
+    if (claim.comparison != Comparison::equal)
+      throw section.error("tolerance", "is allowed only with comparison = \"=\"");
     claim.tolerance = read_number(*tolerance, {.low = 1e-12, .high = 10.0});
   }
   claim.formula = read_formula(section.at("formula", "with what it is compared, such as \"4*Fs/(pi*A)\""));
@@ -137,7 +138,7 @@ std::vector<UserClaim> read_claims(const Place& list, const Case& from) {
     const Section section(item.document, item.value, item.path);
     claims.push_back(read_claim(section, from, numbers));
     if (std::ranges::count(claims, claims.back().id, &UserClaim::id) > 1)
-      throw section.error("id", "stands in the case twice");
+      throw section.error("id", "appears twice in the case");
   }
   return claims;
 }

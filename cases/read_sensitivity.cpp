@@ -65,7 +65,7 @@ SpreadParameter read_parameter(const Section& section, const std::vector<CaseNum
     one.deviation =
         read_number(section.at("deviation", "standard deviation, in the parameter's unit"), positive, number.unit);
   for (const auto* key : {"mean", "deviation"})
-    if (!normal && section.find(key)) throw section.error(key, "goes with distribution = \"normal\" only");
+    if (!normal && section.find(key)) throw section.error(key, "is allowed only with distribution = \"normal\"");
   read_bounds(section, number, one);
   if (one.distribution == Distribution::log_uniform && !(one.low * one.high > 0.0))
     throw section.error("from", "must have the sign of to, and not be 0, with distribution = \"log-uniform\"");

@@ -33,7 +33,7 @@ const LoopParts& need_friction(const Case& from) {
                     .override = {},
                     .key = "loop.friction",
                     .value = {},
-                    .rule = "is missing: `adequate` asks which friction law is enough, so there is nothing to ask",
+                    .rule = "is missing: `adequate` compares friction laws and needs one",
                     .suggestion = "`limcycle precision` compares methods on any loop"});
 }
 
@@ -59,7 +59,7 @@ void spread_of_case(const Case& from, AdequateOptions& options, std::vector<std:
     if (auto parts = variation.parts(point); parts && parts->friction)
       options.variations.push_back({name_of(values), std::move(*parts)});
     else
-      left_out.push_back(name_of(values) + ": no valid case, left out");
+      left_out.push_back(name_of(values) + ": not a valid case, omitted");
   }
 }
 
@@ -106,8 +106,9 @@ int run(AdequateFlags flags) {
 
 void add_adequate(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<AdequateFlags>();
-  CLI::App* command = add_command(program, action, "adequate", "The least law and the cheapest method that are enough",
-                                  true, flags, [flags] { return run(*flags); });
+  CLI::App* command =
+      add_command(program, action, "adequate", "The simplest law and the cheapest method that are adequate", true,
+                  flags, [flags] { return run(*flags); });
   command->add_option("--tolerance", flags->tolerance, "On period and amplitude, relative")
       ->type_name("X")
       ->check(CLI::Range(1e-6, 1.0))
@@ -119,8 +120,7 @@ void add_adequate(CLI::App& program, Action& action) {
             flags->spread = share;
             flags->own_spread = true;
           },
-          "By how much each number of the law may be off, in place of the case's [sensitivity] [0.1 without one]; "
-          "0: not at all")
+          "Spread of each number of the law, in place of the case's [sensitivity] [0.1 without one]; 0: none")
       ->type_name("X")
       ->check(CLI::Range(0.0, 0.9));
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")

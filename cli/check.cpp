@@ -74,7 +74,7 @@ int check(const CommonFlags& flags) {
 
 void add_check(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
-  add_command(program, action, "check", "Validate a case file and tell what it holds", true, flags,
+  add_command(program, action, "check", "Validate a case file and print a summary", true, flags,
               [flags] { return check(*flags); });
 }
 

@@ -32,13 +32,13 @@ void add_terminal_flags(CLI::App& command, CommonFlags& flags) {
       ->type_name("WHEN")
       ->capture_default_str()
       ->group(common);
-  command.add_option("--time-limit", flags.time_limit, "Stop after S seconds and keep what is known; 0: no limit")
+  command.add_option("--time-limit", flags.time_limit, "Stop after S seconds and keep the results; 0: no limit")
       ->type_name("S")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str()
       ->group(common);
   command.add_flag("--quiet", flags.quiet, "No progress bar and no messages but errors")->group(common);
-  command.add_flag("--verbose", flags.verbose, "Tell what was done, and on stderr how long it took")->group(common);
+  command.add_flag("--verbose", flags.verbose, "Print the work done, and its time on stderr")->group(common);
 }
 
 void add_result_flags(CLI::App& command, CommonFlags& flags) {

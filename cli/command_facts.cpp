@@ -125,8 +125,8 @@ std::string full_meaning(const OptionFacts& option, std::size_t most) {
 const std::vector<std::string>& exit_codes() {
   static const std::vector<std::string> codes{
       "done, whether or not a limit cycle exists", "a claim or a required agreement failed",
-      "wrong usage or wrong input; one line on stderr says which key, where, and what would be right",
-      "no answer: nothing was decided, the work was interrupted, or a result could not be written"};
+      "wrong usage or input; one line on stderr names the key, its place and what is allowed",
+      "no answer: undecided, interrupted, or a result could not be written"};
   return codes;
 }
 

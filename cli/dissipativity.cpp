@@ -32,8 +32,7 @@ PassivityRange range_of(const Case& from, const DissipativityFlags& flags) {
                        .rule = rule,
                        .suggestion = {}});
   };
-  if (!range.path.starts_with(path + "."))
-    throw refuse("must be a number of the element that is asked about, " + path + ".KEY");
+  if (!range.path.starts_with(path + ".")) throw refuse("must be a number of the element examined, " + path + ".KEY");
   if (!(range.from < range.to)) throw refuse("FROM must be less than TO");
   const std::string key = range.path.substr(path.size() + 1);
   try {
@@ -88,7 +87,7 @@ int run(DissipativityFlags flags) {
   output.finish();
   tell_cut_short(flags, report.status);
   if (report.agrees == false) {
-    tell(flags, "a cycle was found where energy proves that there is none: please report this");
+    tell(flags, "a cycle was found although energy excludes it: please report this");
     return exit_disagreed;
   }
   return report.status == Status::interrupted ? exit_no_answer : exit_done;

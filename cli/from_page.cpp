@@ -74,7 +74,7 @@ void compare_with_page(const CommonFlags& flags, const CaseWithPage& loaded, con
     tell(flags,
          "the page was written by version " + one_line(loaded.page->version, 40) + ", this is " + build_info::version);
   if (!flags.set.empty() || loaded.result.empty() || same_result(loaded.result, document)) return;
-  tell(flags, std::string("the answer is not the one that the page states") + (other ? "" : ": please report this"));
+  tell(flags, std::string("the answer differs from the one on the page") + (other ? "" : ": please report this"));
 }
 
 }  // namespace limcycle

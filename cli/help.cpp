@@ -75,11 +75,10 @@ std::string program_help(const std::vector<CommandFacts>& commands) {
   text += "\nExit codes\n";
   for (std::size_t i = 0; i < exit_codes().size(); ++i) text += entry(std::to_string(i), 2, exit_codes()[i]);
   return text +
-         "\nWhere to go next\n"
-         "  limcycle new -o servo.toml      a case file to put your own numbers into\n"
+         "\nNext steps\n"
+         "  limcycle new -o servo.toml      a first case file\n"
          "  limcycle predict servo.toml     the answer\n"
-         "  docs/tutorial.md                from there to a verdict on your servo, in\n"
-         "                                  ten minutes\n";
+         "  docs/tutorial.md                a step-by-step introduction\n";
 }
 
 std::string command_help(const CommandFacts& command) {

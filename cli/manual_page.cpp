@@ -101,10 +101,10 @@ std::string program_page(const std::vector<CommandFacts>& commands, const std::s
                      roff::section("synopsis") + roff::bold("limcycle") + " " + roff::italic("COMMAND") +
                      " [ARGUMENTS] [OPTIONS]\n" + roff::section("description");
   text += roff::paragraphs(
-      "Tells from one small text file, the case, whether a feedback loop with friction (or a relay, a dead zone, "
+      "Determines from one small text file, the case, whether a feedback loop with friction (or a relay, a dead zone, "
       "backlash, a saturation, a dead time) oscillates: which limit cycles describing functions and harmonic balance "
-      "predict, what the loop really does, and what each prediction is worth.\n"
-      "`limcycle new` writes a case to begin with, `limcycle predict` answers, `limcycle COMMAND --help` tells the "
+      "predict, which ones the loop really has, and how accurate each prediction is.\n"
+      "`limcycle new` writes a first case, `limcycle predict` gives the answer, `limcycle COMMAND --help` lists the "
       "options of a command with examples.");
   text += roff::section("commands");
   std::string_view group;

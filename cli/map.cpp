@@ -112,8 +112,8 @@ int run(MapFlags flags) {
 void add_map(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<MapFlags>();
   CLI::App* command =
-      add_command(program, action, "map", "What happens over two parameters, and where each method is wrong", true,
-                  flags, [flags] { return run(*flags); });
+      add_command(program, action, "map", "Outcomes over two parameters, and where each method is wrong", true, flags,
+                  [flags] { return run(*flags); });
   for (const auto& [name, into] : {std::pair("--x", &flags->x), std::pair("--y", &flags->y)})
     command->add_option(name, *into, "A parameter and its values, such as loop.controller.kd=1:50:60:log")
         ->type_name("PATH=FROM:TO:N[:log]")

@@ -50,7 +50,7 @@ std::vector<MarginParameter> parameters_of(const Case& from, const MarginFlags& 
     else
       zero += (zero.empty() ? "" : ", ") + number.path;
   }
-  if (!zero.empty()) notes.push_back("zero, so that no factor changes them: " + zero);
+  if (!zero.empty()) notes.push_back("skipped, because the value is 0: " + zero);
   return chosen;
 }
 
@@ -103,9 +103,9 @@ int run(MarginFlags flags) {
 void add_margin(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<MarginFlags>();
   CLI::App* command =
-      add_command(program, action, "margin", "How far each parameter is from where hunting begins or ends", true, flags,
+      add_command(program, action, "margin", "Distance of each parameter from the onset or end of hunting", true, flags,
                   [flags] { return run(*flags); });
-  command->add_option("--factor", flags->factor, "How far either way")
+  command->add_option("--factor", flags->factor, "Largest factor, up and down")
       ->type_name("X")
       ->check(CLI::Range(1.01, 1000.0))
       ->capture_default_str();

@@ -11,7 +11,7 @@ void tell(const CommonFlags& flags, const std::string& message);
 
 /// Where the work was interrupted: says by whom, and what became of it.
 void tell_cut_short(const CommonFlags& flags, Status status,
-                    const std::string& kept = "what was computed until then is written");
+                    const std::string& kept = "the results computed so far are written");
 
 /// Where the work was interrupted: the first line of the text, and an empty one.
 std::string first_line(const CommonFlags& flags, Status status);

@@ -54,12 +54,12 @@ int run(NewFlags flags) {
   }
   std::error_code ignored;
   if (!flags.output.empty() && !flags.force && std::filesystem::exists(flags.output, ignored))
-    throw refusal("--output " + flags.output, "exists already and is left alone", "--force replaces it");
+    throw refusal("--output " + flags.output, "exists already and is not overwritten", "--force replaces it");
   Output output(flags);
   output.text(text);
   output.finish();
   if (!flags.output.empty())
-    tell(flags, flags.output + " is written; put your own numbers in, then: limcycle predict " + flags.output);
+    tell(flags, flags.output + " is written; replace the numbers by your own, then: limcycle predict " + flags.output);
   return exit_done;
 }
 
@@ -68,7 +68,7 @@ int run(NewFlags flags) {
 void add_new(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<NewFlags>();
   CLI::App* command =
-      add_plain_command(program, action, "new", "Write a commented case file to put your own numbers into", flags,
+      add_plain_command(program, action, "new", "Write a commented case file, to be filled with your numbers", flags,
                         [flags] { return run(*flags); });
   command->add_option("--plant", flags->plant, "Kind of the plant")->type_name("KIND");
   command->add_option("--controller", flags->controller, "Kind of the controller")->type_name("KIND");

@@ -42,7 +42,7 @@ PrecisionReport compute(const Case& from, const PrecisionFlags& flags) {
 
 StepperAtlas compute_atlas(const Case& from, const PrecisionFlags& flags) {
   if (!from.loop || !from.loop->friction)
-    throw std::invalid_argument("loop.friction: precision --stability asks a loop with friction");
+    throw std::invalid_argument("loop.friction: precision --stability needs a loop with friction");
   Progress progress(flags.quiet, flags.verbose);
   AtlasOptions options;
   options.predict = from.predict;
@@ -100,7 +100,7 @@ int run(PrecisionFlags flags) {
 
 void add_precision(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<PrecisionFlags>();
-  CLI::App* command = add_command(program, action, "precision", "Speed against accuracy of every method", true, flags,
+  CLI::App* command = add_command(program, action, "precision", "Accuracy and cost of every method", true, flags,
                                   [flags] { return run(*flags); });
   command->add_flag("--no-stiffness", flags->no_stiffness, "Leave out the runs over the stiffness of the bristles");
   command->add_flag("--stability", flags->stability,

@@ -67,7 +67,7 @@ int run(PredictFlags flags) {
   }
   const auto made = provenance(flags, &from);
   std::string text = predict_text(from.title, report, units);
-  if (flags.verbose) text += predict_efforts(report, from.predict.methods);
+  if (flags.verbose) text += predict_efforts(report, from.predict.methods, units);
   if (!flags.html.empty()) {
     output.file(flags.html, predict_page(report, made, from.text, units));
     text += page_line(flags.html);

@@ -84,7 +84,7 @@ int run(ReportFlags flags) {
   if (output.wants_csv()) output.csv(predict_csv(report.predict));
   output.finish();
   if (!report.interrupted) compare_with_page(flags, loaded, document);
-  tell_cut_short(flags, report.predict.status, "the page holds what was computed until then");
+  tell_cut_short(flags, report.predict.status, "the page holds the results computed so far");
   return exit_code(report);
 }
 
@@ -92,13 +92,12 @@ int run(ReportFlags flags) {
 
 void add_report(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<ReportFlags>();
-  CLI::App* command =
-      add_command(program, action, "report", "One self-contained page with all that is known of the loop", true, flags,
-                  [flags] { return run(*flags); });
+  CLI::App* command = add_command(program, action, "report", "One self-contained page with all results for the loop",
+                                  true, flags, [flags] { return run(*flags); });
   command->get_option("--output")
       ->description("Write the page to FILE, or to stdout alone with - (default: the name of the case, .html)");
   add_from_flag(*command, flags->from);
-  command->add_flag("--quick", flags->wishes.quick, "Leave out sensitivity, dissipativity and speed against accuracy");
+  command->add_flag("--quick", flags->wishes.quick, "Omit sensitivity, dissipativity, and accuracy and cost");
   for (const auto& [name, into] : {std::pair("--x", &flags->wishes.x), std::pair("--y", &flags->wishes.y)})
     command->add_option(name, *into, "With a hunting map: a parameter and its values, as for limcycle map")
         ->type_name("PATH=FROM:TO:N[:log]");

@@ -36,14 +36,16 @@ ReportPart<SensitivityReport> sensitivity_part(const ReportQuestion& ask) {
   if (report.cycle && ask.loop.delay == 0.0)
     report.local = local_sensitivities(ask.loop, *report.cycle, numbers, interrupted);
   else if (report.cycle)
-    report.notes.emplace_back("the delay: derivatives of a cycle are not computed for loops with one");
+    report.notes.emplace_back("the delay: derivatives of a cycle are not computed for loops with a delay");
   report.predicted = predicted_sensitivities(ask.loop, ask.predicted.search, numbers, report.notes, interrupted);
   if (!report.local.empty() || !report.predicted.empty()) return {std::move(report), {}};
   if (report.cycle)
     return {{},
             "The loop has a dead time: the derivatives of its limit cycle are not computed for such loops, and the "
-            "describing function predicts nothing that could move."};
-  return {{}, "There is no stable limit cycle, and the describing function predicts none: nothing here could move."};
+            "describing function predicts no oscillation to differentiate."};
+  return {
+      {},
+      "There is no stable limit cycle, and the describing function predicts none: there is nothing to differentiate."};
 }
 
 constexpr Methods methods_of_map{true, false, false};
@@ -91,13 +93,12 @@ std::optional<SimulateOptions> run_to_count(const ReportQuestion& ask, std::stri
 
 ReportPart<CountedRun> energy_part(const ReportQuestion& ask) {
   if (!has_energy(*ask.from.loop))
-    return {{}, "The loop has neither friction nor a mechanical plant: there is no energy to count."};
+    return {{}, "The loop has neither friction nor a mechanical plant: there is no energy balance."};
   CountedRun counted;
   auto options = run_to_count(ask, counted.which);
   if (!options)
     return {{},
-            "The case has no [simulate] section, and the loop no stable limit cycle to follow: nothing was run "
-            "whose energy could be counted."};
+            "The case has no [simulate] section and the loop has no stable limit cycle: there is no run to balance."};
   EnergyAudit audit(*ask.from.loop, ask.loop, options->rtol);
   options->stop = interrupted;
   options->watch = [&](LoopField& field, March& march, const std::vector<Mode>& modes) {
@@ -107,7 +108,7 @@ ReportPart<CountedRun> energy_part(const ReportQuestion& ask) {
   counted.energy = audit.balance();
   if (counted.run.status != Status::converged)
     return {{},
-            "The run whose energy was to be counted did not reach its end: " +
+            "The run for the energy balance did not reach its end: " +
                 (counted.run.why.empty() ? std::string(to_string(counted.run.status)) : counted.run.why) + "."};
   return {std::move(counted), {}};
 }
@@ -115,7 +116,7 @@ ReportPart<CountedRun> energy_part(const ReportQuestion& ask) {
 ReportPart<DissipativityReport> dissipativity_part(const ReportQuestion& ask) {
   const LoopParts& parts = *ask.from.loop;
   if (!parts.friction && !parts.element)
-    return {{}, "The loop holds neither friction nor an element in series: there is no law to ask."};
+    return {{}, "The loop has neither friction nor an element in series: there is no law to examine."};
   DissipativityOptions options;
   options.speed = ask.from.dissipativity.speed;
   options.passivity.top_speed = ask.from.dissipativity.top_speed;
@@ -132,7 +133,7 @@ ReportPart<PrecisionReport> precision_part(const ReportQuestion& ask) {
   options.stiffness = false;
   PrecisionReport report = precision_of(ask.from, options);
   if (report.cycle_chart || report.df_chart) return {std::move(report), {}};
-  return {{}, "There is neither a limit cycle nor a friction law to measure methods by."};
+  return {{}, "There is neither a limit cycle nor a friction law to measure the methods on."};
 }
 
 /// One part, whatever becomes of it.
@@ -168,17 +169,17 @@ LoopReport report_parts(const Case& from, const ReportWishes& wishes, const Comm
   report.predict = predict(loop, options);
   const ReportQuestion ask{from, loop, wishes, flags, report.predict};
   const std::string left_out = "Left out by --quick.";
-  progress.show(0.3, "what moves the cycle");
+  progress.show(0.3, "sensitivity");
   report.sensitivity = attempted<SensitivityReport>(!wishes.quick, left_out, [&] { return sensitivity_part(ask); });
-  progress.show(0.4, "where the energy goes");
+  progress.show(0.4, "energy balance");
   report.energy = attempted<CountedRun>(true, "", [&] { return energy_part(ask); });
-  progress.show(0.45, "what energy can prove");
+  progress.show(0.45, "dissipativity");
   report.dissipativity =
       attempted<DissipativityReport>(!wishes.quick, left_out, [&] { return dissipativity_part(ask); });
   report.map = attempted<MapReport>(
       !wishes.x.empty(), "No map was asked for: --x PATH=FROM:TO:N and --y PATH=FROM:TO:N draw one.",
       [&] { return map_part(ask, [&](double fraction) { progress.show(0.5 + 0.25 * fraction, "the map"); }); });
-  progress.show(0.75, "speed against accuracy");
+  progress.show(0.75, "accuracy and cost");
   report.precision = attempted<PrecisionReport>(!wishes.quick, left_out, [&] { return precision_part(ask); });
   report.interrupted = interrupted();
   if (report.interrupted) report.predict.status = Status::interrupted;  // the document of the page says so too

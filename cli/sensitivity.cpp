@@ -63,7 +63,7 @@ std::optional<Cycle> main_cycle(const Loop& loop, const Case& from, std::vector<
   const PredictReport found = predict(loop, options);
   const Cycle* best = largest_stable(found.cycles);
   if (best == nullptr) return std::nullopt;
-  if (loop.delay > 0.0) notes.emplace_back("the delay: derivatives of a cycle are not computed for loops with one");
+  if (loop.delay > 0.0) notes.emplace_back("the delay: derivatives of a cycle are not computed for loops with a delay");
   return *best;
 }
 
@@ -201,8 +201,7 @@ SensitivityReport study(const Case& from, const Loop& loop, const SensitivityFla
   status = ending_so_far();
   if (flags.local_only || interrupted()) return report;
   if (report.spread_is_default)
-    report.notes.emplace_back(
-        "the case has no [sensitivity] section: each of its numbers is spread evenly over 20 % to both sides");
+    report.notes.emplace_back("the case has no [sensitivity] section: each of its numbers varies uniformly by +-20 %");
   if (!report.spread.parameters.empty()) status = look_everywhere(from, loop, flags, report);
   return report;
 }
@@ -239,9 +238,10 @@ int run(SensitivityFlags flags) {
 
 void add_sensitivity(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<SensitivityFlags>();
-  CLI::App* command = add_command(program, action, "sensitivity",
-                                  "How the cycle moves with every number, and whether the loop hunts over a spread",
-                                  true, flags, [flags] { return run(*flags); });
+  CLI::App* command =
+      add_command(program, action, "sensitivity",
+                  "Sensitivity of the cycle to every number, and share of loops that hunt over a spread", true, flags,
+                  [flags] { return run(*flags); });
   command->add_option("--samples", flags->samples, "Base samples of the Sobol study (default: of the case, or 256)")
       ->type_name("N")
       ->check(CLI::Range(1, 1 << 24));
@@ -254,7 +254,7 @@ void add_sensitivity(CLI::App& program, Action& action) {
       ->delimiter(',')
       ->capture_default_str();
   command->add_flag("--local", flags->local_only, "Derivatives and one at a time only");
-  command->add_option("--threshold", flags->thresholds, "Where hunting ends or begins in this number; repeatable")
+  command->add_option("--threshold", flags->thresholds, "Threshold of hunting in this number; repeatable")
       ->type_name("PATH")
       ->allow_extra_args(false);
   add_sweep_flags(*command, *flags);

@@ -82,7 +82,7 @@ void add_simulate(CLI::App& program, Action& action) {
   CLI::App* command = add_command(program, action, "simulate", "Time-domain run from a given state, as CSV", true,
                                   flags, [flags] { return run(*flags); });
   command->add_flag("--no-check", flags->no_check, "Do not check the run by a second one at tighter tolerances");
-  command->add_flag("--no-audit", flags->no_audit, "Do not count where the energy goes");
+  command->add_flag("--no-audit", flags->no_audit, "Do not compute the energy balance");
 }
 
 }  // namespace limcycle

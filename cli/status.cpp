@@ -34,9 +34,9 @@ int show_status(const CommonFlags& flags, const std::string& file) {
 void add_status(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
   const auto file = std::make_shared<std::string>();
-  auto* command = add_command(program, action, "status",
-                              "How far a sweep with a store has got, and its results so far; also while it runs", false,
-                              flags, [flags, file] { return show_status(*flags, *file); });
+  auto* command =
+      add_command(program, action, "status", "Progress and results so far of a sweep with a store, also while it runs",
+                  false, flags, [flags, file] { return show_status(*flags, *file); });
   command->add_option("STORE", *file, "The store (--store of the sweep)")->required()->type_name("FILE");
 }
 

@@ -49,8 +49,7 @@ void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
   command.get_option("--threads")->capture_default_str();
   command.add_option("--store", flags.store, "Keep every point in this file as soon as it is computed")
       ->type_name("FILE");
-  command.add_flag("--resume", flags.resume, "Go on with that file: only what is missing is computed")
-      ->needs("--store");
+  command.add_flag("--resume", flags.resume, "Continue that file: compute only the missing points")->needs("--store");
 }
 
 SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& columns, const std::string& design,
@@ -93,9 +92,9 @@ SweptRows run_stored(const SweepTask& task, const std::vector<std::string>& colu
 
 void tell_how_to_resume(const SweepFlags& flags, Status status) {
   tell_cut_short(flags, status,
-                 flags.store.empty()
-                     ? "what was computed until then is written (--store FILE would keep it)"
-                     : "what was computed is in " + flags.store + ": the same command with --resume goes on");
+                 flags.store.empty() ? "the results computed so far are written (--store FILE would keep them)"
+                                     : "the results computed so far are in " + flags.store +
+                                           ": continue by the same command with --resume");
 }
 
 }  // namespace limcycle

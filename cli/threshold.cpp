@@ -48,7 +48,7 @@ ThresholdSensitivity threshold_of(const Case& from, const Loop& loop, const Case
                             options);
   ThresholdSensitivity result{number.path, number.unit, number.value, false, false, 0.0, 0.0, {}, {}};
   if (found.parameters.empty()) {
-    result.why = interrupted() ? "it was interrupted" : "margins do not treat this loop";
+    result.why = interrupted() ? "it was interrupted" : "margins are not available for this loop";
     return result;
   }
   const ParameterMargin& one = found.parameters.front();

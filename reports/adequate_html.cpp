@@ -48,9 +48,9 @@ std::string adequate_page(const AdequateReport& report, const Provenance& proven
     body += "<h2>The ladder</h2>\n" +
             html_table(ladder_table(report), "Error of period and amplitude by law and method, or the other verdict") +
             figures_html({ladder_figure(report)}) + "<details><summary>All answers</summary>\n" +
-            html_table(adequate_table(report, units), "What each law with each method says") + "</details>\n";
+            html_table(adequate_table(report, units), "Results by law and method") + "</details>\n";
   }
-  body += "<h2>Rules</h2>\n" + html_table(rule_table(report), "How the parameters of each law follow");
+  body += "<h2>Rules</h2>\n" + html_table(rule_table(report), "Parameters of each law");
   if (!report.spread.empty()) {
     std::string spread = "Spread: " + report.spread_rule + ": ";
     for (const auto& one : report.spread) spread += (&one == report.spread.data() ? "" : "; ") + one;

@@ -35,9 +35,10 @@ std::string percent(double share) { return with_digits(100.0 * share, 2) + " %";
 std::string why_not_less(const AdequateReport& report) {
   for (std::size_t i = *report.least; i-- > 0;) {
     const AdequatePoint* point = point_of(report, report.laws[i].name, "shooting");
-    if (point && !point->within) return fmt::format("; less, {}, {}", report.laws[i].name, point->why);
+    if (point && !point->within)
+      return fmt::format(". The simpler law {} is not adequate: {}", report.laws[i].name, point->why);
   }
-  return "; there is no lesser law";
+  return ". There is no simpler law";
 }
 
 /// Which methods are not enough with the least law.
@@ -45,13 +46,13 @@ std::string failing_methods(const AdequateReport& report) {
   std::string out;
   for (const auto& point : report.points)
     if (point.law == report.laws[*report.least].name && !point.within)
-      out += fmt::format("{}{} {}", out.empty() ? "" : ", ", short_name(point.method),
-                         point.answer.answered ? point.why : "has no answer");
-  return out.empty() ? "" : " With it " + out + ".";
+      out += fmt::format("{}{} ({})", out.empty() ? "" : ", ", short_name(point.method),
+                         point.answer.answered ? point.why : "no answer");
+  return out.empty() ? "" : " Not adequate with it: " + out + ".";
 }
 
 std::string best_in_words(const AdequateReport& report, const Units& units) {
-  std::string out = "Measured by the case's own law, solved by shooting: " + report.best.verdict;
+  std::string out = "Reference: the case's own law, solved by shooting: " + report.best.verdict;
   if (report.best.hunts())
     out += fmt::format(", period {} s, amplitude {}", with_digits(report.best.period, 6),
                        Units::attach(with_digits(report.best.amplitude, 4), units.y));
@@ -61,10 +62,10 @@ std::string best_in_words(const AdequateReport& report, const Units& units) {
 }  // namespace
 
 std::string adequate_answer(const AdequateReport& report, const Units& units) {
-  const std::string front = report.status == Status::interrupted ? "Interrupted; as far as it went: " : "";
-  if (report.status == Status::undefined) return "There is nothing to measure by: " + report.why + ".";
+  const std::string front = report.status == Status::interrupted ? "Interrupted; partial result: " : "";
+  if (report.status == Status::undefined) return "There is no reference: " + report.why + ".";
   if (!report.best.answered || (!report.least && report.status == Status::interrupted))
-    return front + "nothing was decided.";
+    return front + "no law was assessed.";
   const std::string range = report.spread.empty() ? "" : " over the spread of the parameters";
   if (!report.least)
     return front +
@@ -75,8 +76,8 @@ std::string adequate_answer(const AdequateReport& report, const Units& units) {
   const AdequatePoint* point = report.cheapest ? &report.points[*report.cheapest] : point_of(report, law, "shooting");
   return front +
          fmt::format(
-             "This scene needs no more than the law {} and {} ({}): verdict, period and amplitude stay within "
-             "{}{} (worst {}){}.{} ",
+             "Simplest adequate model: the law {} with {} ({}). Verdict, period and amplitude stay within {}{} (worst "
+             "{}){}.{} ",
              law, point->method, as_duration(point->answer.seconds), percent(report.tolerance), range,
              percent(point->worst), why_not_less(report), failing_methods(report)) +
          best_in_words(report, units);
@@ -110,7 +111,7 @@ Table rule_table(const AdequateReport& report) {
 Table adequate_table(const AdequateReport& report, const Units& units) {
   Table table{{{"law", "", Align::left},
                {"method", "", Align::left},
-               {"says", "", Align::left},
+               {"result", "", Align::left},
                {"period", "s"},
                {"amplitude", units.y},
                {"error", ""},
@@ -137,9 +138,9 @@ std::string adequate_text(const std::string& title, const AdequateReport& report
   if (!report.points.empty()) {
     out += "\nError of period and amplitude by law and method, or the other verdict\n" + ladder_table(report).text();
     out += wrapped(
-        "DF: describing function, comp. DF: with mass and friction as one element, HB: harmonic balance; none: it sees "
-        "no cycle, -: no answer. Worst: by shooting, over the spread of the parameters; only asked of laws that are "
-        "enough at the case's own values.",
+        "DF: describing function, comp. DF: with mass and friction as one element, HB: harmonic balance; none: no "
+        "cycle found, -: no answer. Worst: by shooting, over the spread of the parameters; only for laws that are "
+        "adequate at the case's own values.",
         80, 2);
     Table costs{{{"law", "", Align::left}}, {}};
     for (const auto& method : scene_methods()) costs.columns.push_back({short_name(method), ""});
@@ -153,7 +154,7 @@ std::string adequate_text(const std::string& title, const AdequateReport& report
     }
     out += "\nCPU time of an answer\n" + costs.text();
   }
-  out += "\nHow the parameters of each law follow\n";
+  out += "\nParameters of each law\n";
   for (const auto& law : report.laws) out += item(law.name, 20, law.rule);
   if (!report.spread.empty()) {
     std::string spread;

@@ -46,7 +46,7 @@ std::string phrase(Outcome outcome) {
     case Outcome::family:
       return "oscillates with an amplitude that depends on the start";
     case Outcome::irregular:
-      return "moves irregularly for ever";
+      return "moves irregularly";
     case Outcome::undecided:
       return "is undecided";
   }
@@ -72,20 +72,18 @@ std::string fates(const PredictReport& report) {
 /// "between -0.88 m and 0.88 m" of the largest irregular motion.
 std::string irregular_size(const PredictReport& report, const Units& units) {
   const auto largest = std::ranges::max_element(report.outcomes, {}, &OutcomeOfStart::half_range);
-  return fmt::format(
-      " It moves irregularly and never comes to rest, with a half-range of {} and a mean period of {} s.",
-      Units::attach(with_digits(largest->half_range, 3), units.y), with_digits(largest->mean_period, 3));
+  return fmt::format(" It never comes to rest: half-range {}, mean period {} s.",
+                     Units::attach(with_digits(largest->half_range, 3), units.y), with_digits(largest->mean_period, 3));
 }
 
 std::string without_cycle(const PredictReport& report, const Units& units) {
-  if (report.outcomes.empty()) return "What this loop does was not checked in the time domain.";
+  if (report.outcomes.empty()) return "Not verified in the time domain.";
   if (count(report, Outcome::undecided) > 0)
-    return "Whether this loop has a limit cycle was not decided: " + fates(report) + ".";
+    return "Whether this loop has a limit cycle is undecided: " + fates(report) + ".";
   if (count(report, Outcome::irregular) > 0)
-    return "This loop moves for ever without a period: " + fates(report) + "." + irregular_size(report, units);
+    return "This loop moves irregularly, without a period: " + fates(report) + "." + irregular_size(report, units);
   if (count(report, Outcome::family) > 0) return "This loop oscillates without a limit cycle: " + fates(report) + ".";
-  if (count(report, Outcome::divergence) > 0)
-    return "This loop has no limit cycle that was found: " + fates(report) + ".";
+  if (count(report, Outcome::divergence) > 0) return "This loop shows no limit cycle: " + fates(report) + ".";
   return "This loop does not hunt: " + fates(report) + ".";
 }
 
@@ -103,7 +101,7 @@ std::string with_cycles(const PredictReport& report, const Units& units) {
   if (stable.empty()) {
     const bool unstable = others.front()->stable.has_value();
     out = fmt::format("This loop has a limit cycle of {}, {}", size_of(*others.front(), units),
-                      unstable ? "but it is unstable: neighbours leave it" : "whose stability was not decided");
+                      unstable ? "but it is unstable" : "but its stability was not determined");
     if (others.size() > 1) out += fmt::format(" (and {} more)", others.size() - 1);
     return out + (report.outcomes.empty() ? "." : "; " + fates(report) + ".");
   }
@@ -125,19 +123,19 @@ std::string with_cycles(const PredictReport& report, const Units& units) {
   return out;
 }
 
-/// "2.4 % too small" of a prediction against the truth.
+/// "2.4 % too low" of a prediction against the truth.
 std::string deviation(double predicted, double truth) {
   const double share = 100.0 * (predicted - truth) / truth;
   if (!std::isfinite(share)) return "not comparable";
   if (std::abs(share) < 0.01) return "right within 0.01 %";
-  return fmt::format("{} % too {}", with_digits(std::abs(share), 2), share > 0.0 ? "large" : "small");
+  return fmt::format("{} % too {}", with_digits(std::abs(share), 2), share > 0.0 ? "high" : "low");
 }
 
 /// What to call a cycle: of several it must be told which.
 std::string name_of(const PredictReport& report, const Cycle& cycle) {
   if (report.cycles.size() == 1) return "it";
   const std::string kind = cycle.stable ? (*cycle.stable ? "stable " : "unstable ") : "";
-  return fmt::format("the {}one of period {} s", kind, with_digits(cycle.period, sentence_digits));
+  return fmt::format("the {}cycle of period {} s", kind, with_digits(cycle.period, sentence_digits));
 }
 
 std::string of_one(const PredictReport& report, const Prediction& one, const Units& units) {
@@ -146,11 +144,14 @@ std::string of_one(const PredictReport& report, const Prediction& one, const Uni
                                        with_digits(one.frequency, sentence_digits));
   if (one.verdict == Verdict::wrong) return "predicts a limit cycle (" + size + ") that does not exist";
   if (one.verdict == Verdict::undecided || !one.cycle || *one.cycle >= report.cycles.size())
-    return "predicts a limit cycle (" + size + ") that could be neither confirmed nor refuted";
+    return "predicts a limit cycle (" + size + "), which is unverified";
   const Cycle& cycle = report.cycles[*one.cycle];
-  return fmt::format("predicts {}{}: first harmonic {}, frequency {}", name_of(report, cycle),
-                     one.verdict == Verdict::biased ? " with a bias" : "",
-                     deviation(one.amplitude, cycle.first_harmonic), deviation(one.frequency, cycle.frequency()));
+  const std::string name = name_of(report, cycle);
+  const std::string amplitude = deviation(one.amplitude, cycle.first_harmonic);
+  const std::string frequency = deviation(one.frequency, cycle.frequency());
+  if (one.verdict == Verdict::biased)
+    return fmt::format("finds {}, but the amplitude is {} and the frequency {}", name, amplitude, frequency);
+  return fmt::format("finds {}: amplitude {}, frequency {}", name, amplitude, frequency);
 }
 
 std::string of_many(const std::vector<const Prediction*>& predictions) {
@@ -174,23 +175,28 @@ std::string worth_of(const std::string& method, const PredictReport& report, con
       std::count_if(report.missed.begin(), report.missed.end(), [&](const auto& one) { return one.method == method; }));
   const std::string subject = capital(method_in_words(method)) + " ";
   const bool complete = searched_completely(report, method);
-  const std::string which = report.cycles.size() == 1 ? "it" : counted(missed, "limit cycle");
+  const std::string which = report.cycles.size() == 1 ? "this cycle" : counted(missed, "limit cycle");
   if (own.empty() && !complete)
-    return subject + "found no limit cycle, but its search was not complete" +
-           (missed > 0 ? ": it may have overlooked " + which + "." : ".");
+    return subject + "found no limit cycle, but its search was incomplete" +
+           (missed > 0 ? ": it may have missed " + which + "." : ".");
   if (own.empty() && missed == 0) {
     const bool agrees = report.cycles.empty() && count(report, Outcome::undecided) == 0;
     return subject + (agrees ? "predicts none either." : "predicts no limit cycle in the search box.");
   }
   // Harmonic balance starts from what other methods find and searches no box; a cycle that sticks it does not even try.
   const bool searches = method != "harmonic-balance";
-  if (own.empty())
-    return subject + (searches ? "predicts no limit cycle in the search box and misses " : "does not see ") + which +
-           ".";
+  if (own.empty() && missed == report.cycles.size())
+    return subject + (!searches                   ? "finds no cycle here."
+                      : report.cycles.size() == 1 ? "does not find this cycle."
+                                                  : "finds none of the " + which + ".");
+  if (own.empty()) return subject + "does not find " + which + ".";
   std::string out = subject + (own.size() == 1 ? of_one(report, *own[0], units) : of_many(own));
-  const std::string verb = !searches ? ", and does not see " : complete ? ", and misses " : ", and found nothing of ";
-  if (missed > 0) out += verb + (report.cycles.size() == 1 ? "the one that exists" : which);
-  return out + (complete ? "." : "; its search was not complete, so it may predict more.");
+  if (missed > 0)
+    out += (complete ? "; it does not find " : "; it has not found ") +
+           (report.cycles.size() == 1                  ? "the cycle that exists"
+            : report.cycles.size() == 2 && missed == 1 ? "the other cycle"
+                                                       : which);
+  return out + (complete ? "." : "; its search was incomplete, so it may predict more.");
 }
 
 }  // namespace
@@ -205,7 +211,10 @@ std::string method_in_words(const std::string& method) {
 CycleAnswer answer(const PredictReport& report, const Units& units) {
   CycleAnswer out;
   out.what_happens = report.cycles.empty() ? without_cycle(report, units) : with_cycles(report, units);
-  if (report.status == Status::interrupted) out.what_happens = "Interrupted; as far as it went: " + out.what_happens;
+  if (report.status == Status::interrupted)
+    out.what_happens = report.cycles.empty() && report.outcomes.empty()
+                           ? "Interrupted before verification in the time domain."
+                           : "Interrupted; partial result: " + out.what_happens;
   std::vector<std::string> methods;
   const auto add = [&](const std::string& method) {
     if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);

@@ -70,10 +70,10 @@ std::string atlas_csv(const StepperAtlas& atlas) {
 
 std::string atlas_page(const StepperAtlas& atlas, const Provenance& provenance, const std::string& case_text) {
   std::string body =
-      "<h2>What became of every run</h2>\n" +
+      "<h2>Outcome of every run</h2>\n" +
       html_picture(atlas_picture(atlas),
                    "Each square is a run: of a stepper, at a tolerance or step, at a stiffness before sliding. "
-                   "What became of it is its colour and its letter.",
+                   "Colour and letter show its outcome.",
                    atlas_csv(atlas));
   std::vector<std::string> laws;
   for (const auto& one : atlas.references)

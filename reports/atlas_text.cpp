@@ -72,7 +72,7 @@ std::string counts(const StepperAtlas& atlas, const std::string& law) {
 }  // namespace
 
 std::string atlas_answer(const StepperAtlas& atlas) {
-  if (atlas.points.empty()) return "No loop has a verified reference: nothing can be said of any stepper.";
+  if (atlas.points.empty()) return "No loop has a verified reference, so no stepper can be assessed.";
   std::string right, never;
   std::vector<std::string> steppers;
   for (const auto& point : atlas.points)

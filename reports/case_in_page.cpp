@@ -108,7 +108,7 @@ std::string result_element(const std::string& document) {
 
 CaseInPage case_in_page(std::string_view page) {
   const std::string text = element_text(page, "case");
-  if (text.empty()) throw PageError("is no page of limcycle that holds its case");
+  if (text.empty()) throw PageError("is not a limcycle page with an embedded case");
   const Json data = parsed(text, "case");
   try {
     check_schema(data);

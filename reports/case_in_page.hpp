@@ -18,7 +18,7 @@ struct CaseInPage {
 };
 
 /// A page that holds no case, or one that does not fit the rest of the page. what() is a rule for a message about the
-/// page: "is no page of limcycle that holds its case".
+/// page: "is not a limcycle page with an embedded case".
 class PageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

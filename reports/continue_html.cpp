@@ -16,7 +16,7 @@ std::string continue_page(const ContinueReport& report, const Provenance& proven
                              "; stable parts solid, unstable ones dashed.",
                          continue_csv(report));
     Table table = event_table(report, units);
-    table.columns.push_back({"what happens", "", Align::left});
+    table.columns.push_back({"event", "", Align::left});
     std::size_t row = 0;
     for (const auto& branch : report.found.branches)
       for (const auto& event : branch.events) table.rows[row++].push_back(event.why);

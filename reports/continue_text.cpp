@@ -94,7 +94,7 @@ std::string continue_answer(const ContinueReport& report, const Units&) {
   const std::string range = fmt::format("{} from {} to {}", report.path, with_digits(found.from, 4),
                                         Units::attach(with_digits(found.to, 4), unit_of(report)));
   std::string out;
-  if (found.status == Status::interrupted) out = "Interrupted; as far as it went: ";
+  if (found.status == Status::interrupted) out = "Interrupted; partial result: ";
   if (!found.refused.empty())
     return out + "Not answered: " + found.refused + " over " + report.path +
            ". `limcycle map` answers over a plane of parameters, with the dead time approximated.";

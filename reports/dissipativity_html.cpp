@@ -101,7 +101,7 @@ std::vector<ExperimentFigure> dissipativity_figures(const DissipativityReport& r
 std::string dissipativity_sections(const DissipativityReport& report, int level) {
   const std::string heading = "h" + std::to_string(level);
   Table facts{{{"", "", Align::left}, {"", "", Align::left}}, passivity_facts(report)};
-  std::string body = html_tag(heading, "Passivity") + html_table(facts, "What was found");
+  std::string body = html_tag(heading, "Passivity") + html_table(facts, "Findings");
   if (const auto& found = report.passivity.counterexample) {
     body += html_tag("p", found->words);
     body += html_table(counterexample_table(*found), "One cycle of the counter-example");
@@ -110,7 +110,7 @@ std::string dissipativity_sections(const DissipativityReport& report, int level)
     body += html_picture(experiment_figure(figure), figure.heading, experiment_figure_csv(figure));
   if (report.over_all)
     body += html_tag(heading, "Bounds") + html_table(bound_table(report), "Bounds of states and force");
-  if (report.loop) body += html_tag(heading, "Loop") + html_table(loop_table(report), "What energy says of the loop");
+  if (report.loop) body += html_tag(heading, "Loop") + html_table(loop_table(report), "Energy criteria for the loop");
   return body + html_notes(report.notes, level);
 }
 

@@ -67,10 +67,11 @@ std::string dissipativity_answer(const DissipativityReport& report) {
   if (report.loop) {
     const Answer& answer = report.loop->no_cycle;
     if (answer.decision == Decision::yes)
-      text += " The loop has no limit cycle: energy proves it.";
+      text += " Energy proves that the loop has no limit cycle.";
     else if (answer.decision != Decision::not_applicable)
-      text += " That this loop has no limit cycle is not proved by energy.";
-    if (report.agrees) text += *report.agrees ? " The search for cycles finds none either." : " BUT a cycle was found.";
+      text += " Energy does not prove that the loop has no limit cycle.";
+    if (report.agrees)
+      text += *report.agrees ? " The search for cycles finds none either." : " However, a cycle was found.";
   }
   return text;
 }

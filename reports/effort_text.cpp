@@ -48,9 +48,9 @@ std::string shooting_text(const PredictReport& report) {
 
 }  // namespace
 
-std::string predict_efforts(const PredictReport& report, const Methods& methods) {
+std::string predict_efforts(const PredictReport& report, const Methods& methods, const Units& units) {
   constexpr std::size_t width = 29;
-  std::string out = "\nWhat was done\n";
+  std::string out = "\nWork done\n";
   const auto names = std::to_array<std::pair<bool, const char*>>({{methods.describing_function, "describing-function"},
                                                                   {methods.composite, "composite-describing-function"},
                                                                   {methods.harmonic_balance, "harmonic-balance"}});
@@ -61,7 +61,8 @@ std::string predict_efforts(const PredictReport& report, const Methods& methods)
   out += item("simulation", width, fmt::format("{}, {} steps", counted(report.outcomes.size(), "run", "runs"), steps));
   for (const auto& one : report.outcomes)
     out += item("  " + std::string(to_string(one.outcome)), width,
-                fmt::format("{} s in {} steps, from {}", with_digits(one.time, 4), one.steps, one.start));
+                fmt::format("{} s in {} steps, from {}", with_digits(one.time, 4), one.steps,
+                            start_in_words(one.start, units)));
   out += item("shooting", width, shooting_text(report));
   return out + item("status", width, std::string(to_string(report.status)));
 }

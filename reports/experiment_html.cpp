@@ -27,7 +27,7 @@ std::string findings_html(const Experiment& one) {
   if (one.findings.empty()) return "";
   Table table{{{"law", "", Align::left}, {"finding", "", Align::left}}, {}};
   for (const auto& finding : one.findings) table.rows.push_back({finding.law, finding.text});
-  return html_table(table, "What the numbers of each law say");
+  return html_table(table, "Findings by law");
 }
 
 std::string one_html(const Experiment& one, bool several) {

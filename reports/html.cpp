@@ -14,7 +14,7 @@ namespace {
 std::string tables(const PredictReport& report, const Units& units) {
   std::string out = "<h2>Limit cycles</h2>\n" + cycle_tables(report, units) + "<h2>Predictions</h2>\n" +
                     prediction_tables(report, units) + trust_sections(report, units, 2);
-  const std::string outcomes = outcome_table(report);
+  const std::string outcomes = outcome_table(report, units);
   return outcomes.empty() ? out : out + "<h2>Simulations</h2>\n" + outcomes;
 }
 

@@ -120,7 +120,7 @@ struct MapPanel {
 };
 
 MapPanel what_panel(const HuntingMap& map) {
-  MapPanel panel{"What happens", colour_of_what, {}};
+  MapPanel panel{"Outcome", colour_of_what, {}};
   for (const auto& point : map.points) {
     if (!point) continue;
     const std::pair entry(colour_of_what(*point), point->in_words());
@@ -193,17 +193,14 @@ std::string map_picture(const MapReport& report, const Units& units) {
 std::string map_sections(const MapReport& report, const Units& units, int level) {
   const std::string heading = "h" + std::to_string(level);
   std::string body =
-      html_tag(heading, "The map") +
-      html_picture(
-          map_picture(report, units),
-          "What motions from several starts come to; amplitude and period of the stable cycle that swings most; "
-          "and what each method was worth.",
-          map_csv(report));
-  body +=
-      html_tag(heading, "What happens") + html_table(happens_table(report), "Points of the map by what happens there");
+      html_tag(heading, "The map") + html_picture(map_picture(report, units),
+                                                  "Outcome of motions from several starts, amplitude and period of the "
+                                                  "largest stable cycle, and reliability of each method.",
+                                                  map_csv(report));
+  body += html_tag(heading, "Outcome") + html_table(happens_table(report), "Points of the map by outcome");
   if (!report.map.methods.empty())
-    body +=
-        html_tag(heading, "What methods are worth") + html_table(worth_table(report), "Shares of the map, by method");
+    body += html_tag(heading, "Reliability of the methods") +
+            html_table(worth_table(report), "Shares of the map, by method");
   return body;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "limcycle/reports/answer.hpp"
 #include "limcycle/reports/map.hpp"
 #include "limcycle/reports/number.hpp"
 
@@ -76,7 +77,9 @@ std::string map_answer(const MapReport& report) {
   for (std::size_t m = 0; m < report.map.methods.size(); ++m) {
     const std::size_t missed = count(report.map, m, Worth::missed), wrong = count(report.map, m, Worth::wrong),
                       biased = count(report.map, m, Worth::biased);
-    answer += " The " + report.map.methods[m];
+    std::string method = method_in_words(report.map.methods[m]);
+    if (method.starts_with("the ")) method[0] = 'T';
+    answer += " " + method;
     if (missed + wrong + biased == 0) {
       answer += " is never wrong.";
       continue;
@@ -85,7 +88,7 @@ std::string map_answer(const MapReport& report) {
     const auto add = [&](std::size_t number, const std::string& words) {
       if (number > 0) faults += (faults.empty() ? "" : ", ") + words + " on " + share(number, known);
     };
-    add(missed, "overlooks a cycle");
+    add(missed, "finds no cycle where one exists");
     add(wrong, "predicts one that does not exist");
     add(biased, "is off by more than 5 %");
     answer += " " + faults + ".";
@@ -94,7 +97,7 @@ std::string map_answer(const MapReport& report) {
 }
 
 Table happens_table(const MapReport& report) {
-  Table table{{{"what happens", "", Align::left}, {"points", ""}, {"share", ""}, {"letter", "", Align::left}}, {}};
+  Table table{{{"outcome", "", Align::left}, {"points", ""}, {"share", ""}, {"letter", "", Align::left}}, {}};
   for (const auto& entry : what_happens(report.map)) {
     const auto sample = std::ranges::find_if(
         report.map.points, [&](const auto& point) { return point && point->in_words() == entry.first; });
@@ -124,7 +127,7 @@ std::string map_text(const std::string& title, const MapReport& report) {
   out += wrapped("x: " + side(map.x, report.x_unit)) + wrapped("y: " + side(map.y, report.y_unit)) + "\n";
   if (map.known() == 0) return out;
   out += letters(map) + "\n" + happens_table(report).text();
-  if (!map.methods.empty()) out += "\nWhat each method was worth\n" + worth_table(report).text();
+  if (!map.methods.empty()) out += "\nReliability of each method\n" + worth_table(report).text();
   return out;
 }
 

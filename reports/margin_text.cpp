@@ -57,7 +57,7 @@ std::string of_balance(const MarginReport& report) {
       fmt::format("amplitude {} and {} rad/s", with_digits(amplitude, 3), with_digits(frequency, 3));
   if (distance < 1e-4) return " The describing function's -1/N meets the Nyquist curve at " + where + ".";
   return fmt::format(
-      " The describing function sees no cycle: its -1/N stays {} away from the Nyquist curve (nearest at {}).",
+      " The describing function finds no cycle: -1/N comes within {} of the Nyquist curve (nearest at {}).",
       as_percent(distance), where);
 }
 
@@ -97,7 +97,7 @@ Table margin_table(const MarginReport& report, bool friction) {
 }
 
 std::string margin_answer(const MarginReport& report, const Units& units) {
-  std::string out = report.status == Status::interrupted ? "Interrupted; as far as it went: " : "";
+  std::string out = report.status == Status::interrupted ? "Interrupted; partial result: " : "";
   if (!report.refused.empty()) {
     out += "Not answered: " + report.refused +
            " over a parameter. `limcycle map` answers over a plane of parameters, with the dead time approximated.";
@@ -108,17 +108,17 @@ std::string margin_answer(const MarginReport& report, const Units& units) {
     out += fmt::format("This loop has a stable limit cycle (period {} s, amplitude {}).",
                        with_digits(stable->period, 4), Units::attach(with_digits(stable->amplitude, 4), units.y));
   } else {
-    out += "This loop has no stable limit cycle that was found.";
+    out += "No stable limit cycle was found.";
   }
   const ParameterMargin* design = nearest(report, false);
   const ParameterMargin* law = nearest(report, true);
-  const std::string verb = report.hunts ? "ends" : "starts";
+  const std::string verb = report.hunts ? "ends it" : "starts one";
   if (design)
-    out += fmt::format(" The smallest change of plant or controller that {} it: {}.", verb, step(*design));
+    out += fmt::format(" The smallest change of plant or controller that {}: {}.", verb, step(*design));
   else if (std::ranges::any_of(report.parameters, [](const auto& one) { return !one.parameter.friction; }))
-    out += fmt::format(" No single change of plant or controller within a factor of {:g} {} it{}.", report.factor, verb,
-                       has_unknown_side(report) ? ", as far as was determined" : "");
-  if (law) out += fmt::format(" Of the friction: {}.", step(*law));
+    out += fmt::format(" No single change of plant or controller within a factor of {:g} {}{}.", report.factor, verb,
+                       has_unknown_side(report) ? " (some directions are undetermined)" : "");
+  if (law) out += fmt::format(" The smallest change of the friction: {}.", step(*law));
   return out + of_balance(report);
 }
 

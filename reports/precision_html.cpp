@@ -67,9 +67,9 @@ Figure stiffness_figure(const StiffnessStudy& study) {
   }
   std::string finding = "CPU time of a run over the stiffness of the bristles; lines solid, dashed and dotted for ";
   for (std::size_t i = 0; i < settings.size(); ++i) finding += (i == 0 ? "" : ", ") + settings[i];
-  return work_figure("work-stiffness", "Stiffness: where each stepper stops being right",
-                     finding + ". Crosses: not right there (wrong, biased, failed or given up).", "sigma0",
-                     "CPU time (s)", series);
+  return work_figure("work-stiffness", "Stiffness: limit of each stepper",
+                     finding + ". Crosses: not correct (wrong, biased, failed or stopped).", "sigma0", "CPU time (s)",
+                     series);
 }
 
 std::string chart_html(const WorkChart& chart, const std::string& heading) {
@@ -77,7 +77,7 @@ std::string chart_html(const WorkChart& chart, const std::string& heading) {
                     html_tag("p", reference_in_words(chart));
   if (chart.points.empty()) return out;
   if (chart.question == "cycle") out += html_tag("p", conditions());
-  out += html_table(method_table(chart), "CPU time that each method needs for an error");
+  out += html_table(method_table(chart), "CPU time of each method for a given error");
   return out + figures_html({chart_figure(chart)}, heading == "h2") + "<details><summary>All settings</summary>\n" +
          html_table(point_table(chart), "Every method with every setting") + "</details>\n";
 }

@@ -75,7 +75,7 @@ std::string chart_text(const WorkChart& chart) {
   std::string out = "\n" + question_in_words(chart) + "\n" + wrapped(reference_in_words(chart), 80, 2);
   if (chart.points.empty()) return out;
   if (chart.question == "cycle") out += wrapped(conditions(), 80, 2);
-  out += "  CPU time that each method needs for an error, the least error, failures:\n";
+  out += "  CPU time of each method for a given error, its least error, its failures:\n";
   return out + method_table(chart).text() + reasons(chart);
 }
 
@@ -116,12 +116,12 @@ std::string reference_in_words(const WorkChart& chart) {
 }
 
 std::string precision_answer(const PrecisionReport& report) {
-  std::string out = report.status == Status::interrupted ? "Interrupted; as far as it went: " : "";
+  std::string out = report.status == Status::interrupted ? "Interrupted; partial result: " : "";
   for (const auto* chart : {&report.cycle_chart, &report.df_chart}) {
     if (!*chart) continue;
     out += (out.empty() || out.back() == ' ' ? "" : " ") + question_in_words(**chart) + ": ";
     std::string words = (*chart)->answered ? front_in_words(**chart) : reference_in_words(**chart);
-    if (words.empty()) words = "nothing was run.";
+    if (words.empty()) words = "no method was run.";
     out += static_cast<char>(std::tolower(static_cast<unsigned char>(words[0]))) + words.substr(1);
   }
   return out;
@@ -206,8 +206,7 @@ std::string precision_text(const std::string& title, const PrecisionReport& repo
   for (const auto* chart : {&report.cycle_chart, &report.df_chart})
     if (*chart) out += chart_text(**chart);
   if (!report.stiffness.points.empty()) {
-    out += "\nWhere each stepper stops being right: CPU time, or what went wrong\n" +
-           stiffness_table(report.stiffness).text();
+    out += "\nStiffness limit of each stepper: CPU time, or the failure\n" + stiffness_table(report.stiffness).text();
     for (const auto& note : report.stiffness.notes) out += wrapped(note + ".", 80, 2);
   }
   out += notes_text(report.notes);

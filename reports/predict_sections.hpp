@@ -20,6 +20,6 @@ std::string prediction_tables(const PredictReport& report, const Units& units);
 std::string trust_sections(const PredictReport& report, const Units& units, int level);
 
 /// What each start reaches; empty without any.
-std::string outcome_table(const PredictReport& report);
+std::string outcome_table(const PredictReport& report, const Units& units = {});
 
 }  // namespace limcycle

@@ -65,7 +65,7 @@ std::string missing_figures(const PredictReport& report, const SortedFigures& fi
                     "Without a limit cycle there are no harmonics and no Floquet multipliers; the figures show a "
                     "simulation.");
   else if (!has("multipliers"))
-    out += html_tag("p", "No Floquet multipliers are known of these cycles.");
+    out += html_tag("p", "The Floquet multipliers of these cycles were not computed.");
   return out;
 }
 
@@ -77,11 +77,10 @@ ReportSection motion_section(const LoopReport& report, const Units& units, const
 
 ReportSection prediction_section(const LoopReport& report, const Units& units, const SortedFigures& figures) {
   std::string body = prediction_tables(report.predict, units);
-  body +=
-      figures.frequency.empty()
-          ? html_tag("p", "The describing function was not applied, so that there is no Nyquist plot: see the notes.")
-          : figures_html(figures.frequency, figures.motion.empty());
-  return {"part-predictions", "What each method predicts", body + trust_sections(report.predict, units, 3)};
+  body += figures.frequency.empty()
+              ? html_tag("p", "The describing function was not applied, so there is no Nyquist plot: see the notes.")
+              : figures_html(figures.frequency, figures.motion.empty());
+  return {"part-predictions", "Predictions", body + trust_sections(report.predict, units, 3)};
 }
 
 std::string sensitivity_body(const SensitivityReport& found, const Units& units) {
@@ -92,26 +91,26 @@ std::string energy_body(const CountedRun& counted) {
   const auto& time = counted.run.trace.t;
   const std::string words = fmt::format("This is {}, {:.6g} s. ", counted.which, time.empty() ? 0.0 : time.back());
   return html_tag("p", words + energy_in_words(counted.energy)) +
-         html_table(energy_table(counted.energy), "Where the energy comes from and goes to");
+         html_table(energy_table(counted.energy), "Energy supplied, stored and dissipated");
 }
 
 std::vector<ReportSection> sections_of(const LoopReport& report, const Units& units) {
   const SortedFigures figures = sorted_figures(report.predict, units);
   std::vector<ReportSection> out{loop_section(report, units), motion_section(report, units, figures),
                                  prediction_section(report, units, figures)};
-  const std::string outcomes = outcome_table(report.predict);
-  out.push_back({"part-starts", "What each start reaches",
+  const std::string outcomes = outcome_table(report.predict, units);
+  out.push_back({"part-starts", "Outcome of each start",
                  outcomes.empty() ? html_tag("p", "No simulation was run to its end.") : outcomes});
-  out.push_back({"part-sensitivity", "What moves the cycle",
+  out.push_back({"part-sensitivity", "Sensitivity",
                  body_of(report.sensitivity, [&](const auto& found) { return sensitivity_body(found, units); })});
   out.push_back({"part-map", "Hunting map", body_of(report.map, [&](const auto& found) {
                    return html_tag("p", map_answer(found)) + map_sections(found, units, 3);
                  })});
-  out.push_back({"part-energy", "Where the energy goes", body_of(report.energy, energy_body)});
-  out.push_back({"part-dissipativity", "What energy can prove", body_of(report.dissipativity, [](const auto& found) {
+  out.push_back({"part-energy", "Energy balance", body_of(report.energy, energy_body)});
+  out.push_back({"part-dissipativity", "Dissipativity", body_of(report.dissipativity, [](const auto& found) {
                    return html_tag("p", dissipativity_answer(found)) + dissipativity_sections(found, 3);
                  })});
-  out.push_back({"part-precision", "Speed against accuracy", body_of(report.precision, [&](const auto& found) {
+  out.push_back({"part-precision", "Accuracy and cost", body_of(report.precision, [&](const auto& found) {
                    return html_tag("p", precision_answer(found)) + precision_sections(found, units, 3);
                  })});
   return out;
@@ -124,7 +123,7 @@ std::string contents(const std::vector<ReportSection>& sections, bool notes) {
   };
   for (const auto& section : sections) entry(section.id, section.heading);
   if (notes) entry("part-notes", "Notes");
-  entry("origin", "Where this comes from");
+  entry("origin", "Provenance");
   return out + "</ul>\n</nav>\n";
 }
 
@@ -134,9 +133,8 @@ std::string report_page(const LoopReport& report, const Provenance& provenance, 
                         const Units& units, const std::string& flags) {
   CycleAnswer words = answer(report.predict, units);
   if (report.interrupted)
-    words.worth.insert(
-        words.worth.begin(),
-        "Interrupted: this page holds what was computed until then, and says where something is missing.");
+    words.worth.insert(words.worth.begin(),
+                       "Interrupted: this page shows the results computed so far and marks what is missing.");
   const auto sections = sections_of(report, units);
   std::string body = contents(sections, !report.predict.notes.empty());
   for (const auto& section : sections)

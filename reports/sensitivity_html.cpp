@@ -12,12 +12,12 @@ std::string output_section(const SensitivityReport& report, const OutputSensitiv
   std::string out = html_tag(heading, "Global: " + output.output);
   out += html_tag("p", fmt::format("No answer from {} of the loops.", as_percent(output.share_without_answer)));
   if (output.sobol.deviation == 0.0)
-    return out + html_tag("p", "It is the same for every loop that answered: nothing to share out.");
+    return out + html_tag("p", "It is the same for every loop that answered: there is no variance to share out.");
   out += html_picture(indices_picture(report, output),
                       "Shares of the variance with 95 % intervals; beside them how the total indices settled.");
-  out +=
-      html_picture(interactions_picture(report, output),
-                   "What each number does alone, and with another beyond that. Faint numbers cannot be told from 0.");
+  out += html_picture(
+      interactions_picture(report, output),
+      "Share of each number alone (diagonal) and of each pair. Faint values are not distinguishable from 0.");
   out += html_table(sobol_table(report, output), "Sobol indices of " + output.output);
   out += html_table(morris_table(report, output), "Morris: effects on " + output.output + " of each whole range");
   std::vector<std::string> notes = output.sobol.notes;
@@ -39,9 +39,9 @@ std::string prediction_sections(const SensitivityReport& report, const Units& un
 }
 
 std::string threshold_section(const ThresholdSensitivity& threshold, const std::string& heading) {
-  std::string body =
-      html_tag(heading, "Threshold of " + threshold.path) + html_tag("p", threshold_sentence(threshold)) +
-      html_picture(threshold_picture(threshold), "How far the threshold moves for each per cent of a number.");
+  std::string body = html_tag(heading, "Threshold of " + threshold.path) +
+                     html_tag("p", threshold_sentence(threshold)) +
+                     html_picture(threshold_picture(threshold), "Change of the threshold for +1 % of a number.");
   if (const Table table = threshold_table(threshold); !table.rows.empty())
     body += html_table(table, "Exact derivatives of the threshold");
   return body;
@@ -53,20 +53,19 @@ std::string sensitivity_sections(const SensitivityReport& report, const Units& u
   const std::string heading = "h" + std::to_string(level);
   std::string body;
   if (report.cycle && !report.local.empty()) {
-    body +=
-        html_tag(heading, "The cycle") +
-        html_picture(tornado_picture(report), "How much amplitude and period change for each per cent of a number.");
+    body += html_tag(heading, "The cycle") +
+            html_picture(tornado_picture(report), "Change of amplitude and period for +1 % of a number.");
     body += html_table(derivative_table(report, units), "Exact derivatives of amplitude and period");
     body += html_table(harmonic_table(report, units), "Exact derivatives of first harmonic and offset");
   }
   body += prediction_sections(report, units, heading);
   for (const auto& threshold : report.thresholds) body += threshold_section(threshold, heading);
   if (!report.one_at_a_time.empty())
-    body += html_tag(heading, "One at a time") +
-            html_table(change_table(report, units), "What happens with one number changed");
+    body +=
+        html_tag(heading, "One at a time") + html_table(change_table(report, units), "Outcome with one number changed");
   if (report.global) {
     body += html_tag(heading, "The spread") +
-            html_picture(hunting_heat_picture(report), "Where in the spread the loop hunts.") +
+            html_picture(hunting_heat_picture(report), "Values of the spread at which the loop hunts.") +
             html_picture(scatter_picture(report), "Every loop of the fair sample over each of the parameters.");
     for (const auto& output : report.global->outputs) body += output_section(report, output, heading);
   }

@@ -28,7 +28,8 @@ std::string share_interval_text(const Estimate& estimate) {
 
 std::string same_everywhere(const OutputSensitivity& output) {
   if (output.share_without_answer >= 1.0) return "No loop of the spread has an answer.";
-  return fmt::format("It is {} for every loop that answered: nothing to share out.", with_digits(output.sobol.mean, 6));
+  return fmt::format("It is {} for every loop that answered: there is no variance to share out.",
+                     with_digits(output.sobol.mean, 6));
 }
 
 /// "loop." goes without saying.
@@ -39,6 +40,9 @@ std::string estimate_text(const Estimate& estimate) {
 double per_cent_a_per_cent(const LocalSensitivity& one, double derivative, double quantity) {
   return quantity != 0.0 ? derivative * one.value / quantity : std::numeric_limits<double>::quiet_NaN();
 }
+
+/// "+2.90" or "-2.90".
+std::string with_sign(double value) { return (value > 0.0 ? "+" : "") + with_digits(value, 3); }
 
 /// The number that moves the amplitude most.
 const LocalSensitivity* strongest(const SensitivityReport& report) {
@@ -52,7 +56,7 @@ const LocalSensitivity* strongest(const SensitivityReport& report) {
 
 std::string without_derivatives(const SensitivityReport& report) {
   if (report.local.empty()) return "The derivatives of the limit cycle were not computed: this loop has a dead time.";
-  return "The limit cycle has no derivative by any number: " + report.local.front().why + ".";
+  return "The limit cycle has no derivative with respect to any number: " + report.local.front().why + ".";
 }
 
 }  // namespace
@@ -60,22 +64,22 @@ std::string without_derivatives(const SensitivityReport& report) {
 std::string sensitivity_answer(const SensitivityReport& report) {
   std::string out;
   if (const auto* best = strongest(report); best != nullptr && report.cycle)
-    out += fmt::format("The cycle's amplitude is moved most by {}: {} % for each per cent.", best->path,
-                       with_digits(per_cent_a_per_cent(*best, best->amplitude, report.cycle->amplitude), 3));
+    out += fmt::format("The cycle's amplitude is most sensitive to {}: +1 % gives {} %.", best->path,
+                       with_sign(per_cent_a_per_cent(*best, best->amplitude, report.cycle->amplitude)));
   else if (report.cycle)
     out += without_derivatives(report);
   else
-    out += "The loop has no stable limit cycle as it is, so there is none to differentiate.";
+    out += "The loop has no stable limit cycle at the given values, so there is nothing to differentiate.";
   if (!report.global) return out;
   const Probability& hunting = report.global->hunting;
   if (hunting.among_decided.known) {
-    out += fmt::format(" Over the given spread it hunts with a probability of {} ({} to {})",
+    out += fmt::format(" Over the given spread it hunts with probability {} ({} to {})",
                        as_percent(hunting.among_decided.value), as_percent(hunting.among_decided.low),
                        as_percent(hunting.among_decided.high));
     if (hunting.undecided > 0)
       out += fmt::format(", {} of {} loops undecided", hunting.undecided, hunting.yes + hunting.no + hunting.undecided);
     out += report.global->matters_most
-               ? "; what decides it most is " + report.spread.parameters[*report.global->matters_most].path + "."
+               ? "; the most influential number is " + report.spread.parameters[*report.global->matters_most].path + "."
                : ".";
   }
   return out;
@@ -105,7 +109,7 @@ Table change_table(const SensitivityReport& report, const Units& units) {
   Table table{{{"number", "", Align::left},
                {"times", ""},
                {"value", "its unit"},
-               {"what happens", "", Align::left},
+               {"outcome", "", Align::left},
                {"amplitude", units.y},
                {"period", "s"}},
               {}};

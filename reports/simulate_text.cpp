@@ -80,7 +80,7 @@ Table energy_table(const EnergyBalance& energy) {
 }
 
 std::string energy_in_words(const EnergyBalance& energy) {
-  if (!energy.checks()) return "The law does not tell the energy that it stores, so that there is no balance to check.";
+  if (!energy.checks()) return "The law does not define its stored energy, so there is no balance to check.";
   const std::string off = fmt::format("{} of {} J turned over", as_error(std::abs(energy.relative_error())),
                                       with_digits(energy.turnover, 4));
   if (energy.balanced()) return fmt::format("The energy balances to {}.", off);
@@ -97,7 +97,7 @@ std::string agreement_in_words(const Agreement& second) {
     return fmt::format("Warning: {} disagrees: {}. {}.", other, second.why,
                        second.rtol < 1e-11 ? "No tolerance settles it: the motion may be chaotic"
                                            : fmt::format("Try --set simulate.rtol={}", as_error(second.rtol)));
-  std::string out = fmt::format("Agrees with {}: y at like phase to {} of its range, the times of its swings to {} s",
+  std::string out = fmt::format("Agrees with {}: y at equal phase to {} of its range, its turning points to {} s",
                                 other, as_error(second.position_difference), as_error(second.phase_drift));
   if (std::isfinite(second.period_difference))
     out += fmt::format("; period to {}, amplitude to {}", as_error(second.period_difference),

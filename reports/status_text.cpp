@@ -22,7 +22,7 @@ std::string who_writes(const StoredSweep& sweep) {
   if (activity.running)
     return activity.pid > 0 ? fmt::format("Process {} is computing.", activity.pid) : "Another process is computing.";
   if (activity.known == sweep.identity.points) return "Complete.";
-  return "Nobody is computing: the same command with --resume goes on.";
+  return "No process is running: continue by the same command with --resume.";
 }
 
 std::string pace(const StoredSweep& sweep, double now) {

@@ -16,12 +16,12 @@ std::string cycle_number(const std::optional<std::size_t>& value) { return value
 
 std::string titled(const std::string& heading, const std::string& body) { return "\n" + heading + "\n" + body; }
 
-std::string outcomes(const PredictReport& report) {
+std::string outcomes(const PredictReport& report, const Units& units) {
   std::string out;
   for (const auto& one : report.outcomes) {
     std::string label(to_string(one.outcome));
     if (one.cycle) label += fmt::format(" {}", *one.cycle);
-    out += item(label, 10, "from " + one.start + (one.why.empty() ? "" : ": " + one.why));
+    out += item(label, 10, "from " + start_in_words(one.start, units) + (one.why.empty() ? "" : ": " + one.why));
   }
   return out;
 }
@@ -47,6 +47,10 @@ std::string reasons(const PredictReport& report) {
 }
 
 }  // namespace
+
+std::string start_in_words(const std::string& start, const Units& units) {
+  return start.starts_with("y(0) = ") ? Units::attach(start, units.y) : start;
+}
 
 Table cycle_table(const PredictReport& report, const Units& units) {
   Table table{{{"#", "", Align::left},
@@ -127,9 +131,9 @@ std::string predict_text(const std::string& title, const PredictReport& report, 
   if (!report.predictions.empty())
     out += titled("Predictions", prediction_table(report, units).text() + reasons(report));
   if (const Table trust = trust_table(report, units); !trust.rows.empty())
-    out += titled("Trust in the predictions, and where the true cycles may lie", trust.text() + sentences(report));
+    out += titled("Trust in the predictions, and bounds of the true cycles", trust.text() + sentences(report));
   if (report.absence) out += titled("Absence of oscillations", wrapped(absence_in_words(report)));
-  if (!report.outcomes.empty()) out += titled("Reached in simulation", outcomes(report));
+  if (!report.outcomes.empty()) out += titled("Reached in simulation", outcomes(report, units));
   const auto& box = report.search;
   out += titled("Search box",
                 wrapped(fmt::format("amplitude of the element's input {:g} to {:g}, frequency {:g} to {:g} rad/s",

@@ -36,6 +36,9 @@ std::string energy_in_words(const EnergyBalance& energy);
 /// What a second run says of `run`, one or two sentences; begins with "Warning" where they disagree.
 std::string agreement_in_words(const Agreement& second);
 
+/// "y(0) = 0.1 m": the name of a start of predict(), with the unit of y where it gives a value of y.
+std::string start_in_words(const std::string& start, const Units& units);
+
 /// The tables of predict_text, for other formats.
 Table cycle_table(const PredictReport& report, const Units& units);
 Table prediction_table(const PredictReport& report, const Units& units);
@@ -48,6 +51,6 @@ std::string absence_in_words(const PredictReport& report);
 
 /// What each method did, for --verbose: roots and residuals, runs with their steps, return maps. The same bytes however
 /// many threads; no times. `methods`: those that were asked for.
-std::string predict_efforts(const PredictReport& report, const Methods& methods);
+std::string predict_efforts(const PredictReport& report, const Methods& methods, const Units& units = {});
 
 }  // namespace limcycle

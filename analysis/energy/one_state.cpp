@@ -70,7 +70,7 @@ std::string undecided_words(const SlopeSurvey& survey) {
   if (survey.status == Status::interrupted) return "interrupted";
   if (survey.status == Status::not_finite) return "the law gave NaN or infinity";
   if (survey.worst.verdict() == Passive::yes)
-    return "every state leaves a storage a slope, but whether the storage stays bounded was not told";
+    return "undecided: a storage slope exists at every state, but whether the storage stays bounded was not determined";
   return "at z = " + short_number(survey.worst.z) +
          " the least and the largest slope of a storage cross by less than 1e-9: too close to tell";
 }

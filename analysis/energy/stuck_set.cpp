@@ -116,20 +116,19 @@ Answer judge(const StuckSet& set, bool stuck, const Extent& stops, int zero) {
     rightmost = std::max(rightmost, values[i].real());
   const double rounding = values.empty() ? 0.0 : 1e-12 * std::abs(values.back());
   const std::string slowest =
-      std::isinf(rightmost) ? "" : " (rightmost eigenvalue beside it: real part " + short_number(rightmost) + " 1/s)";
-  if (set.winding > 0)
-    return {Decision::no, "beside the set the stuck loop does not stand still: it winds up until the body breaks away"};
-  if (rightmost > rounding) return {Decision::no, "beside the set the motion grows" + slowest};
+      std::isinf(rightmost) ? "" : " (rightmost eigenvalue nearby: real part " + short_number(rightmost) + " 1/s)";
+  if (set.winding > 0) return {Decision::no, "unstable: the stuck loop winds up until the body breaks away"};
+  if (rightmost > rounding) return {Decision::no, "unstable: motions near the set grow" + slowest};
   if (rightmost > -rounding)
-    return {Decision::undecided, "a mode beside the set neither grows nor decays, to rounding"};
-  if (!stuck) return {Decision::yes, "attracts what is near its middle" + slowest};
+    return {Decision::undecided, "marginal to rounding: a mode near the set neither grows nor decays"};
+  if (!stuck) return {Decision::yes, "locally stable near its centre" + slowest};
   const Extent inner{std::max(set.force.low, stops.low), std::min(set.force.high, stops.high)};
-  if (inner.low > inner.high) return {Decision::no, "none of it stops a body that was set moving"};
+  if (inner.low > inner.high) return {Decision::no, "no state of the set stops a moving body"};
   const double doubt = 1e-6 * (stops.high - stops.low);
   if (inner.high < set.force.high - doubt || inner.low > set.force.low + doubt)
-    return {Decision::yes, "attracts what is near where the friction is between " + short_number(inner.low) + " and " +
-                               short_number(inner.high) + " N; beyond, it holds what is not disturbed" + slowest};
-  return {Decision::yes, "attracts what is near" + slowest};
+    return {Decision::yes, "locally stable where the friction is between " + short_number(inner.low) + " and " +
+                               short_number(inner.high) + " N; elsewhere it holds only what is undisturbed" + slowest};
+  return {Decision::yes, "locally stable" + slowest};
 }
 
 /// Distance of linear states from the set, in the sizes of the loop; the force does not count.
@@ -261,9 +260,11 @@ StuckSet stuck_set(const Loop& loop, const StuckOptions& options) {
   result.dimension = set.dimension;
   result.force = varies ? holds : Extent{F, F};
   result.output = outputs(loop, set, result.force);
-  result.answer = {Decision::yes, "the loop can stand still with friction between " + short_number(result.force.low) +
-                                      " and " + short_number(result.force.high) + " N and y between " +
-                                      short_number(result.output.low) + " and " + short_number(result.output.high)};
+  const std::string low = short_number(result.output.low), high = short_number(result.output.high);
+  result.answer = {Decision::yes,
+                   "the loop can stand still with friction between " + short_number(result.force.low) + " and " +
+                       short_number(result.force.high) + " N" +
+                       (low == high ? ", only at y = " + low : " and y between " + low + " and " + high)};
   const double middle = varies ? 0.5 * (std::max(holds.low, stops.low) + std::min(holds.high, stops.high)) : F;
   decide_attraction(loop, set, middle, stops, result);
   if (options.march) march_back(loop, set, states_at(set, middle), result, options);

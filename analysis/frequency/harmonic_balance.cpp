@@ -133,7 +133,7 @@ class Search {
   HarmonicBalance ended() const {
     if (stopped_) return finish(Status::interrupted, "stopped on request");
     std::ostringstream why;
-    why << "the budget of " << options_.max_evaluations << " evaluations was used up before "
+    why << "the limit of " << options_.max_evaluations << " evaluations was reached before "
         << (found_ ? "the tail was small and the equations solved to the wanted accuracy" : "a balance was found");
     return finish(found_ ? Status::incomplete : Status::max_iterations, why.str());
   }
@@ -170,7 +170,7 @@ class Search {
       why << "the equations are solved to " << residual_ << " of their size only, not to the wanted "
           << options_.accuracy;
     else if (H == 1)
-      why << "one harmonic cannot tell how small the others are" << more;
+      why << "one harmonic does not show how small the others are" << more;
     else
       why << "with " << H << " harmonics the last of them are " << tail() << " of the first, not below the wanted "
           << options_.tail

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "limcycle/analysis/motion/loop_field.hpp"
+#include "limcycle/analysis/motion/sticking.hpp"
 
 namespace limcycle {
 namespace {
@@ -19,13 +20,7 @@ std::size_t guards_of(const Element<double>& element, Mode mode) {
 
 /// Is the guard of element i, when it slides, the velocity that its own force changes?
 bool slides_through_zero(const Loop& loop, std::size_t i) {
-  const bool holds_rate = std::visit(
-      []<class E>(const E&) {
-        if constexpr (CanHold<E>) return E::holds == Held::rate;
-        return false;
-      },
-      loop.elements[i]);
-  return holds_rate && (loop.ports[i].C_v * loop.B.col(static_cast<Index>(i))).value() != 0.0;
+  return may_stick(loop.elements[i]) && (loop.ports[i].C_v * loop.B.col(static_cast<Index>(i))).value() != 0.0;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "limcycle/analysis/motion/affine_flow.hpp"
 #include "limcycle/analysis/motion/controlled_rodas5p.hpp"
 #include "limcycle/analysis/motion/explicit_steppers.hpp"
+#include "limcycle/analysis/motion/sticking.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/motion/transition.hpp"
 
@@ -51,12 +52,6 @@ AnyStepper make(StepperKind kind, const ErrorWeights& w, LoopField& field) {
 
 constexpr double longest_step = 1e15;  ///< times that of the motion
 constexpr int most_at_floor = 10'000;  ///< exact steps too long by their error; they get nowhere
-
-template <class E>
-constexpr bool holds_rate() {
-  if constexpr (CanHold<E>) return E::holds == Held::rate;
-  return false;
-}
 
 /// The field as Odeint's explicit steppers want it, and with its Jacobian as the implicit one does.
 auto right_side(LoopField& field) {

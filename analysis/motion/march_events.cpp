@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/sticking.hpp"
 
 /// @file
 /// Location of events within a step: switches of elements and crossings of the section.
@@ -11,15 +12,6 @@ namespace limcycle {
 namespace {
 
 constexpr std::size_t section_guard = std::numeric_limits<std::size_t>::max();
-
-bool may_stick(const Element<double>& element) {
-  return std::visit(
-      []<class E>(const E&) {
-        if constexpr (CanHold<E>) return E::holds == Held::rate;
-        return false;
-      },
-      element);
-}
 
 }  // namespace
 

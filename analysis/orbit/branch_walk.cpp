@@ -37,7 +37,7 @@ class Walk {
       if (map_.stopped()) return finish(Status::interrupted);
       const bool many = std::ssize(branch_.points) > options_.max_points;
       if (many || map_.steps() - begun > options_.max_steps) {
-        end_here(many ? "the budget of points was used up" : "the budget of integration steps was used up");
+        end_here(many ? "point limit reached" : "step limit reached");
         return finish(Status::max_iterations);
       }
       h = std::clamp(h, options_.min_step, options_.max_step);
@@ -275,11 +275,10 @@ class Walk {
     const std::complex<double> mu = spot->multipliers[rank - 1];
     std::string what = "a pair of complex multipliers crosses the unit circle (onto a torus)";
     if (std::abs(mu.imag()) < 1e-6)
-      what = mu.real() > 0.0 ? "a multiplier crosses +1 away from a fold (branches cross)"
-             : map_.frame().half
-                 ? "a multiplier of the half period crosses -1: the symmetric cycle gives birth to a pair "
-                   "of unsymmetric ones (the multiplier of the period crosses +1)"
-                 : "a multiplier crosses -1 (period doubling)";
+      what = mu.real() > 0.0     ? "a multiplier crosses +1 away from a fold (branches cross)"
+             : map_.frame().half ? "a multiplier of the half period crosses -1: the cycle loses its symmetry (a pair "
+                                   "of asymmetric cycles appears; the multiplier of the period crosses +1)"
+                                 : "a multiplier crosses -1 (period doubling)";
     const double slope = std::abs(radius(b) - radius(a)) / (b.w - a.w).norm();
     const double left = std::abs(radius(*spot)) / slope + 10.0 * spot->orbit_error / slope;
     add(*spot,
@@ -313,7 +312,7 @@ class Walk {
       return false;
     now_ = std::move(*spot);
     take(now_);
-    end_here("the branch is closed: it is back where it began");
+    end_here("closed branch: it returns to its start");
     closed_ = true;
     return true;
   }

@@ -25,11 +25,15 @@ bool RestWatch::rates_constant(const State& dx) {
   return constant;
 }
 
+double RestWatch::rate(const State& dx) const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < dx.size(); ++i) largest = std::max(largest, std::abs(dx[i]) * slow_ / sizes_[i]);
+  return largest;
+}
+
 bool RestWatch::rates_fade(double t, const State& dx) {
-  double rate = 0.0;
-  for (std::size_t i = 0; i < dx.size(); ++i) rate = std::max(rate, std::abs(dx[i]) * slow_ / sizes_[i]);
-  const double drift = rate * (t + slow_) / slow_;
-  const bool fades = rate <= noise_ || (drift < 0.6 * last_ && drift < 1e-6);
+  const double largest = rate(dx), drift = largest * (t + slow_) / slow_;
+  const bool fades = largest <= noise_ || (drift < 0.6 * last_ && drift < 1e-6);
   last_ = drift;
   return fades;
 }

@@ -24,6 +24,9 @@ class RestWatch {
   /// not zero.
   Verdict look(double t, const State& x, const State& dx);
   double next() const { return next_; }
+  /// The largest of the rates, in sizes per slowest time constant.
+  double rate(const State& dx) const;
+  double noise() const { return noise_; }  ///< rates as small as that count as none
 
  private:
   State sizes_;

@@ -14,6 +14,9 @@
 namespace limcycle {
 namespace {
 
+/// The steps of shooting that a motion is worth before it is decided: these, and so many for each of its own steps.
+constexpr long steps_of_tries = 500'000, tries_per_step = 6;
+
 /// One run: simulation, and shooting whenever the swings look steady.
 class Settling {
  public:
@@ -45,8 +48,8 @@ class Settling {
   }
 
   void note() {
+    append(result_.trace, field_, march_);
     field_.rate(march_.x(), dx_, march_.t());
-    append(result_.trace, field_, march_.x(), dx_, march_.t());
   }
 
   void step() {
@@ -62,8 +65,8 @@ class Settling {
       return decide(Outcome::undecided, "the simulation ended with status " + std::string(to_string(status)));
     note();
     const double y = result_.trace.y.back();
-    if (std::abs(y) > options_.amplitude_ceiling) return decide(Outcome::divergence, "y grew beyond all bounds");
-    if (march_.t() >= 1e15) return decide(Outcome::undecided, "nothing was decided within 1e15 s");
+    if (std::abs(y) > options_.amplitude_ceiling) return decide(Outcome::divergence, "y grows without bound");
+    if (march_.t() >= 1e15) return decide(Outcome::undecided, "undecided after 1e15 s");
     if (turning_.feed(march_.t(), y)) look_at_swings();
     if (decided_) return;
     if (auto still = stillness_.look(march_.t(), march_.x(), dx_, field_.modes())) come_to(*still);
@@ -77,11 +80,11 @@ class Settling {
     const auto motion = permanent_motion(result_.trace);
     const auto again = motion ? permanent_motion(repeated(march_.t())) : std::nullopt;
     if (!motion || !again || !agree(*motion, *again))
-      return decide(Outcome::undecided, motion ? "the motion stays bounded, but two tolerances differ in its range"
-                                               : "neither rest nor a cycle was recognised within the step budget");
+      return decide(Outcome::undecided, motion ? "bounded, but its range differs between two tolerances"
+                                               : "step limit reached before rest or a cycle was recognised");
     result_.half_range = again->half_range;
     result_.mean_period = again->mean_period;
-    decide(Outcome::irregular, "the motion goes on without a period, and a second tolerance finds the same range");
+    decide(Outcome::irregular, "bounded without a period; a second tolerance gives the same range");
   }
 
   /// The same run with a tolerance a hundred times as tight.
@@ -115,7 +118,7 @@ class Settling {
     const double rest = loop_.C_y.dot(loop_.rest_point(exact).transpose());
     if (exact && died_out(turning_, rest, options_.amplitude_floor)) {
       return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest,
-                    "the swings decayed below the smallest amplitude of interest");
+                    "the oscillation decayed below the smallest amplitude of interest");
     }
     if (points.size() < next_try_) return;
     for (std::size_t order : {2U, 4U, 6U})  // turning points per period
@@ -202,6 +205,7 @@ class Settling {
   }
 
   bool try_cycle(std::size_t order) {
+    if (tried_ > steps_of_tries + tries_per_step * march_.steps()) return false;
     next_try_ = turning_.points().size() + turning_.points().size() / 2 + 1;
     const Trace period = recent(order);
     const auto [low, high] = extremes(period);
@@ -209,7 +213,7 @@ class Settling {
     const LoopState here{march_.x(), field_.modes()};
     result_.known = recognised(here, swing);
     if (result_.known) {
-      decide(Outcome::cycle, "the motion repeats itself with the period and swing of a known cycle");
+      decide(Outcome::cycle, "converges to cycle " + std::to_string(*result_.known));
       return true;
     }
     const auto reflection = symmetry(loop_);
@@ -230,7 +234,7 @@ class Settling {
       if (has_neighbour(shot.cycle, section, half, shooting))
         decide(Outcome::family, "periodic, one of a family of periodic motions whose size depends on the start");
       else
-        decide(Outcome::undecided, "periodic, but whether neighbours come back was not determined (multiplier 1)");
+        decide(Outcome::undecided, "periodic, but its stability was not determined (multiplier 1)");
       return true;
     }
     // Far from the cycle yet, but nearer to it than at the last try: a slow approach.
@@ -242,8 +246,7 @@ class Settling {
       return false;
     }
     result_.shot = std::move(shot);
-    decide(Outcome::cycle, nearer ? "the motion approaches a cycle that shooting confirms"
-                                  : "the motion repeats itself and shooting confirms it");
+    decide(Outcome::cycle, nearer ? "approaches a cycle, confirmed by shooting" : "periodic, confirmed by shooting");
     return true;
   }
 

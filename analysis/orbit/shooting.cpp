@@ -372,8 +372,7 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
   if (status != Status::converged) return failed(status, shooter, "the fixed point was lost at the tight tolerance");
   if (!describe(loop, shooter, rtol, options.resolution, cycle))
     return failed(Status::stalled, shooter, "the cycle could not be followed");
-  if (!moves(loop, cycle))
-    return failed(Status::no_cycle, shooter, "what repeats itself stands still: rest, not a cycle");
+  if (!moves(loop, cycle)) return failed(Status::no_cycle, shooter, "the fixed point is an equilibrium, not a cycle");
   cycle.method = exact ? "exact" : "shooting";
   if (options.derivative_rtol > 0.0) {
     judge(shooter, result, exact, options.derivative_rtol);

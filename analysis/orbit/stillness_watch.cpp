@@ -14,7 +14,7 @@ constexpr int patience = 12;
 }  // namespace
 
 StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, double rtol)
-    : loop_(loop), scale_{sizes, slow}, noise_(0.01 * rtol), rest_(std::move(sizes), slow, rtol) {}
+    : loop_(loop), scale_{sizes, slow}, rest_(std::move(sizes), slow, rtol) {}
 
 std::optional<Stillness> StillnessWatch::look(double t, const State& x, const State& dx,
                                               const std::vector<Mode>& modes) {
@@ -26,7 +26,7 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
   field.modes() = modes;
   if (verdict == RestWatch::Verdict::at_rest) return at_rest(field, x, dx);
   if (verdict == RestWatch::Verdict::steady && slides_steadily(field, x, dx, scale_))
-    return Stillness{Outcome::sliding, "the body slides at constant speed"};
+    return Stillness{Outcome::sliding, "slides at constant speed"};
   if (looks_ < patience) return std::nullopt;
   const auto approach = approach_from(field, x, scale_);
   if (!approach) return std::nullopt;
@@ -42,27 +42,22 @@ std::optional<Stillness> StillnessWatch::switched(const State& dx) {
 }
 
 std::optional<Stillness> StillnessWatch::within_rounding(const State& dx) const {
-  if (!(rate(dx) <= noise_)) return std::nullopt;
-  return Stillness{slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest,
-                   "all rates died out; what is left switches within rounding"};
-}
-
-/// The largest, in sizes per slowest time constant.
-double StillnessWatch::rate(const State& dx) const {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < dx.size(); ++i)
-    largest = std::max(largest, std::abs(dx[i]) * scale_.slow / scale_.sizes[i]);
-  return largest;
+  if (!(rest_.rate(dx) <= rest_.noise())) return std::nullopt;
+  if (slides_at_rest(loop_))
+    return Stillness{Outcome::sliding, "slides at constant speed, but for switching within rounding"};
+  return Stillness{Outcome::rest, "came to rest, but for switching within rounding"};
 }
 
 std::optional<Stillness> StillnessWatch::at_rest(LoopField& field, const State& x, const State& dx) const {
   constexpr double near = 0.01, fades = 1e-6;
-  const char* const why = "all rates died out, but for noise";
+  const auto still = [](bool slides) {
+    return slides ? Stillness{Outcome::sliding, "slides at constant speed"} : Stillness{Outcome::rest, "came to rest"};
+  };
   const auto found = standstill_near(field, x, scale_);
-  if (found && found->moved <= near) return Stillness{found->slides ? Outcome::sliding : Outcome::rest, why};
+  if (found && found->moved <= near) return still(found->slides);
   // A law whose slope jumps where it rests defeats Newton's method: then the rates themselves must be nothing.
-  if (!(rate(dx) <= fades)) return std::nullopt;
-  return Stillness{slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest, why};
+  if (!(rest_.rate(dx) <= fades)) return std::nullopt;
+  return still(slides_at_rest(loop_));
 }
 
 }  // namespace limcycle

@@ -35,12 +35,10 @@ class StillnessWatch {
   std::optional<Stillness> within_rounding(const State& dx) const;
 
  private:
-  double rate(const State& dx) const;
   std::optional<Stillness> at_rest(LoopField& field, const State& x, const State& dx) const;
 
   const Loop& loop_;
   LoopSizes scale_;
-  double noise_;
   RestWatch rest_;
   int looks_ = 0, idle_ = 0;
 };

@@ -103,7 +103,7 @@ ThresholdDerivatives threshold_derivatives(const Loop& loop, const Cycle& cycle,
                                            const CycleDerivativeOptions& options) {
   if (type == BranchEvent::Type::end)
     return no_threshold(Status::undefined,
-                        "the branch ends neither at a fold nor at a change of stability: no equation tells where");
+                        "the branch ends neither at a fold nor at a change of stability: no equation defines the end");
   std::vector<ParameterNeighbours> pairs{own};
   pairs.insert(pairs.end(), others.begin(), others.end());
   return type == BranchEvent::Type::fold ? at_fold(loop, cycle, pairs, options)

@@ -21,6 +21,15 @@ Loop loop_of(const LoopParts& parts, const Element<double>& law) {
   return loop.delay == 0.0 ? loop : in_time_domain(loop, 6).loop;
 }
 
+/// "finds no cycle, although a cycle exists": of an answer of another kind than the reference.
+std::string disagreement(const std::string& verdict, const SceneAnswer& best) {
+  const std::string claim = verdict.find('/') != std::string::npos ? "inconsistent"
+                            : verdict == "cycle" || verdict == "no cycle"
+                                ? "finds " + (verdict == "cycle" ? "a " + verdict : verdict)
+                                : "ends in " + verdict;
+  return claim + (best.hunts() ? ", although a cycle exists" : ", although the loop ends in " + best.verdict);
+}
+
 class LadderClimb {
  public:
   LadderClimb(const LoopParts& parts, const AdequateOptions& options) : parts_(parts), options_(options) {
@@ -76,7 +85,7 @@ class LadderClimb {
     }
     if (late()) {
       answer.answered = false;
-      answer.why = "gave up after " + short_number(options_.patience) + " s of CPU time";
+      answer.why = "stopped after " + short_number(options_.patience) + " s of CPU time";
     }
     return answer;
   }
@@ -141,7 +150,7 @@ class LadderClimb {
     if (!answer.answered)
       point.why = answer.why;
     else if (std::isinf(error))
-      point.why = "says " + answer.verdict + " where it is " + best.verdict;
+      point.why = disagreement(answer.verdict, best);
     else
       point.why = "off by " + short_number(100.0 * error, 3) + " %";
     if (!where.empty()) point.why += " at " + where;
@@ -158,7 +167,7 @@ class LadderClimb {
       tell(0.5 + 0.2 * static_cast<double>(i) / static_cast<double>(variations_.size()), variations_[i].name);
       best_.push_back(ask_law(shooting, variations_[i].parts, *variations_[i].parts.friction));
       if (!best_.back().answered && !stopped())
-        report_.notes.push_back(variations_[i].name + ": the case's own law gives no answer, left out (" +
+        report_.notes.push_back(variations_[i].name + ": the case's own law gives no answer, omitted (" +
                                 best_.back().why + ")");
     }
   }
@@ -222,8 +231,7 @@ class LadderClimb {
 
 AdequateReport adequate(const LoopParts& parts, const AdequateOptions& options) {
   if (!parts.friction)
-    throw std::invalid_argument(
-        "this loop has no [loop.friction]: `adequate` asks which friction law is enough, so there is nothing to ask");
+    throw std::invalid_argument("this loop has no [loop.friction]: `adequate` compares friction laws and needs one");
   return LadderClimb(parts, options).run();
 }
 

@@ -66,8 +66,8 @@ class BalanceStudy {
         list.back().inputs.push_back(input_harmonics(cycle, 9));
       } else {
         result_.notes.push_back("harmonic balance was not tried on cycle " + std::to_string(i) +
-                                (ne > 1 ? ": it has no describing-function root to begin from"
-                                        : ", which sticks: harmonics ripple more than pre-sliding is wide"));
+                                (ne > 1 ? ": it has no describing-function root to start from"
+                                        : ", which sticks: the Fourier ripple exceeds the pre-sliding displacement"));
       }
     }
     return list;
@@ -85,9 +85,9 @@ class BalanceStudy {
     }
     // Harmonics that still move the answer by more than a verdict allows have not come to one.
     if (found.status != Status::converged && !(found.change < settled)) {
-      result_.notes.push_back("harmonic balance came to no prediction from one of its starts: with " +
-                              std::to_string(found.harmonics) + " harmonics amplitude and frequency are not settled; " +
-                              found.why);
+      result_.notes.push_back("harmonic balance gives no prediction from one of its starts: with " +
+                              std::to_string(found.harmonics) +
+                              " harmonics, amplitude and frequency have not converged; " + found.why);
       return;
     }
     Prediction p;

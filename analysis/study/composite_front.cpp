@@ -84,8 +84,7 @@ void CompositeBalance::search_front(const Window& window, const CompositeSearchO
   Front last = sides(w0, options.coarse_accuracy);
   for (int i = 1; i <= n; ++i) {
     if (ended_early(options, found)) {
-      found.notes.emplace_back(
-          "the search in the leap at break-away ended with its budget of steps used up: roots may be missing");
+      found.notes.emplace_back("the search in the jump at break-away: step limit reached, solutions may be missing");
       return;
     }
     const double w1 = window.low * std::exp(ratio * i);

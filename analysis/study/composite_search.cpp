@@ -11,7 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 
 std::string ended(Status status) {
-  return status == Status::interrupted ? "its budget of steps used up" : "status " + std::string(to_string(status));
+  return status == Status::interrupted ? "step limit reached" : "ended with status " + std::string(to_string(status));
 }
 
 void check(const CompositeSearchOptions& o) {
@@ -116,9 +116,9 @@ void CompositeBalance::search_side(const Window& window, bool above, const Compo
   for (const Root& root : side.roots)
     add(side_force(root.amplitude, root.frequency, above, 1e-12), root.frequency, root.index, options, found);
   if (ended_early(options, found) || (side.status != Status::converged && side.status != Status::no_cycle))
-    found.notes.push_back(std::string("the search ") + (above ? "above" : "below") + " break-away ended with " +
-                          ended(ended_early(options, found) ? Status::interrupted : side.status) +
-                          ": roots may be missing");
+    found.notes.push_back(std::string("the search ") + (above ? "above" : "below") +
+                          " break-away: " + ended(ended_early(options, found) ? Status::interrupted : side.status) +
+                          ", solutions may be missing");
 }
 
 /// On a belt or a ramp: the sheet of motions that stick in every period (see stick_slip), then that of motions that
@@ -143,9 +143,9 @@ void CompositeBalance::search_biased(const CompositeSearchOptions& options, Comp
   near_.reset();
   const auto note = [&](const RootSearch& side, const char* what) {
     if (!ended_early(options, found) && (side.status == Status::converged || side.status == Status::no_cycle)) return;
-    found.notes.push_back(std::string("the search among ") + what + " ended with " +
+    found.notes.push_back(std::string("the search among ") + what + ": " +
                           ended(ended_early(options, found) ? Status::interrupted : side.status) +
-                          ": roots may be missing");
+                          ", solutions may be missing");
   };
   if (speed == 0.0) {
     const auto all =
@@ -209,7 +209,7 @@ CompositeSearch CompositeBalance::find(const CompositeSearchOptions& options) {
   }
   element_.stop_with({});
   if (found.notes.empty() && ended_early(options, found))
-    found.notes.push_back("the search ended with " + ended(Status::interrupted) + ": roots may be missing");
+    found.notes.push_back("the search: " + ended(Status::interrupted) + ", solutions may be missing");
   if (options.stop && options.stop()) found.status = Status::interrupted;
   std::ranges::sort(found.roots, {}, &CompositeRoot::frequency);
   found.evaluations = evaluations_ - evaluations;

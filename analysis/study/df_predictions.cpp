@@ -7,9 +7,9 @@
 namespace limcycle {
 
 DfPredictions df_predictions(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
-                             const PredictOptions& options, long max_values) {
+                             const PredictOptions& options, long max_evaluations) {
   DfPredictions result;
-  auto found = find_df_roots(loop, balance, box, options.stop, max_values);
+  auto found = find_df_roots(loop, balance, box, options.stop, max_evaluations);
   result.notes = std::move(found.notes);
   result.status = found.status;
   for (const Root& root : found.roots) {

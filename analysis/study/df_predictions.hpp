@@ -19,9 +19,9 @@ struct DfPredictions {
   Status status = Status::converged;
 };
 
-/// All roots in the box as predictions, found with `max_values` integrated describing functions at most. With
+/// All roots in the box as predictions, found with `max_evaluations` integrated describing functions at most. With
 /// options.stop it ends early, and keeps the roots found.
 DfPredictions df_predictions(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
-                             const PredictOptions& options, long max_values);
+                             const PredictOptions& options, long max_evaluations);
 
 }  // namespace limcycle

@@ -12,13 +12,17 @@ namespace {
 class RootStudy {
  public:
   RootStudy(const Loop& loop, const LoopBalance& balance, const SearchBox& box, const std::function<bool()>& stop,
-            long max_values)
-      : loop_(loop), balance_(balance), box_(box), stop_(stop), last_value_(balance.values() + max_values) {}
+            long max_evaluations)
+      : loop_(loop),
+        balance_(balance),
+        box_(box),
+        stop_(stop),
+        last_evaluation_(balance.evaluations() + max_evaluations) {}
 
   DfRoots run() {
     for (const double pole : undamped_poles())
       found_.notes.push_back("the rest of the loop has an undamped resonance at " + short_number(pole) +
-                             " rad/s: roots within 0.1 % of it are not looked for");
+                             " rad/s: roots within 0.1 % of it are not searched");
     for (const SearchBox& box : between_undamped_poles()) {
       const auto roots = search(box);
       found_.roots.insert(found_.roots.end(), roots.begin(), roots.end());
@@ -75,7 +79,7 @@ class RootStudy {
     options.prepare = [&](std::vector<SearchPoint> points, double accuracy) {
       for (SearchPoint& point : points)
         if (speed > 0.0) point.amplitude /= point.frequency;
-      balance_.prepare(points, accuracy);
+      balance_.prepare(points, accuracy, options.interrupted);
     };
     std::vector<Root> roots;
     for (int branch = 0; branch < (balance_.has_second() ? AmplitudeBranches::most : 1); ++branch) {
@@ -137,36 +141,36 @@ class RootStudy {
   void note_doubts(const RootSearch& found, const SearchBox& box) {
     if (found.status == Status::converged || found.status == Status::no_cycle) return;
     if (used_up() && !(stop_ && stop_())) {
-      const std::string note = "the root search has used up its share of the work: roots may be missing";
+      const std::string note = "root search: step limit reached, solutions may be missing";
       if (std::ranges::find(found_.notes, note) == found_.notes.end()) found_.notes.push_back(note);
       found_.status = Status::incomplete;
       return;
     }
     const std::string range = short_number(box.frequency_min) + " and " + short_number(box.frequency_max) + " rad/s";
-    std::string note = found.status == Status::not_finite
-                           ? "the describing function exists nowhere in the search box between " + range +
-                                 ": it has nothing to predict from"
-                           : "the root search between " + range + " ended with status " +
-                                 std::string(to_string(found.status)) + ": roots may be missing";
+    std::string note =
+        found.status == Status::not_finite
+            ? "the describing function exists nowhere in the search box between " + range + ", so it predicts nothing"
+            : "the root search between " + range + " ended with status " + std::string(to_string(found.status)) +
+                  ": solutions may be missing";
     if (std::ranges::find(found_.notes, note) == found_.notes.end()) found_.notes.push_back(std::move(note));
     found_.status = found.status == Status::interrupted ? found.status : Status::incomplete;
   }
 
-  bool used_up() const { return balance_.values() > last_value_; }
+  bool used_up() const { return balance_.evaluations() > last_evaluation_; }
 
   const Loop& loop_;
   const LoopBalance& balance_;
   const SearchBox& box_;
   const std::function<bool()>& stop_;
-  long last_value_;
+  long last_evaluation_;
   DfRoots found_;
 };
 
 }  // namespace
 
 DfRoots find_df_roots(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
-                      const std::function<bool()>& stop, long max_values) {
-  return RootStudy(loop, balance, box, stop, max_values).run();
+                      const std::function<bool()>& stop, long max_evaluations) {
+  return RootStudy(loop, balance, box, stop, max_evaluations).run();
 }
 
 }  // namespace limcycle

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/orbit/cycle_derivatives.hpp"
+#include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/df_roots.hpp"
 
 namespace limcycle {
@@ -28,7 +29,7 @@ std::optional<ParameterNeighbours> beside(const Loop& loop, const LoopNumber& nu
   const double h = far * neighbourhood * (number.value != 0.0 ? std::abs(number.value) : 1.0);
   auto low = number.loop_at(number.value - h), high = number.loop_at(number.value + h);
   if (!low && !high) {
-    why = "no value beside it is valid";
+    why = "no neighbouring value is valid";
     return std::nullopt;
   }
   if (!low || !high) {  // a border: the other side is the loop itself
@@ -36,7 +37,7 @@ std::optional<ParameterNeighbours> beside(const Loop& loop, const LoopNumber& nu
     if (!high) high = loop;
   }
   if (!same_shape(loop, *low) || !same_shape(loop, *high)) {
-    why = "beside this value the loop is of another order";
+    why = "undefined at " + short_number(number.value) + ", where the order of the loop changes";
     return std::nullopt;
   }
   const bool border = number.loop_at(number.value - h).has_value() != number.loop_at(number.value + h).has_value();
@@ -110,7 +111,7 @@ class Neighbourhood {
       else if (!told.failed[k].empty())
         leave(i, told.failed[k]);
       else if (twice && !agree(found.by[k], found.by[k + 1]))
-        leave(i, "at 0 it stands for something absent, and the loop leaps where it comes in");
+        leave(i, "undefined at 0: the term is absent there, and the loop changes abruptly when it appears");
       else
         take(i, found.by[k]);
       if (twice) ++k;

@@ -3,10 +3,12 @@
 #include <Eigen/Dense>
 #include <array>
 #include <atomic>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <mutex>
+#include <span>
 
 #include "limcycle/analysis/frequency/df_table.hpp"
 #include "limcycle/analysis/motion/loop_field.hpp"
@@ -43,6 +45,18 @@ std::optional<Complex> exact_gain(const Element<double>& element, double A, doub
       element);
 }
 
+double mean_output(const Element<double>& element, double A, double w, double bias, double accuracy,
+                   std::atomic<long>& evaluations) {
+  return std::visit(
+      [&]<class E>(const E& e) {
+        if constexpr (HasExactMean<E>) return e.exact_mean(A, bias);
+        const DescribingFunction computed = df(element, A, w, bias, accuracy);
+        evaluations += computed.evaluations;
+        return computed.mean;
+      },
+      element);
+}
+
 bool is_friction(const Loop& loop, std::size_t i) { return loop.ports[i].rubs; }
 
 bool pulls_back(const Loop& loop, std::size_t i) {
@@ -56,7 +70,7 @@ class LoopBalance::MainGain {
  public:
   explicit MainGain(const Element<double>& element) : element_(&element) {}
 
-  std::atomic<long> values = 0;  ///< computed
+  std::atomic<long> evaluations = 0;  ///< of the element's equations
 
   DescribingFunction at(const DfPoint& point, double accuracy) {
     {
@@ -65,24 +79,34 @@ class LoopBalance::MainGain {
         if (const auto known = prepared_.find({point.amplitude, point.frequency, point.bias}); known != prepared_.end())
           return known->second;
     }
-    ++values;
-    return table(accuracy).at(point);
+    DescribingFunction result = table(accuracy).at(point);
+    evaluations += result.evaluations;
+    return result;
   }
 
   /// Forgets what was prepared before.
-  void prepare(const std::vector<DfPoint>& points, double accuracy) {
-    values += std::ssize(points);
-    auto results = table(accuracy).some_of(points);
-    const std::lock_guard lock(guard_);
-    prepared_.clear();
-    prepared_accuracy_ = accuracy;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (!results[i].method.empty())
-        prepared_.emplace(Place{points[i].amplitude, points[i].frequency, points[i].bias}, std::move(results[i]));
+  void prepare(std::span<const DfPoint> points, double accuracy, const std::function<bool()>& stop) {
+    {
+      const std::lock_guard lock(guard_);
+      prepared_.clear();
+      prepared_accuracy_ = accuracy;
+    }
+    constexpr std::size_t at_once = 512;
+    for (; !points.empty() && !(stop && stop()); points = points.subspan(std::min(at_once, points.size())))
+      add_prepared(points.first(std::min(at_once, points.size())), accuracy);
   }
 
  private:
   using Place = std::array<double, 3>;
+
+  void add_prepared(std::span<const DfPoint> points, double accuracy) {
+    auto results = table(accuracy).some_of(points);
+    for (const DescribingFunction& result : results) evaluations += result.evaluations;
+    const std::lock_guard lock(guard_);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!results[i].method.empty())
+        prepared_.emplace(Place{points[i].amplitude, points[i].frequency, points[i].bias}, std::move(results[i]));
+  }
 
   const DfTable& table(double accuracy) {
     const std::lock_guard lock(guard_);
@@ -98,14 +122,15 @@ class LoopBalance::MainGain {
   std::map<Place, DescribingFunction> prepared_;
 };
 
-void LoopBalance::prepare(const std::vector<SearchPoint>& points, double accuracy) const {
+void LoopBalance::prepare(const std::vector<SearchPoint>& points, double accuracy,
+                          const std::function<bool()>& stop) const {
   if (!is_friction(*loop_, main_)) return;  // means of the inputs of other elements depend on the point
   if (!points.empty() && exact_gain(loop_->elements[main_], points[0].amplitude, points[0].frequency, mean_velocity_))
     return;  // nothing to compute
   std::vector<DfPoint> at;
   at.reserve(points.size());
   for (const SearchPoint& point : points) at.push_back({point.amplitude, point.frequency, mean_velocity_});
-  main_gain_->prepare(at, accuracy);
+  main_gain_->prepare(at, accuracy, stop);
 }
 
 /// Sorts all elements but the last into those beside it and the rest.
@@ -165,7 +190,7 @@ LoopBalance::LoopBalance(const Loop& loop)
 }
 
 double LoopBalance::mean_velocity() const { return mean_velocity_; }
-long LoopBalance::values() const { return main_gain_->values; }
+long LoopBalance::evaluations() const { return main_gain_->evaluations; }
 
 bool LoopBalance::depends_on_frequency() const { return is_friction(*loop_, main_); }
 
@@ -178,19 +203,20 @@ double LoopBalance::bias(double amplitude, double frequency, double accuracy) co
   bool exact = false;
   const double rest = (port.C * loop_->rest_point(exact) + port.c * loop_->external).value();
   const double slope = loop_->element_response(0.0)(0, 0).real();
-  double low = rest, high = rest;
   const auto balance = [&](double b) {
-    ++main_gain_->values;
-    return rest + slope * df(loop_->elements[main_], amplitude, frequency, b, accuracy).mean - b;
+    return rest - b +
+           slope * mean_output(loop_->elements[main_], amplitude, frequency, b, accuracy, main_gain_->evaluations);
   };
-  double width = std::abs(balance(rest));
-  for (int i = 0; i < 60 && balance(low) < 0.0; ++i) low -= width *= 2.0;
-  width = std::abs(balance(rest));
-  for (int i = 0; i < 60 && balance(high) > 0.0; ++i) high += width *= 2.0;
-  for (int i = 0; i < 100 && high - low > 1e-14 * (std::abs(high) + std::abs(low)); ++i) {
-    const double mid = 0.5 * (low + high);
-    (balance(mid) > 0.0 ? low : high) = mid;
-  }
+  const double first = balance(rest);
+  if (first == 0.0) return rest;
+  double low = rest, high = rest, at_low = first, at_high = first;
+  double width = std::abs(first);
+  for (int i = 0; i < 60 && at_low < 0.0; ++i) at_low = balance(low -= width *= 2.0);
+  for (int i = 0; i < 60 && at_high > 0.0; ++i) at_high = balance(high += width *= 2.0);
+  if (!(at_low >= 0.0 && at_high <= 0.0)) return rest;
+  std::uintmax_t steps = 100;
+  const auto narrow = [&](double a, double b) { return std::abs(b - a) <= 1e-14 * (std::abs(a) + std::abs(b)); };
+  std::tie(low, high) = boost::math::tools::toms748_solve(balance, low, high, at_low, at_high, narrow, steps);
   return 0.5 * (low + high);
 }
 
@@ -225,7 +251,10 @@ Eigen::VectorXd LoopBalance::mean_inputs(double amplitude, double frequency, dou
 
 Complex LoopBalance::gain(double amplitude, double frequency, double accuracy) const {
   const double mean = bias(amplitude, frequency, accuracy);
-  if (const auto exact = exact_gain(loop_->elements[main_], amplitude, frequency, mean)) return *exact;
+  const auto exact = exact_gain(loop_->elements[main_], amplitude, frequency, mean);
+  if (exact && *exact == 0.0 && !symmetric_ && !is_friction(*loop_, main_))
+    return undefined;  // e.g. a biased relay that does not switch
+  if (exact) return *exact;
   const auto result = main_gain_->at({amplitude, frequency, mean}, accuracy);
   if (result.status != Status::converged && result.status != Status::incomplete) return undefined;
   if (symmetric_ && !result.symmetric) return undefined;  // e.g. a relay that does not switch

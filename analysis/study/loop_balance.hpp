@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,8 +43,9 @@ class LoopBalance {
   FromSecond from_second(int branch, double amplitude, double frequency, double accuracy) const;
   /// Amplitudes of the second element's input between which it matters that it is no linear one.
   std::pair<double, double> second_range() const;
-  /// Computes at once what operator() will be asked at these points with this accuracy. From one thread at a time.
-  void prepare(const std::vector<SearchPoint>& points, double accuracy) const;
+  /// Computes together what operator() will be asked at these points with this accuracy, until `stop` (asked now and
+  /// then). From one thread at a time.
+  void prepare(const std::vector<SearchPoint>& points, double accuracy, const std::function<bool()>& stop = {}) const;
   /// N(A,w) of the main element.
   std::complex<double> gain(double amplitude, double frequency, double accuracy) const;
   /// Amplitude of y's first harmonic when the main element's input has this amplitude.
@@ -55,8 +57,8 @@ class LoopBalance {
   /// Linear states of the loop on the predicted oscillation at a phase of the main element's input (0: rising zero).
   Eigen::VectorXd linear_state(double amplitude, double frequency, double phase, double scale = 1.0) const;
 
-  /// Describing functions computed so far that are no closed forms: what a search costs. Shared by copies.
-  long values() const;
+  /// Evaluations of the main element's equations so far: what a search costs. Shared by copies.
+  long evaluations() const;
   std::size_t main_element() const { return main_; }
   bool depends_on_frequency() const;
   /// Response from the main element's output to its own input at `order` times the frequency of the oscillation, the

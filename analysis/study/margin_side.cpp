@@ -156,7 +156,7 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
     if (p == limit_) return {What::none, 0.0, 0.0, "it hunts at " + short_number(limit_, 5) + ", on another cycle"};
   }
   return {What::unknown, 0.0, unknown,
-          "one cycle takes over from the next; the last was lost near " + short_number(p, 5)};
+          "followed across several branches; the last was lost near " + short_number(p, 5)};
 }
 
 MarginSide SideSearch::where_hunting_begins() {

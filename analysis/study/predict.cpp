@@ -67,33 +67,67 @@ class PredictionStudy {
     if (!made.note.empty()) note(std::move(made.note));
     hunt_.emplace(time_, options_, box_);
     if (hunt_->rtol() < SettleOptions{}.rtol)
-      note("bristles as stiff as these need a tolerance of " + short_number(hunt_->rtol(), 2) +
+      note("bristles of this stiffness need a tolerance of " + short_number(hunt_->rtol(), 2) +
            " in simulations (usual is " + short_number(SettleOptions{}.rtol) + "): a looser one breaks stiction early");
   }
 
   void run_starts() {
+    settle_from(start_displacements(output_per_input(time_), box_, options_.starts));
+    if (!options_.search && all_diverge() && !stopped()) look_further_down();
+  }
+
+  void settle_from(const std::vector<double>& displacements) {
     double done = 0.0;
-    for (const double displacement : start_displacements(output_per_input(time_), box_, options_.starts)) {
+    for (const double displacement : displacements) {
       if (stopped()) return;
-      tell(0.4 * done++ / std::max(1, options_.starts), "simulation");
+      tell(0.4 * done++ / static_cast<double>(displacements.size()), "simulation");
       starts_.push_back({displacement, hunt_->outcomes().size()});
-      hunt_->settle_from(displaced(time_, displacement), displaced_by(displacement));
+      hunt_->settle_from(displaced(time_, displacement), start_name(displacement));
     }
   }
 
-  static std::string displaced_by(double displacement) { return "y displaced by " + short_number(displacement); }
+  bool all_diverge() const {
+    return !hunt_->outcomes().empty() && std::ranges::all_of(hunt_->outcomes(), [](const OutcomeOfStart& one) {
+      return one.outcome == Outcome::divergence;
+    });
+  }
+
+  /// A box that lies beyond everything that comes back shows nothing of the small motions: from its lower end down.
+  void look_further_down() {
+    constexpr double decades = 1e-6, between = 0.01;
+    const int more = std::min(options_.starts, 3);
+    std::vector<double> displacements;
+    for (const auto& start : starts_) displacements.push_back(start.place);
+    for (int i = 0; i < more; ++i) displacements.push_back(between * displacements.back());
+    box_.amplitude_min *= decades;
+    report_.search = box_;
+    note("every start in the search box diverges: the box was extended down to an amplitude of " +
+         short_number(box_.amplitude_min, 3));
+    starts_.clear();
+    hunt_.emplace(time_, options_, box_);
+    settle_from(displacements);
+  }
+
+  /// "y(0) = 0.1", or "y(0) = rest + 0.1" of a loop that does not rest at y = 0.
+  std::string start_name(double displacement) const {
+    bool exact = false;
+    const double rest = time_.output_origin + (time_.C_y * time_.rest_point(exact)).value();
+    const bool elsewhere = std::abs(rest) > 1e-9 * std::abs(displacement);
+    return (elsewhere ? "y(0) = rest + " : "y(0) = ") + short_number(displacement);
+  }
 
   /// What the starts passed by, where some of them diverge.
   void look_between_starts(const WorkShare& share) {
     between_.emplace(time_, *hunt_, share.between_steps, options_.stop);
     between_->look_inside_divergence(
-        starts_, [&](double displacement) { return displaced(time_, displacement); }, displaced_by);
+        starts_, [&](double displacement) { return displaced(time_, displacement); },
+        [&](double displacement) { return start_name(displacement); });
   }
 
   void look_beside_unstable_cycles() {
     for (const std::size_t cycle : between_->look_beside_unstable_cycles())
-      note("what the motion comes to just inside and just outside the unstable cycle " + std::to_string(cycle) +
-           " was not decided");
+      note("the behaviour just inside and just outside the unstable cycle " + std::to_string(cycle) +
+           " was not determined");
   }
 
   void predict_by_df(const WorkShare& share) {
@@ -101,7 +135,7 @@ class PredictionStudy {
     if (const auto why = LoopBalance::not_applicable(loop_)) return note(*why);
     tell(0.6, "roots of 1 + N G");
     balance_.emplace(loop_);
-    DfPredictions found = df_predictions(loop_, *balance_, box_, options_, share.df_values);
+    DfPredictions found = df_predictions(loop_, *balance_, box_, options_, share.df_evaluations);
     report_.notes.insert(report_.notes.begin(), found.notes.begin(), found.notes.end());
     if (found.status != Status::converged) report_.status = found.status;
     if (found.status == Status::incomplete || found.status == Status::not_finite)
@@ -148,11 +182,11 @@ class PredictionStudy {
     const std::size_t count = report_.predictions.size();
     for (std::size_t i = 0; i < count && !stopped(); ++i) {
       tell(0.7 + 0.2 * static_cast<double>(i) / static_cast<double>(count), "checking predictions");
-      check.check(report_.predictions[i], start_of(i), "the oscillation predicted by root " + std::to_string(i));
+      check.check(report_.predictions[i], start_of(i), "prediction " + std::to_string(i));
     }
     if (check.unchecked() > 0)
-      note("the steps for checks were used up: " + std::to_string(check.unchecked()) +
-           " of the predictions were not simulated");
+      note("step limit reached: " + std::to_string(check.unchecked()) +
+           " of the predictions were not checked by simulation");
   }
 
   void balance_harmonics(const WorkShare& share) {
@@ -165,7 +199,7 @@ class PredictionStudy {
     std::ranges::move(found.notes, std::back_inserter(report_.notes));
     if (found.interrupted) return;
     if (found.cut_short) {
-      note("harmonic balance has used up its share of the work: not every start was tried");
+      note("harmonic balance: step limit reached, not every start was tried");
       report_.incomplete.emplace_back(balance_name);
     }
     report_.efforts.push_back(std::move(found.effort));
@@ -175,10 +209,10 @@ class PredictionStudy {
   void note_memory() {
     for (std::size_t i = 0; i < report_.cycles.size(); ++i) {
       if (report_.cycles[i].remembered == 0) continue;
-      note("cycle " + std::to_string(i) + " is one of many, close to each other: the law remembers " +
+      note("cycle " + std::to_string(i) + " is one of a family of neighbouring cycles: the law keeps " +
            std::to_string(report_.cycles[i].remembered) + (report_.cycles[i].remembered == 1 ? " number" : " numbers") +
-           " of how it got there, which the cycle neither changes nor forgets (their multipliers, 1, "
-           "are left out; stability is for a given history)");
+           " of its history, which the cycle neither changes nor forgets (their multipliers, 1, are left out; "
+           "stability holds for a given history)");
     }
   }
 

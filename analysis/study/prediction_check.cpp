@@ -14,10 +14,11 @@ void conclude_without_cycle(Prediction& p, const OutcomeOfStart& outcome) {
   const bool decided = outcome.outcome != Outcome::undecided;
   if (p.stable == true && decided) {
     p.verdict = Verdict::wrong;
-    p.why = "no such cycle: a motion started on it ends in " + std::string(to_string(outcome.outcome));
+    p.why = "spurious: a simulation from it ends in " + std::string(to_string(outcome.outcome)) +
+            (outcome.cycle ? " " + std::to_string(*outcome.cycle) : "");
   } else {
-    p.why = p.stable == true ? "the simulation from it was not decided"
-                             : "no unstable cycle was found near it, none was excluded";
+    p.why = p.stable == true ? "unverified: the simulation from it is undecided"
+                             : "unverified: no unstable cycle was found near it";
   }
 }
 
@@ -32,7 +33,7 @@ void PredictionCheck::check(Prediction& p, const LoopState& start, std::string n
     if (const auto cycle = nearest(hunt_.cycles(), p);
         cycle && (!p.stable || hunt_.cycles()[*cycle].stable == p.stable))
       return compare(p, hunt_.cycles(), *cycle);
-    p.why = "not checked: the steps for checks were used up";
+    p.why = "unverified: step limit reached";
     return;
   }
   if (p.method == df_name && p.stable != true && unstable_cycle_near(p)) return;

@@ -127,7 +127,7 @@ Band heuristic_band(const Loop& loop, const LoopBalance& balance, double A, doub
   band.amplitude = of_output(loop, balance, A, band, loop.elements.size() == 1 ? 64 : 8);
   const Complex inverse = -1.0 / balance.response(A, w, 1);
   if (const auto disc = disc_of_G(w, inverse, radius * std::abs(inverse))) band.discs.push_back(*disc);
-  band.why = "heuristic: the size of the harmonics that come back, times the slope of N";
+  band.why = "heuristic: the size of the returning harmonics times the slope of N";
   return band;
 }
 
@@ -173,7 +173,7 @@ std::string in_words(const Trust& trust, const LoopBalance& balance, const Loop&
   if (!rubs(loop, balance.main_element())) return text;
   const bool has_speed = std::visit([](const auto& e) { return std::isfinite(e.scales().velocity); },
                                     loop.elements[balance.main_element()]);
-  if (!has_speed) return text + "; a sinusoid stands still for no time, so sticking is not seen";
+  if (!has_speed) return text + "; a sinusoid never rests, so sticking is not represented";
   if (trust.sticking_fraction > 0.0) text += "; the sinusoid sticks for " + percent(trust.sticking_fraction);
   return text;
 }

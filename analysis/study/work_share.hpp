@@ -9,7 +9,7 @@ namespace limcycle {
 struct WorkShare {
   long between_steps;        ///< of the integrator, in simulations between starts that end differently
   long composite_steps;      ///< of the integrator, in the search of the composite describing function
-  long df_values;            ///< of a describing function, in the search for roots
+  long df_evaluations;       ///< of the main element, in the search for roots of 1 + N G
   long check_steps;          ///< of the integrator, in the simulations and shooting that check predictions
   long balance_evaluations;  ///< of the equations of harmonic balance, for all its starts
 };

@@ -118,6 +118,9 @@ struct DelayedRelay {
     if (!gain) return std::nullopt;
     return *gain * std::polar(1.0, -w * delay);
   }
+  double exact_mean(double A, double bias) const requires std::same_as<S, double> {
+    return relay().exact_mean(A, bias);
+  }
 
  private:
   Relay<S> relay() const {

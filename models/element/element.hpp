@@ -163,6 +163,13 @@ concept HasExactDescribingFunction = requires(const E e, double a) {
   { e.exact_describing_function(a, a, a) } -> std::same_as<std::optional<std::complex<double>>>;
 };
 
+/// Optional: closed form of the mean output, `exact_mean(A, bias)`, for the same input; where only the history decides,
+/// the middle of what it may be.
+template <class E>
+concept HasExactMean = requires(const E e, double a) {
+  { e.exact_mean(a, a) } -> std::same_as<double>;
+};
+
 /// Optional: a storage function U(z) >= 0 of the internal state, J, with U = 0 for an element without history and no
 /// rise at a switch. A friction law is passive where v F >= dU/dt in every state and mode it can be in and for every v;
 /// what is left, v F - dU/dt, it dissipates. A law may have a U without being passive (LuGre). One that has a U for

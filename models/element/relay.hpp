@@ -74,18 +74,50 @@ struct Relay : Memoryless<S> {
   bool odd() const { return true; }
   Scales scales() const { return {.output = value_of(level)}; }
 
-  /// N = (2M/(pi A)) (sqrt(1 - ((d-h)/A)^2) + sqrt(1 - ((d+h)/A)^2)) - j 4Mh/(pi A^2) for A > d + h (claims A1, A4,
-  /// A5).
+  /// For the input b + A sin wt: the side of sign s = 1, -1 switches on where s x = d + h and off where s x = d - h.
+  /// Each side that does both adds M/(pi A) (sqrt(1 - ((d-h-sb)/A)^2) + sqrt(1 - ((d+h-sb)/A)^2) - 2j h/A) to N: for b
+  /// = 0 and A > d + h claims A1, A4 and A5; with a bias derived here. 0 where a biased input switches no side; empty
+  /// where an unbiased one does not and the history decides.
   std::optional<std::complex<double>> exact_describing_function(double A, double,
                                                                 double bias) const requires std::same_as<S, double> {
-    if (bias != 0.0 || A <= dead_zone + hysteresis) return std::nullopt;
-    const auto root = [A](double at) { return std::sqrt((A - at) * (A + at)) / A; };
-    const double scale = 2.0 * level / (std::numbers::pi * A);
-    return std::complex<double>(scale * (root(dead_zone - hysteresis) + root(dead_zone + hysteresis)),
-                                -2.0 * scale * hysteresis / A);
+    std::complex<double> N = 0.0;
+    for (const double b : {bias, -bias}) {
+      const Side side = side_under(A, b);
+      if (side == Side::undecided && bias == 0.0) return std::nullopt;
+      if (side != Side::switches) continue;
+      const auto root = [A](double at) { return std::sqrt((A - at) * (A + at)) / A; };
+      N += level / (std::numbers::pi * A) *
+           std::complex<double>(root(dead_zone - hysteresis - b) + root(dead_zone + hysteresis - b),
+                                -2.0 * hysteresis / A);
+    }
+    return N;
+  }
+  /// Mean of the output for the same input: M (share of the time in which the upper side is on, less that of the
+  /// lower).
+  double exact_mean(double A, double bias) const requires std::same_as<S, double> {
+    double mean = 0.0;
+    for (const double sign : {1.0, -1.0}) {
+      const double b = sign * bias;
+      const Side side = side_under(A, b);
+      if (side == Side::on) mean += sign;
+      if (side == Side::undecided) mean += 0.5 * sign;
+      if (side == Side::switches)
+        mean +=
+            sign * (0.5 - (std::asin((dead_zone - hysteresis - b) / A) + std::asin((dead_zone + hysteresis - b) / A)) /
+                              (2.0 * std::numbers::pi));
+    }
+    return mean * level;
   }
 
  private:
+  enum class Side { off, on, switches, undecided };
+  /// What the upper side does in the steady state; the history decides where it neither switches on nor off.
+  Side side_under(double A, double bias) const requires std::same_as<S, double> {
+    const bool turns_on = A > dead_zone + hysteresis - bias, turns_off = A > bias - (dead_zone - hysteresis);
+    if (turns_on && turns_off) return Side::switches;
+    if (turns_on || turns_off) return turns_on ? Side::on : Side::off;
+    return Side::undecided;
+  }
   S upper(Mode mode) const { return dead_zone > 0.0 && mode.value == -2 ? S(0.0) : level; }
   S lower(Mode mode) const { return dead_zone > 0.0 && mode.value == 2 ? S(0.0) : -level; }
 };

@@ -78,7 +78,7 @@ TriedLaw try_own_law(const OwnLawFace& law) {
     for (std::size_t i = 0; i < z.size(); ++i)
       if (!law.even_state(static_cast<int>(i))) mirrored[i] = -z[i];
     if (!mirrors(law, here, SaidByLaw(law, {-in.x, -in.v, 0.0}, law.mirror(mode), mirrored)))
-      refuse_law(law, "odd() says true, but the force or a rate does not change its sign with v = " +
+      refuse_law(law, "odd() returns true, but the force or a rate does not change its sign with v = " +
                           std::to_string(in.v) + " and the states");
   }
   return tried;

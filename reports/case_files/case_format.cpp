@@ -4,8 +4,7 @@ namespace limcycle {
 namespace {
 
 CaseSection before_any() {
-  return {
-      "", "Before any section.", {{"title", "\"My servo\"", "what the reports are headed with", "name of the file"}}};
+  return {"", "Before any section.", {{"title", "\"My servo\"", "heading of the reports", "name of the file"}}};
 }
 
 CaseSection loop() {
@@ -20,7 +19,7 @@ CaseSection search() {
   return {
       "search",
       "Where roots of the harmonic balance are searched. Without it the box is chosen from the loop's own scales; "
-      "`limcycle check` tells it.",
+      "`limcycle check` prints it.",
       {{"amplitude", "[1e-6, 1.0]", "from and to, of the element's input (with friction: of what rubs), m", "", true},
        {"frequency", "[0.01, 1000.0]", "from and to, rad/s", "", true}}};
 }
@@ -41,7 +40,7 @@ CaseSection simulate() {
       "\"ramp\", rate, start}, {kind = \"sine\", amplitude, frequency, start}, {kind = \"zigzag\", amplitude, rate, "
       "start}, {kind = \"table\", times, values}.",
       {{"duration", "60.0", "how long, s", "", true},
-       {"initial", "{}", "state to begin from, such as { y = 0.1 }; `limcycle check` tells the names", "all 0"},
+       {"initial", "{}", "state to begin from, such as { y = 0.1 }; `limcycle check` lists the names", "all 0"},
        {"force", "0.0", "a signal added to the load, N", "0"},
        {"reference", "0.0", "a signal in place of loop.reference", "that one"},
        {"stepper", "\"auto\"", "auto, exact, rodas5p, dopri5, fehlberg78 or cash-karp54", "auto"},
@@ -55,7 +54,7 @@ CaseSection df() {
           {{"amplitude", "{ from = 1e-6, to = 1.0, points = 13 }", "axis, of the element's input, m", "", true},
            {"frequency", "[1.0]", "axis, rad/s", "", true},
            {"bias", "[0.0]", "axis; of friction a mean velocity, m/s, else of the input", "[0]"},
-           {"harmonics", "7", "orders that are told", "7"},
+           {"harmonics", "7", "number of harmonics in the output", "7"},
            {"accuracy", "1e-6", "wanted relative error", "1e-6"},
            {"method", "\"auto\"", "auto, fft or quadrature", "auto"}}};
 }

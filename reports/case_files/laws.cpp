@@ -129,8 +129,8 @@ std::string laws_text(const std::vector<CatalogueEntry>& entries) {
   }
   return text + "\n" +
          wrapped(
-             "N: as many states as the lists have entries. 'limcycle laws KIND' tells the parameters, units, defaults, "
-             "source and, of a friction law, the features of one of them.");
+             "N: as many states as the lists have entries. 'limcycle laws KIND' prints the parameters, units, defaults "
+             "and source of one of them, and the features of a friction law.");
 }
 
 std::string law_text(const std::vector<CatalogueEntry>& entries) {

@@ -168,12 +168,10 @@ std::string new_case(const NewCase& wanted) {
     title += kind->empty() ? "" : ", " + *kind;
 
   std::string text = commented(
-      "A case of limcycle, made by `limcycle new`. It works as it is: put your own numbers in place of these. Keys "
-      "behind "
-      "a # may be left out; what stands there is their default, or something to try. SI units, angles in rad, "
-      "frequencies in rad/s; a rotary drive is the same file in N m and rad. `limcycle check FILE` tells what is "
-      "wrong, "
-      "`limcycle predict FILE` whether the loop hunts, `limcycle laws KIND` all about one kind.");
+      "A case of limcycle, made by `limcycle new`. It is valid as it is: replace the numbers by your own. Keys behind "
+      "a # are optional; the value shown is the default, or an example. SI units, angles in rad, "
+      "frequencies in rad/s; a rotary drive is the same file in N m and rad. `limcycle check FILE` reports errors, "
+      "`limcycle predict FILE` shows whether the loop hunts, `limcycle laws KIND` describes one kind.");
   text += fmt::format("title = \"{}\"\n", title);
   for (const CaseSection& section : case_sections())
     if (section.name == "loop") text += optional_section(section, true, {});

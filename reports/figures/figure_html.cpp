@@ -33,10 +33,9 @@ std::string figures_html(const std::vector<Figure>& figures, bool hint) {
   std::string out;
   if (hint)
     out =
-        "<p class=\"hint\">Drag a figure to move it, drag with Shift to zoom, click twice for the first view. Keys of "
-        "a "
-        "focused figure: arrows move, + and − zoom, a shows all, 0 the first view again.</p>\n<noscript><p>The figures "
-        "need JavaScript; the texts under them say what they show.</p></noscript>\n";
+        "<p class=\"hint\">Drag to pan, drag with Shift to zoom, double-click to reset the view. Keys of a focused "
+        "figure: arrows pan, + and − zoom, a shows all, 0 resets the view.</p>\n<noscript><p>The figures need "
+        "JavaScript; the captions describe them.</p></noscript>\n";
   for (const auto& figure : figures) out += figure_html(figure);
   return out;
 }

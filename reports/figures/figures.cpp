@@ -10,6 +10,7 @@
 #include "limcycle/reports/figures/thin.hpp"
 #include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
+#include "limcycle/reports/text.hpp"
 
 namespace limcycle {
 namespace {
@@ -61,7 +62,7 @@ struct Shown {
   std::string name;
 };
 
-Shown shown(const PredictReport& report) {
+Shown shown(const PredictReport& report, const Units& units) {
   for (const bool stable : {true, false})
     for (std::size_t i = 0; i < report.cycles.size(); ++i) {
       const auto& cycle = report.cycles[i];
@@ -69,16 +70,17 @@ Shown shown(const PredictReport& report) {
         return {&cycle.trace, &cycle, fmt::format("limit cycle {}", i)};
     }
   for (const auto& outcome : report.outcomes)
-    if (drawable(outcome.trace)) return {&outcome.trace, nullptr, "simulation from " + outcome.start};
+    if (drawable(outcome.trace))
+      return {&outcome.trace, nullptr, "simulation from " + start_in_words(outcome.start, units)};
   return {};
 }
 
 Json labels(const Trace& trace, const Units& units) {
-  const auto with_unit = [](const char* name, const std::string& unit) {
-    return unit.empty() ? std::string(name) : fmt::format("{} ({})", name, unit);
+  const auto with_unit = [](const std::string& name, const std::string& unit) {
+    return unit.empty() ? name : fmt::format("{} ({})", name, unit);
   };
   const auto per_second = [](const std::string& unit) { return unit.empty() ? "1/s" : unit + "/s"; };
-  return {{"y", with_unit(name_of_y(trace).c_str(), units.y)},
+  return {{"y", with_unit(name_of_y(trace), units.y)},
           {"rate", with_unit("dy/dt", per_second(units.y))},
           {"input", with_unit("element's input", units.input)},
           {"velocity", with_unit("its rate", per_second(units.input))},
@@ -118,7 +120,7 @@ Figure time_figure(const Shown& what, const Units& units) {
                            between(what.trace->output, units.force));
   if (what.cycle && what.cycle->sticking_fraction > 0.0)
     finding += fmt::format("; it sticks for {} of the time", as_percent(what.cycle->sticking_fraction));
-  return {"time", what.cycle ? "One period in time, twice" : "Simulation in time", finding + ".",
+  return {"time", what.cycle ? "Two periods" : "Simulation in time", finding + ".",
           figure_data(json_text({{"run", run},
                                  {"labels", labels(*what.trace, units)},
                                  {"name", what.name},
@@ -141,7 +143,7 @@ Figure phase_figure(const PredictReport& report, const Trace& measured, const Un
     if (!drawable(outcome.trace)) continue;
     Json one = curve(outcome.trace, points_of_run, 0.0, false, whole);
     all_whole = all_whole && whole;
-    one["name"] = "from " + outcome.start + (whole ? "" : " (first part)");
+    one["name"] = "from " + start_in_words(outcome.start, units) + (whole ? "" : " (first part)");
     runs.push_back(std::move(one));
   }
   std::string finding = cycles.empty()
@@ -155,8 +157,8 @@ Figure phase_figure(const PredictReport& report, const Trace& measured, const Un
     if (std::find(ends.begin(), ends.end(), end) == ends.end()) ends.push_back(end);
   }
   if (!ends.empty()) finding += fmt::format(", which end in: {}", fmt::join(ends, ", "));
-  if (!cycles.empty() && !runs.empty()) finding += "; the first view is on the cycles";
-  if (!all_whole) finding += "; of long simulations only the first part is drawn";
+  if (!cycles.empty() && !runs.empty()) finding += "; the initial view shows the cycles";
+  if (!all_whole) finding += "; only the first part of long simulations is drawn";
   return {"phase", "Phase plane", finding + ".",
           figure_data(json_text({{"cycles", cycles}, {"runs", runs}, {"labels", labels(measured, units)}}))};
 }
@@ -167,7 +169,7 @@ Figure loop_figure(const Shown& what, const Units& units) {
                          what.cycle != nullptr, whole);
   const std::string output = units.force.empty() ? "output" : "force";
   return {"loop", "Hysteresis: " + output + " against displacement and rate",
-          fmt::format("The element's {} lies {}, while its input moves {} and its rate {}{}.", output,
+          fmt::format("The element's {} lies {}, its input {} and its rate {}{}.", output,
                       between(what.trace->output, units.force), between(what.trace->input, units.input),
                       between(what.trace->velocity, units.input.empty() ? "1/s" : units.input + "/s"),
                       whole ? "" : " (only the first part is drawn)"),
@@ -179,7 +181,7 @@ Figure loop_figure(const Shown& what, const Units& units) {
 std::vector<Figure> predict_figures(const PredictReport& report, const Units& units) {
   std::vector<Figure> out;
   if (report.nyquist.G.size() >= 2) out.push_back(nyquist_figure(report, units));
-  const Shown what = shown(report);
+  const Shown what = shown(report, units);
   if (!what.trace) return out;
   out.push_back(time_figure(what, units));
   out.push_back(phase_figure(report, *what.trace, units));

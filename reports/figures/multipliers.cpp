@@ -69,7 +69,7 @@ std::optional<Figure> multiplier_figure(const PredictReport& report) {
   }
   if (cycles.empty()) return std::nullopt;
   return Figure{"multipliers", "Floquet multipliers and the unit circle",
-                "Neighbouring motions return to a limit cycle if all its multipliers lie inside the circle. Size of "
+                "Neighbouring motions return to a limit cycle if all its multipliers lie inside the circle. Modulus of "
                 "the largest:" +
                     words + ".",
                 json_text({{"cycles", cycles}})};

@@ -177,7 +177,7 @@ function nyquistControls(plot) {
   }});
   polar.setAttribute("aria-pressed", "false");
   plot.refresh = () => show(false);
-  const group = element("fieldset", {className: "sliders"}, element("legend", {textContent: "Walk along the curves"}),
+  const group = element("fieldset", {className: "sliders"}, element("legend", {textContent: "Frequency and amplitude"}),
     ...sliders.map((one) => one.row), readout, spoken, element("div", {className: "tools"}, ...buttons, polar));
   show(false);
   return group;

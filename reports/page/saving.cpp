@@ -86,7 +86,7 @@ function addSaving() {
     const id = plot.dataset.figure;
     plot.after(tools("Figure: " + name,
       button("+", "Zoom in: " + name, () => change(plot, 0.8, [0, 0])), button("−", "Zoom out: " + name, () => change(plot, 1.25, [0, 0])),
-      button("All", "Show all: " + name, () => showAll(plot)), button("First view", "First view: " + name, () => firstView(plot)),
+      button("All", "Show all: " + name, () => showAll(plot)), button("Reset", "Reset the view: " + name, () => firstView(plot)),
       button("SVG", "Save as SVG: " + name, () => savePlot(plot, "svg")), button("PNG", "Save as PNG: " + name, () => savePlot(plot, "png")),
       button("CSV", "Save the data as CSV: " + name, () => save(fileName(id, "csv"), csv(rowsOfFigure(id, dataOf(plot))), "text/csv"))));
     const controls = id === "nyquist" ? nyquistControls(plot) : null;

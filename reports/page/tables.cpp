@@ -27,7 +27,7 @@ Object.assign(rows, {
   harmonics: (d) => [["curve", "order", d.label ?? "amplitude"],
     ...d.curves.flatMap((one) => d.order.map((order, i) => [one.name, order, one.amplitude[i]]))],
 });
-const workRows = (d) => [["curve", d.x, d.y, "right", "what it is"],
+const workRows = (d) => [["curve", d.x, d.y, "right", "description"],
   ...d.series.flatMap((one) => one.x.map((x, i) => [one.name, x, one.y[i], one.good[i], one.label[i]]))];
 
 // RFC 4180; what does not exist is empty.

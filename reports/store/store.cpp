@@ -59,7 +59,7 @@ struct SweepStore::Impl {
   Impl(const std::string& named, const SweepIdentity& wanted, bool resume, const StoreOptions& wished)
       : path(true_path(named)), identity(checked_identity(wanted)), options(checked_options(wished)), lock(path) {
     if (holds_bytes(path) && !resume)
-      throw refused_store(path + " exists already: go on with it by --resume, or name another file");
+      throw refused_store(path + " exists already: continue it with --resume, or choose another file");
     std::error_code ignored;
     const bool there = std::filesystem::exists(path, ignored);
     try {
@@ -100,8 +100,8 @@ struct SweepStore::Impl {
 
   void go_on() {
     if (const auto differs = identity_difference(read_identity(*database, path), identity); !differs.empty())
-      throw refused_store(fmt::format("{} holds another sweep: {}. Repeat what it was begun with, or name another file",
-                                      path, differs));
+      throw refused_store(fmt::format(
+          "{} holds another sweep: {}. Repeat the command that began it, or choose another file", path, differs));
     if (const auto found = database->text("PRAGMA quick_check(1)"); found != "ok")
       throw StoreError(StoreError::Kind::failed,
                        fmt::format("{} is damaged ({}): compute it again into another file", path, found));
@@ -211,10 +211,11 @@ void SweepStore::Impl::store(const WaitingRows& batch) {
 
 /// Rows of a transaction that failed are lost, as are those that wait: they are computed again after --resume.
 void SweepStore::Impl::fail(const std::string& words, std::size_t lost) {
-  failure.emplace(StoreError::Kind::failed,
-                  fmt::format("{}: {}; {} of {} points are stored and stay so: mend that (make room), then go on by "
-                              "--resume",
-                              path, words, stored_points() - lost, identity.points));
+  failure.emplace(
+      StoreError::Kind::failed,
+      fmt::format(
+          "{}: {}; {} of {} points are stored and safe: fix this (free some space), then continue with --resume", path,
+          words, stored_points() - lost, identity.points));
 }
 
 SweepStore::SweepStore(const std::string& path, const SweepIdentity& identity, bool resume, const StoreOptions& options)

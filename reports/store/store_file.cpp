@@ -40,7 +40,7 @@ void require_sweep(const std::string& path, StoreContent content) {
     case StoreContent::nothing:
       throw refused_store(path + " holds no sweep yet");
     case StoreContent::newer:
-      throw refused_store(path + " was made by a newer limcycle: use that one");
+      throw refused_store(path + " was made by a newer limcycle: use that version");
     case StoreContent::other:
     case StoreContent::no_database:
       throw refused_store(path + " is not a store of limcycle: name another file");

@@ -58,7 +58,7 @@ StoreLock::StoreLock(const std::string& path) : file_(lock_file(path)) {
       throw StoreError(StoreError::Kind::refused,
                        path + " is being written by " +
                            (pid > 0 ? "process " + std::to_string(pid) : std::string("another process")) +
-                           ": wait until it ends, or end it; 'limcycle status' shows how far it is");
+                           ": wait until it ends, or stop it; 'limcycle status' shows its progress");
     }
     if (is_still(descriptor_, file_)) break;
     close(descriptor_);

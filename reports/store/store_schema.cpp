@@ -115,7 +115,7 @@ SweepIdentity read_identity(Database& database, const std::string& path) {
   Statement select(database, "SELECT value FROM identity WHERE key = ?");
   const auto value = [&](std::string_view key) {
     select.bind(1, key);
-    if (!select.step()) throw damaged_store(path, "it does not say its " + std::string(key));
+    if (!select.step()) throw damaged_store(path, "it lacks its " + std::string(key));
     std::string text = select.text(0);
     select.reset();
     return text;
@@ -167,7 +167,7 @@ StoreActivity read_activity(Database& database, const std::string& path) {
   activity.known = static_cast<std::size_t>(database.number("SELECT count(*) FROM rows"));
   activity.sessions = static_cast<std::size_t>(database.number("SELECT count(*) FROM sessions"));
   Statement last(database, "SELECT began, written, rows FROM sessions ORDER BY id DESC LIMIT 1");
-  if (!last.step()) throw damaged_store(path, "it does not say when it was begun");
+  if (!last.step()) throw damaged_store(path, "it lacks its start time");
   activity.began = last.real(0);
   activity.written = last.real(1);
   activity.session_rows = static_cast<std::size_t>(last.number(2));

@@ -110,10 +110,10 @@ TEST_CASE("section claim: what is refused, with line, key, value and rule") {
   CHECK_THAT(said("quantity = \"gain.real\"\nformula = \"1\"\n"), Contains("claim[0].at: is required"));
   CHECK_THAT(said("quantity = \"period\"\nformula = \"A\"\n"), Contains("unknown name 'A'"));
   CHECK_THAT(said("quantity = \"period\"\nformula = \"1\"\nat = {amplitude = 1, frequency = 1}\n"),
-             Contains("claim[0].at") && Contains("goes with describing functions"));
-  CHECK_THAT(said("quantity = \"period\"\nformula = \"1\"\nrandom = 3\n"), Contains("goes with over"));
+             Contains("claim[0].at") && Contains("is allowed only with describing functions"));
+  CHECK_THAT(said("quantity = \"period\"\nformula = \"1\"\nrandom = 3\n"), Contains("needs over"));
   CHECK_THAT(said("quantity = \"period\"\nformula = \"1\"\ncomparison = \"<\"\ntolerance = 0.1\n"),
-             Contains("goes with comparison"));
+             Contains("is allowed only with comparison"));
   CHECK_THAT(said("quantity = \"period\"\nformula = \"1\"\ncomparison = \"==\"\n"), Contains("must be one of \"=\""));
   CHECK_THAT(said("quantity = \"period\"\nformula = \"1\"\nexpected = \"true\"\n"),
              Contains("must be one of \"holds\""));
@@ -121,7 +121,7 @@ TEST_CASE("section claim: what is refused, with line, key, value and rule") {
              Contains("is not a parameter") && Contains("claim[0].over[0].path"));
   CHECK_THAT(said("quantity = \"period\"\nformula = \"1\"\nformla = 1\n"), Contains("did you mean formula?"));
   CHECK_THAT(said("quantity = \"period\"\nformula = \"1\"\n[[claim]]\nid = \"a\"\nquantity = \"hunts\"\nformula = 1\n"),
-             Contains("claim[1].id") && Contains("stands in the case twice"));
+             Contains("claim[1].id") && Contains("appears twice in the case"));
   CHECK_THAT(message(coulomb + "[[claim]]\nid = \"a\"\nquantity = \"period\"\nformula = \"1\"\n"),
              Contains("needs a loop"));
   CHECK_THAT(message(relay + "[[claim]]\nid = \"a\"\nquantity = \"passive\"\nformula = \"1\"\n"),

@@ -64,7 +64,7 @@ TEST_CASE("section sensitivity: what is refused") {
   CHECK_THAT(one(Fs + "distribution = \"normal\""), Contains("deviation: is required"));
   CHECK_THAT(one(Fs + "distribution = \"normal\", deviation = -1"), Contains("must be > 0 N"));
   CHECK_THAT(one(Fs + "distribution = \"normal\", deviation = 1, from = 2"), Contains("must lie between from and to"));
-  CHECK_THAT(one(Fs + "mean = 1, factor = 2"), Contains("goes with distribution = \"normal\" only"));
+  CHECK_THAT(one(Fs + "mean = 1, factor = 2"), Contains("is allowed only with distribution = \"normal\""));
   CHECK_THAT(one("path = \"loop.load\", factor = 2"), Contains("other than 0"));
   CHECK_THAT(message(with_spread("parameters = [{" + Fs + "factor = 2}, {" + Fs + "factor = 3}]\n")),
              Contains("stands in the list twice"));

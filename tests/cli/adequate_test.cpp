@@ -24,7 +24,7 @@ TEST_CASE("adequate: text, documents and page of a servo with stiction") {
                         scratch.file("r.csv"), "-o", scratch.file("r.html")});
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
-  CHECK_THAT(ran.out, Contains("needs no more than the law coulomb + stiction") && Contains("no law"));
+  CHECK_THAT(ran.out, Contains("Simplest adequate model: the law coulomb + stiction") && Contains("no law"));
   std::istringstream lines(ran.out.substr(0, ran.out.find("report: ")));
   for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
   const auto document = Json::parse(scratch.get("r.json"));
@@ -57,7 +57,7 @@ TEST_CASE("adequate: without friction it is refused, and says why, and wrong usa
   const auto ran = run({"adequate", shipped("relay-integrator.toml")});
   CHECK(ran.code == 2);
   CHECK(ran.out.empty());
-  CHECK_THAT(ran.err, Contains("loop.friction is missing") || Contains("asks which friction law is enough"));
+  CHECK_THAT(ran.err, Contains("loop.friction is missing") || Contains("compares friction laws and needs one"));
   CHECK(run({"adequate", shipped("df-lugre.toml")}).code == 2);
   CHECK(run({"adequate", shipped("pid-lugre.toml"), "--tolerance", "-1"}).code == 2);
 }

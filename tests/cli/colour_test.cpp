@@ -75,7 +75,7 @@ TEST_CASE("colour: files and pipes get none, unless it is asked for") {
 }
 
 TEST_CASE("colour: headings of help, and complaints") {
-  CHECK(holds(on_terminal("--help"), bold + std::string("Does it hunt?\x1b[0m")));
+  CHECK(holds(on_terminal("--help"), bold + std::string("Prediction and simulation\x1b[0m")));
   CHECK(holds(on_terminal("predict --help"), bold + std::string("Examples\x1b[0m")));
   CHECK(holds(on_terminal("predict no-such-file.toml"), red + std::string("limcycle:\x1b[0m no-such-file.toml")));
   CHECK_FALSE(holds(run({"predict", "no-such-file.toml"}).err, "\x1b"));

@@ -93,7 +93,8 @@ TEST_CASE("help: what it says of options") {
   CHECK(map.find("(0 to 1024; default 0)") != std::string::npos);  // a map takes all cores
   CHECK(run({"predict", "--help"}).out.find("(0 to 1024; default 1)") != std::string::npos);
   const std::string all = run({"--help"}).out;
-  for (const auto* text : {"To begin\n", "Exit codes\n  0   done", "\n  2   wrong usage", "limcycle new -o servo.toml"})
+  for (const auto* text :
+       {"Getting started\n", "Exit codes\n  0   done", "\n  2   wrong usage", "limcycle new -o servo.toml"})
     CHECK(all.find(text) != std::string::npos);
 }
 
@@ -126,7 +127,7 @@ TEST_CASE("help: what was computed is told with verbose, the same bytes however 
   CHECK(told.code == 0);
   REQUIRE(told.out.starts_with(plain.out));
   const std::string more = told.out.substr(plain.out.size());
-  CHECK(more.starts_with("\nWhat was done\ndescribing-function            1 root, residual at most "));
+  CHECK(more.starts_with("\nWork done\ndescribing-function            1 root, residual at most "));
   for (const auto* text : {"\nsimulation ", " runs, ", " steps, from ", "\nshooting ", " return maps\n", "\nstatus  ",
                            "\ncomposite-describing-function  does not apply to this loop\n"})
     CHECK(more.find(text) != std::string::npos);

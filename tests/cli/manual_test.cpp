@@ -55,7 +55,7 @@ TEST_CASE("manual: a page tells what the help tells") {
   std::string printed;
   warnings(page("map"), printed);
   const std::string text = squeezed(printed);
-  for (const auto* part : {"SYNOPSIS limcycle map CASE --x PATH=FROM:TO:N[:log]", "DESCRIPTION Asks at every point",
+  for (const auto* part : {"SYNOPSIS limcycle map CASE --x PATH=FROM:TO:N[:log]", "DESCRIPTION Computes the outcome",
                            "-o, --output FILE", "(0 to 1024; default 0)", "EXAMPLES", "EXIT STATUS 0 done",
                            "limcycle-case(5)", "limcycle map cases/relay-third-order.toml --x"})
     CHECK(text.find(part) != std::string::npos);

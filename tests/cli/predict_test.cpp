@@ -37,7 +37,7 @@ TEST_CASE("predict: the default case is answered in words, in documents and as a
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
   CHECK_THAT(ran.out, Contains("This loop hunts: it settles into a limit cycle of period 24.44 s"));
-  CHECK_THAT(ran.out, Contains("The describing function predicts no limit cycle in the search box and misses it."));
+  CHECK_THAT(ran.out, Contains("The describing function does not find this cycle."));
   CHECK_THAT(ran.out, Contains("24.4367865 "));
   CHECK_THAT(ran.out, Contains("report: " + scratch.file("r.html")));
   CHECK(widest_line(ran.out.substr(0, ran.out.find("report: "))) <= 80);

@@ -170,7 +170,7 @@ TEST_CASE("ranks: killed and stopped at any moment, a map goes on where it was, 
     ++ended_early;
     if (how == stop_one) {  // as a single process would
       CHECK(ran.code == 3);
-      CHECK(times_in(ran.err, "with --resume goes on") == 1);
+      CHECK(times_in(ran.err, "continue by the same command with --resume") == 1);
     } else {
       CHECK(ran.code != 0);  // mpirun's
     }

@@ -149,8 +149,8 @@ TEST_CASE("report: a page that was altered, is none, or is from a newer program 
   const auto data = page.find("id=\"case\">");
   refused(page.substr(0, data) + replaced(page.substr(data), "level = 1", "level = 2"),
           "was altered: the case in it does not have the SHA-256 that the page states");
-  refused("<html></html>", "is no page of limcycle that holds its case");
-  refused("", "is no page of limcycle");
+  refused("<html></html>", "is not a limcycle page with an embedded case");
+  refused("", "is not a limcycle page");
   refused(replaced(page, "id=\"case\">{\"schema\":\"limcycle/1\"", "id=\"case\">{\"schema\":\"limcycle/9\""),
           "was written by a newer limcycle");
   refused(page.substr(0, page.find("id=\"case\">") + 40), "is cut off");
@@ -182,7 +182,7 @@ TEST_CASE("report: a page from another version is told so, and an answer that it
   REQUIRE(result != std::string::npos);
   page.replace(result, std::string("\"verdict\":\"confirmed\"").size(), "\"verdict\":\"biased\"");
   CHECK_THAT(run({"predict", "--from", scratch.put("other.html", page)}).err,
-             Contains("the answer is not the one that the page states"));
+             Contains("the answer differs from the one on the page"));
 }
 
 TEST_CASE("report: with a map, which the page draws and makes again") {
@@ -247,8 +247,8 @@ TEST_CASE("report: interrupted, it writes what is there and says so") {
                                     "loop.controller.kp=1:5:200", "--y", "loop.controller.kd=1:9:200"},
                                    1.0);
   CHECK(ran.code == 3);
-  CHECK_THAT(ran.err, Contains("interrupted; the page holds what was computed until then"));
+  CHECK_THAT(ran.err, Contains("interrupted; the page holds the results computed so far"));
   const std::string page = scratch.get("i.html");
-  CHECK_THAT(page, StartsWith("<!DOCTYPE html>") && Contains("Interrupted: this page holds"));
+  CHECK_THAT(page, StartsWith("<!DOCTYPE html>") && Contains("Interrupted: this page shows"));
   CHECK(markup_fault(without_scripts(page)) == "");
 }

@@ -87,7 +87,7 @@ TEST_CASE("simulate: a second run at tighter tolerances checks the first one") {
   CHECK(Json::parse(told.out)["agreement"]["why"].get<std::string>().size() > 10);
 }
 
-TEST_CASE("simulate: where the energy goes") {
+TEST_CASE("simulate: the energy balance") {
   const std::vector<std::string> servo = {"simulate", shipped("pid-lugre.toml"), "--no-check", "--json", "-"};
   const auto energy = Json::parse(run(servo).out)["energy"];
   CHECK(energy["of"] == "loop");

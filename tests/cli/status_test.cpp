@@ -23,7 +23,7 @@ TEST_CASE("status: a store while it is written and afterwards") {
     CHECK_THAT(ran.out, Contains("map: 3 of 100") && Contains("(3 %)") && Contains("Provisional results") &&
                             Contains("Process " + std::to_string(getpid()) + " is"));
   }
-  CHECK_THAT(run({"status", path}).out, Contains("Nobody is computing"));
+  CHECK_THAT(run({"status", path}).out, Contains("No process is running"));
   const auto document = nlohmann::json::parse(run({"status", path, "--json", "-"}).out);
   CHECK(document["points"] == 100);
   CHECK(document["known"] == 3);

@@ -47,7 +47,8 @@ TEST_CASE("time limit: what is known is written, and text, JSON and exit code sa
                "loop.controller.kd=1:9:200", "--json", scratch.file("m.json"), "--store", scratch.file("m.db")});
   CHECK(ran.code == 3);
   CHECK_THAT(ran.out, StartsWith("Time limit of 2 s reached: this result is incomplete.\n"));
-  CHECK_THAT(ran.err, Contains("time limit of 2 s reached; what was computed is in") && Contains("--resume"));
+  CHECK_THAT(ran.err,
+             Contains("time limit of 2 s reached; the results computed so far are in") && Contains("--resume"));
   CHECK(Json::parse(scratch.get("m.json"))["status"] == "time-limit");
 }
 

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "limcycle/models/assemble.hpp"
+#include "limcycle/tests/gantry.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -49,21 +50,6 @@ Eigen::VectorXd some(Eigen::Index n, std::mt19937_64& random) {
   return Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
 }
 
-/// The gantry of tests/reproducers/gantry-stribeck.toml.
-LoopParts gantry(double reference, double load) {
-  auto law = stribeck(42.0, 24.28, 0.001624);
-  law.delta = 0.7;
-  law.sigma2 = 123.2;
-  auto parts = servo_parts(law);
-  parts.plant = Mass{31.74, 0.0, 0.0};
-  auto controller = pid(638000.0, 11.97e6, 7977.0);
-  controller.tf = 0.0005;
-  parts.controller = controller;
-  parts.reference = reference;
-  parts.load = load;
-  return parts;
-}
-
 }  // namespace
 
 TEST_CASE("origin: a loop measured from its rest point obeys the equations of the loop") {
@@ -77,13 +63,10 @@ TEST_CASE("origin: a loop measured from its rest point obeys the equations of th
     External outside = raw.external;
     outside(reference_value) += parts.reference_rate * t;
     outside(reference_slope) = parts.reference_rate;
-    External inside = loop.external;
-    if (loop.origin.size() == 0) inside(reference_value) += parts.reference_rate * t;
     const auto n = loop.states();
     const Eigen::VectorXd X = some(n, random), w = some(std::ssize(loop.elements), random);
     const Eigen::VectorXd moving = loop.origin_rate.size() > 0 ? loop.origin_rate : Eigen::VectorXd::Zero(n);
-    const Eigen::VectorXd from = loop.origin.size() > 0 ? loop.origin : Eigen::VectorXd::Zero(n);
-    const Eigen::VectorXd own = from + moving * t + X;
+    const Eigen::VectorXd own = in_the_case(loop, X) + moving * t;
     const Eigen::VectorXd rate = loop.A * X + loop.B * w + loop.E * loop.external + moving;
     CHECK((raw.A * own + raw.B * w + raw.E * outside - rate).norm() < 1e-12 * (raw.A * own).norm());
     const double y = loop.output_origin + loop.ramp_output_rate * t + (loop.C_y * X).value();
@@ -103,7 +86,7 @@ TEST_CASE("origin: a loop measured from its rest point obeys the equations of th
 TEST_CASE("origin: what rubs at rest stands still, whatever the place and the load") {
   for (const double reference : {0.3, 10.0, -1e6})
     for (const double load : {0.0, 1e5}) {
-      const Loop loop = build_loop(gantry(reference, load)), home = build_loop(gantry(0.0, 0.0));
+      const Loop loop = gantry(0.7, reference, load), home = gantry(0.7);
       REQUIRE(loop.origin.size() > 0);
       CHECK(loop.output_origin == Approx(reference).epsilon(1e-15));
       const Port& port = loop.ports.back();

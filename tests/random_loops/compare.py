@@ -37,8 +37,8 @@ def matches(one, other):
 
 
 def displacement(start):
-    """The displacement that the name of a start tells, or None."""
-    found = re.fullmatch(r"(?:y displaced by|from y\(0\) =|y\(0\) =) ([-+.0-9e]+)(?: .*)?", start)
+    """The displacement from rest in the name of a start, or None."""
+    found = re.fullmatch(r"y\(0\) = (?:rest \+ )?([-+.0-9e]+)", start)
     return float(found.group(1)) if found else None
 
 
@@ -124,9 +124,9 @@ def _starts(truth, listed, document):
         if one.kind == "unknown":
             continue
         if kind != one.kind and {kind, one.kind} != {"rest", "sliding"}:
-            wrong.append(f"from y displaced by {size:g}: {kind} was said, {_texts([one])} is true")
+            wrong.append(f"{outcome['start']}: {kind} was reported, {_texts([one])} is true")
         elif kind == "cycle" and outcome["cycle"] is not None and not matches(one, listed[outcome["cycle"]]):
-            wrong.append(f"from y displaced by {size:g}: another cycle, {_texts([one])}")
+            wrong.append(f"{outcome['start']}: another cycle, {_texts([one])}")
     return wrong
 
 

@@ -36,9 +36,9 @@ AdequateReport sample() {
   report.laws = {
       {"coulomb", law, "same Fc"}, {"coulomb + stiction", law, "same <Fs>"}, {"dahl", {}, "not possible: no"}};
   report.laws[1].own = true;
-  report.points = {made("coulomb", "shooting", "rest", 0.0, INFINITY, false, "says rest where it is cycle"),
+  report.points = {made("coulomb", "shooting", "rest", 0.0, INFINITY, false, "ends in rest, although a cycle exists"),
                    made("coulomb + stiction", "describing-function", "no cycle", 0.0, INFINITY, false,
-                        "says no cycle where it is cycle"),
+                        "finds no cycle, although a cycle exists"),
                    made("coulomb + stiction", "harmonic-balance", "", 0.0, not_known, false, "no balance"),
                    made("coulomb + stiction", "shooting", "cycle", 24.0, 0.017, true)};
   report.points.back().worst = 0.038;
@@ -53,17 +53,17 @@ AdequateReport sample() {
 
 TEST_CASE("adequate report: one sentence says what is enough, why less is not, and which methods fail") {
   CHECK_THAT(adequate_answer(sample(), Units{}),
-             Contains("needs no more than the law coulomb + stiction and shooting (2.0 ms)") &&
+             Contains("Simplest adequate model: the law coulomb + stiction with shooting (2.0 ms)") &&
                  Contains("within 5.0 % over the spread of the parameters (worst 3.8 %)") &&
-                 Contains("less, coulomb, says rest where it is cycle.") &&
-                 Contains("DF says no cycle where it is cycle, HB has no answer") &&
+                 Contains("The simpler law coulomb is not adequate: ends in rest, although a cycle exists.") &&
+                 Contains("Not adequate with it: DF (finds no cycle, although a cycle exists), HB (no answer).") &&
                  Contains("confirmed to 1e-12 by a friend"));
   AdequateReport none = sample();
   none.least = none.cheapest = std::nullopt;
   CHECK_THAT(adequate_answer(none, Units{}), StartsWith("No law of the ladder stays within 5.0 %"));
   none.status = Status::undefined;
   none.why = "it is undecided";
-  CHECK(adequate_answer(none, Units{}) == "There is nothing to measure by: it is undecided.");
+  CHECK(adequate_answer(none, Units{}) == "There is no reference: it is undecided.");
 }
 
 TEST_CASE("adequate report: text within 80 columns with the whole ladder and its rules") {

@@ -27,12 +27,12 @@ std::string worth(const PredictReport& report) {
 
 }  // namespace
 
-TEST_CASE("a method whose search was complete misses, one whose search was not may have overlooked") {
+TEST_CASE("a method whose search was complete does not find the cycle, one whose search was not may have missed it") {
   auto report = hunting_unseen();
-  CHECK_THAT(worth(report), Contains("predicts no limit cycle in the search box and misses it"));
+  CHECK_THAT(worth(report), Contains("does not find this cycle"));
   report.incomplete.emplace_back("describing-function");
-  CHECK_THAT(worth(report), Contains("its search was not complete: it may have overlooked it"));
-  CHECK_THAT(worth(report), !Contains("misses"));
+  CHECK_THAT(worth(report), Contains("its search was incomplete: it may have missed this cycle"));
+  CHECK_THAT(worth(report), !Contains("does not find"));
 }
 
 TEST_CASE("what an incomplete search did find is told with its doubt") {
@@ -42,15 +42,15 @@ TEST_CASE("what an incomplete search did find is told with its doubt") {
   other.frequency = 1.0;
   report.predictions.push_back(other);
   report.incomplete.emplace_back("describing-function");
-  CHECK_THAT(worth(report), Contains("neither confirmed nor refuted") && Contains("found nothing of the one") &&
-                                Contains("not complete, so it may predict more"));
+  CHECK_THAT(worth(report), Contains("which is unverified") && Contains("it has not found the cycle that exists") &&
+                                Contains("incomplete, so it may predict more"));
 }
 
 TEST_CASE("where nothing oscillates, an incomplete search that found nothing does not agree") {
   PredictReport report;
-  report.outcomes.push_back({"y displaced by 1", Outcome::rest, "", {}, {}});
+  report.outcomes.push_back({"y(0) = 1", Outcome::rest, "", {}, {}});
   report.nyquist.frequency.push_back(1.0);
   CHECK_THAT(worth(report), Contains("predicts none either"));
   report.incomplete.emplace_back("describing-function");
-  CHECK_THAT(worth(report), Contains("found no limit cycle, but its search was not complete."));
+  CHECK_THAT(worth(report), Contains("found no limit cycle, but its search was incomplete."));
 }

@@ -51,8 +51,8 @@ TEST_CASE("case in a page: every byte of it comes back") {
 }
 
 TEST_CASE("case in a page: a page without a case, cut off, or with two of them is refused") {
-  CHECK_THROWS_WITH(case_in_page("<html></html>"), "is no page of limcycle that holds its case");
-  CHECK_THROWS_WITH(case_in_page(""), Contains("is no page"));
+  CHECK_THROWS_WITH(case_in_page("<html></html>"), "is not a limcycle page with an embedded case");
+  CHECK_THROWS_WITH(case_in_page(""), Contains("is not a limcycle page"));
   CHECK_THROWS_AS(case_in_page(predict_page(sample::relay(), made(), "", {})), PageError);
   const std::string element = case_element(made(), "a = 1", "predict", "");
   CHECK_THROWS_WITH(case_in_page(element + element), Contains("was altered: it holds more than one"));

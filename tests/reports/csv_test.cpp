@@ -53,7 +53,7 @@ TEST_CASE("predict: a row for each cycle, prediction, missed cycle and start") {
   CHECK(lines[2] == "prediction,0,describing-function,0.637,,,1.01,,true,,,,,1e-12,confirmed,0,,,within 5 %");
   CHECK(lines[3] == "prediction,1,describing-function,0.1,,,7,,,,,,,2e-12,false,,,,it comes to rest");
   CHECK(lines[4] == "missed,0,harmonic-balance,,,,,,,,,,,,,0,,,");
-  CHECK(lines[5] == "outcome,0,,,,,,,,,,,,,,0,y displaced by 1,cycle,\"a, \"\"b\"\"\"");
+  CHECK(lines[5] == "outcome,0,,,,,,,,,,,,,,0,y(0) = 1,cycle,\"a, \"\"b\"\"\"");
   const auto commas = std::count(lines[0].begin(), lines[0].end(), ',');
   for (const auto i : {1u, 2u, 3u, 4u, 6u}) CHECK(std::count(lines[i].begin(), lines[i].end(), ',') == commas);
 }

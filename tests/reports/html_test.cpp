@@ -130,7 +130,7 @@ TEST_CASE("each figure says in words what it shows") {
 TEST_CASE("Floquet multipliers: a table, and a figure that says the size of the largest") {
   const auto figures = predict_figures(sample::hunting(), {});
   CHECK(figures.back().id == "multipliers");
-  CHECK(holds(figures.back().finding, "Size of the largest: 0.00955 of limit cycle 0."));
+  CHECK(holds(figures.back().finding, "Modulus of the largest: 0.00955 of limit cycle 0."));
   CHECK(Json::parse(figures.back().data) ==
         Json({{"cycles", {{{"name", "limit cycle 0"}, {"re", {0.0095, 0.0}}, {"im", {-0.001, 0.0}}}}}}));
   CHECK(holds(page(sample::hunting()), ">0.00950 - 0.00100j, 1 below 1e-06</td>"));

@@ -75,7 +75,7 @@ TEST_CASE("predict: keys and values") {
   CHECK(predictions[1]["stable"].is_null());
   CHECK(document["missed"] == Json::array());
   CHECK(document["outcomes"][0] ==
-        Json({{"start", "y displaced by 1"}, {"outcome", "cycle"}, {"cycle", 0}, {"why", "it settles"}}));
+        Json({{"start", "y(0) = 1"}, {"outcome", "cycle"}, {"cycle", 0}, {"why", "it settles"}}));
   CHECK(document["search"] == Json({{"amplitude", {1e-6, 1.0}}, {"frequency", {0.01, 1000.0}}}));
   CHECK(document["notes"] == Json::array({"a note"}));
   CHECK(Json::parse(predict_json(made(), sample::hunting()))["missed"] ==

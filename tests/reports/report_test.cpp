@@ -94,7 +94,7 @@ TEST_CASE("report: interrupted, the page says so at its top") {
   CHECK_FALSE(holds(page(report), "Interrupted"));
   report.interrupted = true;
   const std::string text = page(report);
-  CHECK(text.find("Interrupted: this page holds what was computed until then") < text.find("<nav"));
+  CHECK(text.find("Interrupted: this page shows the results computed so far") < text.find("<nav"));
 }
 
 TEST_CASE("report: self-contained, and nothing that a user wrote becomes markup") {
@@ -119,7 +119,7 @@ TEST_CASE("report: it holds its case, its flags and its result for programs") {
   CHECK(holds(text, "limcycle report servo.toml --quick"));
 }
 
-TEST_CASE("report: where the energy goes, as a sentence and a table") {
+TEST_CASE("report: the energy balance, as a sentence and a table") {
   auto report = nothing_but(sample::hunting());
   CountedRun counted{"the run of [simulate]", {}, {}};
   counted.run.trace.t = {0.0, 12.5};

@@ -51,8 +51,8 @@ inline PredictReport hunting() {
   report.search = {1e-6, 1.0, 0.01, 1000.0};
   report.cycles = {hunting_cycle()};
   report.missed = {{"describing-function", 0}};
-  report.outcomes = {{"y displaced by 1", Outcome::cycle, "it settles", 0, stick_slip_trace(1.0, 24.0)},
-                     {"y displaced by 0.1", Outcome::cycle, "", 0, {}}};
+  report.outcomes = {{"y(0) = 1", Outcome::cycle, "it settles", 0, stick_slip_trace(1.0, 24.0)},
+                     {"y(0) = 0.1", Outcome::cycle, "", 0, {}}};
   for (const double w : {0.01, 1.0, 100.0}) {
     report.nyquist.frequency.push_back(w);
     report.nyquist.G.push_back(1.0 / std::complex<double>(1.0, w));

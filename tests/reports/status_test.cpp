@@ -57,7 +57,7 @@ TEST_CASE("the status of a store in words: how far, how fast, who, and what to d
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 81);  // one letter of the title has two bytes
   sweep.activity.running = false;
-  CHECK_THAT(status_text("a.store", sweep, 1004.0), Contains("with --resume goes on"));
+  CHECK_THAT(status_text("a.store", sweep, 1004.0), Contains("continue by the same command with --resume"));
   sweep.known.assign(6, true);
   sweep.activity.known = 6;
   CHECK(seconds_left(sweep) == 0.0);

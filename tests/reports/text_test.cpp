@@ -34,10 +34,9 @@ PredictReport quiet(std::vector<Outcome> outcomes) {
 
 TEST_CASE("predict: the answer stands first, in words") {
   const auto text = predict_text("A servo", sample::hunting(), {});
-  CHECK_THAT(
-      text,
-      StartsWith("A servo\n\nThis loop hunts: it settles into a limit cycle of period 24.44 s and amplitude\n"
-                 "0.06390 m.\nThe describing function predicts no limit cycle in the search box and misses it.\n"));
+  CHECK_THAT(text,
+             StartsWith("A servo\n\nThis loop hunts: it settles into a limit cycle of period 24.44 s and amplitude\n"
+                        "0.06390 m.\nThe describing function does not find this cycle.\n"));
   CHECK_THAT(text, Contains("24.436786456  0.06390312346"));
   CHECK_THAT(text, Contains("- a note") || Contains("-  a note"));
   CHECK(widest(text) <= 80);
@@ -52,15 +51,16 @@ TEST_CASE("predict: predictions with their verdicts and deviations") {
   auto one = sample::relay();
   one.predictions.resize(1);
   CHECK(answer(one, {}).worth[0] ==
-        "The describing function predicts it: first harmonic 2.0 % too small, frequency 1.0 % too large.");
+        "The describing function finds it: amplitude 2.0 % too low, frequency 1.0 % too high.");
   one.predictions[0].verdict = Verdict::biased;
-  CHECK_THAT(answer(one, {}).worth[0], StartsWith("The describing function predicts it with a bias: "));
+  CHECK_THAT(answer(one, {}).worth[0],
+             Contains("finds it, but the amplitude is 2.0 % too low and the frequency 1.0 % too high."));
   one.predictions[0].verdict = Verdict::wrong;
   CHECK(answer(one, {}).worth[0] ==
         "The describing function predicts a limit cycle (amplitude 0.6370 m, frequency 1.010 rad/s) that does not "
         "exist.");
   one.missed = {{"describing-function", 0}};
-  CHECK_THAT(answer(one, {}).worth[0], Contains("does not exist, and misses the one that exists."));
+  CHECK_THAT(answer(one, {}).worth[0], Contains("does not exist; it does not find the cycle that exists."));
   const auto text = predict_text("Relay", sample::relay(), {"", ""});
   CHECK_THAT(text, Contains("confirmed") && Contains("false") && Contains("it comes to rest"));
   CHECK(widest(text) <= 80);
@@ -72,10 +72,10 @@ TEST_CASE("predict: of several cycles the one that is predicted is told") {
   two.cycles.push_back(two.cycles[0]);
   two.cycles[0].stable = false;
   CHECK_THAT(answer(two, {}).worth[0],
-             StartsWith("The describing function predicts the unstable one of period 6.283 s: first harmonic 2.0 %"));
+             StartsWith("The describing function finds the unstable cycle of period 6.283 s: amplitude 2.0 %"));
   CHECK_THAT(answer(two, {}).what_happens, Contains(". One more is unstable."));
   two.cycles[0].stable.reset();
-  CHECK_THAT(answer(two, {}).worth[0], StartsWith("The describing function predicts the one of period 6.283 s: "));
+  CHECK_THAT(answer(two, {}).worth[0], StartsWith("The describing function finds the cycle of period 6.283 s: "));
   CHECK_THAT(answer(two, {}).what_happens, Contains(" One more is not stable or undecided."));
 }
 
@@ -106,9 +106,9 @@ TEST_CASE("predict: what is said without a cycle") {
   CHECK(first(quiet({Outcome::rest, Outcome::rest})) == "This loop does not hunt: from all 2 starts it comes to rest.");
   CHECK(first(quiet({Outcome::sliding})) == "This loop does not hunt: from its only start it ends in steady sliding.");
   CHECK_THAT(first(quiet({Outcome::rest, Outcome::undecided})),
-             StartsWith("Whether this loop has a limit cycle was not decided"));
+             StartsWith("Whether this loop has a limit cycle is undecided"));
   CHECK_THAT(first(quiet({Outcome::rest, Outcome::divergence})), Contains("from 1 of 2 starts it diverges"));
-  CHECK_THAT(first(quiet({})), Contains("not checked in the time domain"));
+  CHECK_THAT(first(quiet({})), Contains("Not verified in the time domain"));
   CHECK(answer(quiet({Outcome::rest}), {}).worth[0] == "The describing function predicts none either.");
   CHECK(answer(quiet({Outcome::undecided}), {}).worth[0] ==
         "The describing function predicts no limit cycle in the search box.");
@@ -120,13 +120,13 @@ TEST_CASE("predict: a method that was not applicable is not said to predict noth
   CHECK(answer(report, {}).worth.empty());
 }
 
-TEST_CASE("predict: harmonic balance, which searches no box, does not see a cycle") {
+TEST_CASE("predict: harmonic balance, which searches no box, finds no cycle") {
   auto report = sample::hunting();
   report.missed.push_back({"harmonic-balance", 0});
-  CHECK(answer(report, {}).worth.back() == "Harmonic balance does not see it.");
+  CHECK(answer(report, {}).worth.back() == "Harmonic balance finds no cycle here.");
   report.predictions = {
       {"harmonic-balance", 0.1, 7.0, 0.1, 2e-12, std::nullopt, Verdict::wrong, std::nullopt, "it comes to rest"}};
-  CHECK_THAT(answer(report, {}).worth.back(), Contains("that does not exist, and does not see the one that exists."));
+  CHECK_THAT(answer(report, {}).worth.back(), Contains("that does not exist; it does not find the cycle that exists."));
 }
 
 TEST_CASE("predict: Floquet multipliers, the largest few, of the period they belong to") {
@@ -154,9 +154,9 @@ TEST_CASE("predict: unstable cycles and interrupted work are named") {
   report.outcomes = {{"a start", Outcome::rest, "", {}, {}}};
   CHECK_THAT(answer(report, {}).what_happens, Contains("but it is unstable") && Contains("comes to rest"));
   report.cycles[0].stable.reset();
-  CHECK_THAT(answer(report, {}).what_happens, Contains("stability was not decided"));
+  CHECK_THAT(answer(report, {}).what_happens, Contains("stability was not determined"));
   report.status = Status::interrupted;
-  CHECK_THAT(answer(report, {}).what_happens, StartsWith("Interrupted; as far as it went: "));
+  CHECK_THAT(answer(report, {}).what_happens, StartsWith("Interrupted; partial result: "));
   CHECK_THAT(predict_text("x", report, {}), Contains("Status: interrupted"));
 }
 
@@ -209,7 +209,7 @@ TEST_CASE("simulate: how it went and where it has been") {
   CHECK_THAT(simulate_text("x", run), Contains("ended early: stalled") && Contains("too small"));
 }
 
-TEST_CASE("simulate: where the energy went") {
+TEST_CASE("simulate: the energy balance") {
   Simulation run;
   run.notes = {"take care"};
   EnergyBalance energy;

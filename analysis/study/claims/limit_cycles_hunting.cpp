@@ -190,13 +190,13 @@ Claim composite_claim() {
   Claim claim;
   claim.id = "B7-4";
   claim.statement =
-      "The describing function of the friction alone misses limit cycles that exist; with mass and friction in one "
-      "block it sees them.";
+      "The describing function of the friction alone does not find limit cycles that exist; with mass and friction in "
+      "one block it does.";
   claim.source = "H. Olsson (1995): abstract read";
   claim.evidence = Evidence::read;
   claim.range =
-      "hunting servos with ideal stiction, random gains as in B7-1, Fs/Fc 1.3..2. What the block says of period and "
-      "amplitude is not claimed: it is off by a factor of up to 5 and 7, and it also predicts cycles with Fs = Fc, "
+      "hunting servos with ideal stiction, random gains as in B7-1, Fs/Fc 1.3..2. The period and amplitude of the "
+      "block are not claimed: it is off by a factor of up to 5 and 7, and it also predicts cycles with Fs = Fc, "
       "where there are none";
   claim.test =
       "The cycle by simulation and shooting, the roots of both describing functions over a box. At most 10 random "

@@ -24,7 +24,7 @@ ClaimResult tested(const Claim& claim, const ClaimOptions& options) {
   } catch (const std::exception& error) {
     ClaimResult result;
     result.status = Status::undefined;
-    result.finding = std::string("it could not be tested: ") + error.what();
+    result.finding = std::string("not tested: ") + error.what();
     return result;
   }
 }

@@ -13,7 +13,7 @@ const std::vector<ExperimentEntry>& experiments() {
       {"breakaway-parameters", "break-away as parameters are halved and doubled", breakaway_parameters_experiment},
       {"sensitivity", "what each parameter of a law changes", sensitivity_experiment},
       {"drift-against-zba", "drift of the elasto-plastic law over its break-away ratio", drift_against_zba_experiment},
-      {"same-servo", "one PID servo, every law: who hunts, and who sees it coming?", same_servo_experiment},
+      {"same-servo", "one PID servo, every law: which hunt, and which methods predict it", same_servo_experiment},
       {"robustness", "how much the force changes when parameters are wrong", robustness_experiment},
       {"efficiency", "what each law costs at equal accuracy", efficiency_experiment},
       {"pre-sliding", "friction over displacement before sliding", pre_sliding_experiment},

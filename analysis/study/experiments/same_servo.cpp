@@ -45,8 +45,8 @@ std::string verdict_on(const PredictReport& report, const std::string& method, d
     words += (words.empty() ? "" : ", ") + std::string(to_string(one.verdict));
   }
   const bool missed = std::ranges::any_of(report.missed, [&](const Missed& m) { return m.method == method; });
-  if (words.empty() && !searched_completely(report, method)) words = "finds none, its search incomplete";
-  if (words.empty()) words = missed ? "predicts none and misses it" : "predicts none";
+  if (words.empty() && !searched_completely(report, method)) words = "finds none (search incomplete)";
+  if (words.empty()) words = missed ? "does not find it" : "predicts none";
   return words;
 }
 
@@ -81,7 +81,7 @@ Answers answers(const LawSetting& setting) {
 }
 
 std::string in_words(const std::optional<PredictReport>& report) {
-  if (!report) return "not asked, too many states";
+  if (!report) return "not computed, too many states";
   return verdict_on(*report, "composite-describing-function", patience_with_mass);
 }
 
@@ -121,7 +121,7 @@ LawPart one(const LawSetting& setting) {
 Experiment same_servo_experiment(const ExperimentOptions& options) {
   Experiment e;
   e.name = "same-servo";
-  e.title = "One PID servo, every friction law: who hunts, and who sees it coming?";
+  e.title = "One PID servo, every friction law: which hunt, and which methods predict it";
   e.document =
       "the PID example of the LuGre paper of 1995; the thesis uses its describing function for such a prediction "
       "without printing the result";

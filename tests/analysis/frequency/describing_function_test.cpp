@@ -3,6 +3,7 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <random>
 
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
@@ -63,6 +64,26 @@ TEST_CASE("describing functions with a closed form", "[df][claims]") {
     auto law = coulomb();
     law.sigma2 = 0.4;
     check_gain(law, {0.01, 30.0, 0.0}, Complex(0.0, 400.0 / pi + 12.0));
+  }
+  SECTION("a relay with a bias, its mean too, where both sides, one or none switch") {
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> within(0.0, 1.0);
+    int both = 0, one = 0, none = 0;
+    for (int i = 0; i < 60; ++i) {
+      const double d = i % 2 == 0 ? 0.0 : within(random), h = d > 0.0 ? d * within(random) : within(random);
+      const Relay<double> law = relay(1.0 + within(random), h, d);
+      const double A = 3.0 * within(random), bias = 4.0 * within(random) - 2.0;
+      const auto N = law.exact_describing_function(A, 1.0, bias);
+      REQUIRE(N.has_value());
+      const auto df = describing_function(law, {A, 1.0, bias}, with(DfMethod::quadrature, 1e-9));
+      REQUIRE(df.status == Status::converged);
+      CAPTURE(d, h, A, bias, *N, df.gain, df.mean);
+      CHECK(std::abs(*N - df.gain) < 2e-9 * (1.0 + std::abs(df.gain)));
+      const bool history_decides = A <= d + h - std::abs(bias) || (d > 0.0 && A <= h - std::abs(std::abs(bias) - d));
+      if (!history_decides) CHECK(law.exact_mean(A, bias) == Approx(df.mean).margin(1e-8));
+      ++(*N == 0.0 ? none : A > d + h + std::abs(bias) ? both : one);
+    }
+    CHECK(std::min({both, one, none}) > 5);
   }
   SECTION("A4 relay with dead zone, A5 with hysteresis") {
     check_gain(relay(1.0, 0.0, 0.5), {2.0, 1.0, 0.0}, 2.0 / pi * std::sqrt(1.0 - 1.0 / 16.0));

@@ -162,3 +162,22 @@ TEST_CASE("a dead time is not left out silently") {
   start.modes.resize(loop.elements.size());
   CHECK_THROWS_AS(settle(loop, start, {}), std::invalid_argument);
 }
+
+TEST_CASE("a thermostat of first order: y turns at corners, by its closed form wherever its set-point is", "[relay]") {
+  // Between r - h and r + h at the rate D - y and back at -D - y, of a lag 1/p and a swing D = gain level / p.
+  for (const double set : {0.0, 0.005, 0.00989178, -0.0155}) {
+    LoopParts parts;
+    const double pole = 248.092, gain = 0.0956446, level = 53.5981, h = 0.000881625;
+    parts.plant = TransferFunction{{gain}, {1.0, pole}, 0.0};
+    parts.element = relay(level, h);
+    parts.reference = set;
+    const Settled settled = run(build_loop(parts), 1.0, 1e-9);
+    CAPTURE(set, settled.why);
+    REQUIRE(settled.outcome == Outcome::cycle);
+    const double D = gain * level / pole;
+    const double period = (std::log((D - set + h) / (D - set - h)) + std::log((D + set + h) / (D + set - h))) / pole;
+    CHECK(settled.shot->cycle.period == Approx(period).epsilon(1e-11));
+    CHECK(settled.shot->cycle.amplitude == Approx(h).epsilon(1e-11));
+    CHECK(settled.shot->cycle.stable == true);
+  }
+}

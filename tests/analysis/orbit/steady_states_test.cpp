@@ -7,6 +7,7 @@
 #include "limcycle/analysis/orbit/irregular.hpp"
 #include "limcycle/analysis/orbit/settle.hpp"
 #include "limcycle/analysis/orbit/standstill.hpp"
+#include "limcycle/tests/gantry.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -78,22 +79,6 @@ Loop two_lags(double reference) {
   parts.plant = TransferFunction{{1.53267}, {1.0, a + b, a * b}, 0.0};
   parts.element = relay(0.0568247);
   parts.reference = reference;
-  return build_loop(parts);
-}
-
-/// tests/reproducers/gantry-stribeck.toml, with another exponent.
-Loop gantry(double delta, double reference = 0.0, double load = 0.0) {
-  auto law = stribeck(42.0, 24.28, 0.001624);
-  law.delta = delta;
-  law.sigma2 = 123.2;
-  LoopParts parts;
-  parts.plant = Mass{31.74, 0.0, 0.0};
-  auto controller = pid(638000.0, 11.97e6, 7977.0);
-  controller.tf = 0.0005;
-  parts.controller = controller;
-  parts.friction = law;
-  parts.reference = reference;
-  parts.load = load;
   return build_loop(parts);
 }
 

@@ -308,7 +308,7 @@ TEST_CASE("a balance that more harmonics still move is no prediction, and a note
   REQUIRE(balanced.size() == 1);
   CHECK(balanced[0].verdict == Verdict::confirmed);
   CHECK(std::ranges::any_of(report.notes, [](const std::string& note) {
-    return note.find("harmonic balance came to no prediction from one of its starts") != std::string::npos;
+    return note.find("harmonic balance gives no prediction from one of its starts") != std::string::npos;
   }));
 }
 

@@ -108,6 +108,35 @@ TEST_CASE("displaced: a start moves the motion, not a state that is back at once
   CHECK(report.outcomes.front().outcome == Outcome::divergence);
 }
 
+TEST_CASE("a slow pole beside the loop: where every start of the box diverges, smaller ones are tried") {
+  // A conditionally stable loop: what is within the limit of the command comes to rest, larger motions wind up.
+  const auto outcomes = [](const Eigen::MatrixXd& A) {
+    LoopParts parts;
+    Pid controller = pid(2618.64, 63021.8, 13.6862);
+    controller.lag = 2.31547e-4;
+    controller.saturation = 2680.45;
+    parts.controller = controller;
+    StateSpacePlant plant;
+    plant.A = A;
+    plant.B = Eigen::MatrixXd::Zero(A.rows(), 1);
+    plant.B(1, 0) = 44.4522;
+    plant.C = Eigen::MatrixXd::Zero(1, A.rows());
+    plant.C(0, 0) = 1.0;
+    parts.plant = plant;
+    parts.friction = coulomb(190.534, 190.534, 0.0);
+    return predict(build_loop(parts));
+  };
+  const auto alone = outcomes(Eigen::MatrixXd{{0.0, 1.0}, {0.0, 0.0}});
+  const auto beside = outcomes(Eigen::MatrixXd{{0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, -0.1}});
+  for (const PredictReport* report : {&alone, &beside})
+    for (const Outcome wanted : {Outcome::divergence, Outcome::rest})
+      CHECK(std::ranges::count(report->outcomes, wanted, &OutcomeOfStart::outcome) > 0);
+  const auto extended = [](const std::string& note) { return note.find("was extended down") != std::string::npos; };
+  CHECK(std::ranges::any_of(beside.notes, extended));
+  CHECK_FALSE(std::ranges::any_of(alone.notes, extended));
+  CHECK(beside.search.amplitude_min == Approx(1e-12 * beside.search.amplitude_max));
+}
+
 TEST_CASE("units: typical sizes of a stiff drive are those of a slow one in another unit of time") {
   const auto drive = [](double T) {
     TwoMass plant;

@@ -20,7 +20,7 @@ TEST_CASE("work share: grows with what the truth took, between a least and a mos
   CHECK(most.check_steps > least.check_steps);
   CHECK(most.composite_steps == work_share(200'000'000).composite_steps);
   CHECK(most.check_steps >= some.check_steps);
-  CHECK(most.df_values >= some.df_values);
+  CHECK(most.df_evaluations >= some.df_evaluations);
   CHECK(most.balance_evaluations >= some.balance_evaluations);
 }
 
@@ -33,7 +33,7 @@ TEST_CASE("work share: a composite search ends when its steps are used up, break
     CHECK(found.status == Status::incomplete);
     CHECK(found.steps < 2 * options.max_steps);
     REQUIRE_FALSE(found.notes.empty());
-    CHECK_THAT(found.notes.front(), Contains("budget of steps used up") && Contains("roots may be missing"));
+    CHECK_THAT(found.notes.front(), Contains("step limit reached, solutions may be missing"));
   }
 }
 
@@ -41,11 +41,11 @@ TEST_CASE("work share: a root search ends when its describing functions are used
   const Loop loop = servo(lugre());
   const LoopBalance balance(loop);
   const SearchBox box{1e-6, 1.0, 0.01, 1000.0};
-  const DfRoots found = find_df_roots(loop, balance, box, {}, 500);
+  const DfRoots found = find_df_roots(loop, balance, box, {}, 20'000);
   CHECK(found.status == Status::incomplete);
   REQUIRE_FALSE(found.notes.empty());
-  CHECK_THAT(found.notes.front(), Contains("share of the work"));
-  CHECK(balance.values() < 20'000);  // the first grid is asked for at once
+  CHECK_THAT(found.notes.front(), Contains("step limit reached"));
+  CHECK(balance.evaluations() < 200'000);  // of the first grid, some hundred values at once
 }
 
 TEST_CASE("work share: what was cut short is listed as incomplete, so that nothing is called missed") {
