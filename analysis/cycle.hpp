@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
@@ -14,7 +14,7 @@ struct LoopState {
   std::vector<Mode> modes;
 };
 
-/// What a run looks like from outside, for tables and pictures. Columns are of equal length.
+/// Observable course of a run, for tables and figures. Columns are of equal length.
 struct Trace {
   std::vector<double> t;         ///< s
   std::vector<double> y;         ///< measured output, from y_origin
@@ -33,9 +33,9 @@ struct Cycle {
   double offset = 0.0;                            ///< mean of y
   std::optional<bool> stable;                     ///< empty: could not be decided
   std::vector<std::complex<double>> multipliers;  ///< Floquet, of the full period, without the trivial 1, largest first
-  /// States in which an element keeps something of what was before (return points of an outer hysteresis loop) and
-  /// which the motion neither changes nor forgets: another history gives another cycle, close to this one. Their
-  /// multipliers, all 1, are not among those above, and `stable` is for a given history.
+  /// States in which an element keeps part of its history (return points of an outer hysteresis loop) and which the
+  /// motion neither changes nor forgets: another history gives another cycle, close to this one. Their multipliers, all
+  /// 1, are not among those above, and `stable` is for a given history.
   int remembered = 0;
   double sticking_fraction = 0.0;  ///< share of the period that is stuck
   std::string method;              ///< "shooting" or "exact"

@@ -6,12 +6,12 @@
 
 namespace limcycle {
 
-/// What a report must say of derivatives that are not exact: a sentence for every law of the user's own in the loop.
+/// Notes that a report adds about derivatives that are not exact: a sentence for every user-defined law in the loop.
 inline std::vector<std::string> derivative_notes(const Loop& loop) {
   std::vector<std::string> notes;
   for (const auto& element : loop.elements)
-    if (const auto* law = std::get_if<OwnLaw<double>>(&element))
-      notes.push_back("derivatives of the law '" + std::string(law->name()) +
+    if (element.facts().by_differences)
+      notes.push_back("derivatives of the law '" + std::string(element.kind()) +
                       "' are differences: multipliers and searches rest on them");
   return notes;
 }

@@ -1,18 +1,18 @@
 /// @file
-/// How a method of analysis ended: the one enumeration that every result carries.
+/// The one enumeration for the end of a method of analysis, carried by every result.
 #pragma once
 
 #include <string_view>
 
 namespace limcycle {
 
-/// How a method ended. Only `converged` and `no_cycle` are answers; every other value says why there is none (or why
-/// the answer is partial) and numbers that come with it are the best known, to be used with that reservation. Bad input
-/// is not a status: it throws std::invalid_argument.
+/// End of a method. Only `converged` and `no_cycle` are answers; for every other value there is none (or a partial
+/// one), and numbers that come with it are the best known, to be used with that reservation. Bad input is not a status:
+/// it throws std::invalid_argument.
 enum class Status {
-  /// Finished: the result meets the tolerance that was asked for.
+  /// Finished: the result meets the requested tolerance.
   converged,
-  /// The budget of iterations, steps or evaluations was used up first.
+  /// The limit of iterations, steps or evaluations was reached first.
   max_iterations,
   /// No further progress is possible (step too small, singular Jacobian) and the tolerance is not met.
   stalled,
@@ -22,12 +22,12 @@ enum class Status {
   no_cycle,
   /// Switching events accumulate without end (Zeno behaviour) and the motion cannot be carried past them.
   chattering,
-  /// Finished, but a check says that something may be missing (e.g. a region stayed undecided).
+  /// Finished, but a check shows that something may be missing (e.g. a region stayed undecided).
   incomplete,
   /// The caller asked to stop; what was computed until then is kept.
   interrupted,
   /// The question has no answer here: the law needs the applied force, which a prescribed motion does not have (see
-  /// analysis/frequency/drive_dependence.hpp).
+  /// analysis/frequency/describing_function/drive_dependence.hpp).
   undefined
 };
 

@@ -37,7 +37,7 @@ class SweepRun {
       const auto points = blocks_.next();
       if (points.empty()) return;
       const std::span<double> some(rows.data(), points.size() * task_.columns);
-      // A number that compute forgets is missing; it is not that of another point which this thread had before.
+      // An entry that compute does not write is NaN, not that of another point computed before on this thread.
       std::ranges::fill(some, std::numeric_limits<double>::quiet_NaN());
       const std::size_t finished = task_.compute(points, some);
       if (finished > points.size()) throw std::logic_error("sweep: more points finished than asked for");
@@ -57,7 +57,7 @@ class SweepRun {
   void take(std::span<const std::size_t> points, std::span<const double> rows) {
     if (points.empty()) return;
     const std::lock_guard lock(giving_);
-    // A sink that failed is not called again: it may have taken a part.
+    // A sink that failed is not called again: it may have taken part of the rows.
     if (sink_failed_) return;
     try {
       sink_(points, rows);
@@ -75,7 +75,7 @@ class SweepRun {
   SweepBlocks blocks_;
   std::atomic<bool> ended_{false};
   std::mutex asking_;  ///< of calls of stop
-  std::mutex giving_;  ///< of calls of sink and progress, and of what follows
+  std::mutex giving_;  ///< of calls of sink and progress, and of the members below
   std::size_t done_ = 0;
   bool sink_failed_ = false;
 };

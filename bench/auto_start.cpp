@@ -1,5 +1,5 @@
 /// @file
-/// Start orbits for AUTO-07p, converged: one period after many, at the uneven steps of a tight integration.
+/// Start orbits for AUTO-07p, converged: one period after many, at the variable steps of a tight integration.
 ///   auto_start servo|van-der-pol      lines "t U(1) ... U(n)" on stdout
 #include <boost/numeric/odeint.hpp>
 #include <boost/numeric/odeint/stepper/rosenbrock4.hpp>

@@ -1,5 +1,5 @@
 /// @file
-/// Part "df": LuGre friction of cases/df-lugre.toml under v = A w cos(wt), as anybody would write it down.
+/// Part "df": LuGre friction of cases/df-lugre.toml under v = A w cos(wt), in a straightforward implementation.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace bench {
 
-/// Bristle force f = sigma0 z (N), so that one tolerance suits it, over the phase t = w time.
+/// Bristle force f = sigma0 z (N), so that one tolerance is suitable, over the phase t = w time.
 template <class Real>
 struct Bristle {
   Real amplitude, frequency;

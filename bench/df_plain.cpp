@@ -1,7 +1,7 @@
 /// @file
 /// The plain describing-function programs: integrate a few periods from rest with Boost.Odeint, sample the last one,
 /// FFTW. On 25 points, each with the setting that is cheapest for it at an error of 1e-6 and of 1e-9, and all with the
-/// one setting that solves the most of them.
+/// single setting that solves the most of them.
 ///   df_plain REFERENCE
 #include <fftw3.h>
 
@@ -20,7 +20,7 @@ using State = std::array<double, 1>;
 using Bristle = bench::Bristle<double>;
 constexpr double period = 6.283185307179586;
 
-/// First harmonic of uniform samples over one period; the plan is made beforehand.
+/// First harmonic of uniform samples over one period; the plan is made in advance.
 class FirstHarmonic {
  public:
   explicit FirstHarmonic(int size)
@@ -81,7 +81,7 @@ std::complex<double> rk4(const Bristle& bristle, const Setting& setting, FirstHa
 
 using Program = std::complex<double> (*)(const Bristle&, const Setting&, FirstHarmonic&);
 
-/// Settings from cheap to dear, no more than 2^20 samples and 2e7 of them over all periods.
+/// Settings in order of cost, with at most 2^20 samples and 2e7 of them over all periods.
 std::vector<Setting> settings(bool adaptive, int periods) {
   std::vector<Setting> all;
   for (int size = 64; size <= (1 << 20) && (adaptive || double(size) * periods < 2e7); size *= 2) {
@@ -92,7 +92,7 @@ std::vector<Setting> settings(bool adaptive, int periods) {
   return all;
 }
 
-/// What one setting gave at one point.
+/// Result of one setting at one point.
 struct Sample {
   double error, seconds;
 };
@@ -123,7 +123,7 @@ void print(const std::string& problem, const std::string& contender, const std::
                 std::to_string(tally.solved) + " of " + std::to_string(points) + " solved"});
 }
 
-/// Each point with the setting that is cheapest for it: nobody knows that beforehand. Mean time over those solved.
+/// Each point with the setting that is cheapest for it, which is not known in advance. Mean time over those solved.
 void best_for_each(const std::string& name, double target, const std::vector<std::vector<Sample>>& samples,
                    const std::vector<bench::DfReference>& points) {
   Tally tally;
@@ -146,8 +146,8 @@ void best_for_each(const std::string& name, double target, const std::vector<std
   print("25 points to " + bench::short_power(target), name, "best for each point", tally, points.size());
 }
 
-/// The one setting that solves the most points, and of these the cheapest: the program with fixed numbers in it. Mean
-/// time over all points.
+/// The one setting that solves the most points, and of these the cheapest: a program with fixed settings. Mean time
+/// over all points.
 void one_for_all(const std::string& name, double target, const std::vector<std::vector<Sample>>& samples,
                  const std::vector<Setting>& ladder) {
   Tally best;

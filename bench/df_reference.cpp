@@ -1,7 +1,8 @@
 /// @file
-/// Reference describing functions of LuGre friction in long double, good to about 1e-13: over the half period from one
-/// reversal to the next the bristle force is affine in its start, so that two integrations give the periodic one, and
-/// the Fourier integrals are integrated along, in a variable that is graded to the reversals. Nothing is sampled.
+/// Reference describing functions of LuGre friction in long double, accurate to about 1e-13: over the half period
+/// between two reversals the final bristle force is affine in the initial one, so that two integrations give the
+/// periodic one; the Fourier integrals are integrated along, in a variable that is graded towards the reversals,
+/// without sampling.
 ///   df_reference FILE      every 11th point of the 200 x 200 table, and the 25 of the plain programs
 #include <array>
 #include <boost/numeric/odeint.hpp>
@@ -18,14 +19,14 @@ using Complex = std::complex<Real>;
 
 constexpr Real pi = 3.14159265358979323846264338327950288L;
 
-/// Steps in tau are limited to this: the error estimate of fehlberg78 is blind to pure quadratures.
+/// Limit of the steps in tau: the error estimate of fehlberg78 does not cover pure quadratures.
 constexpr Real longest_step = 0.08L;
-/// Beyond this |tau| nothing happens any more to 18 digits.
+/// Beyond this |tau| all quantities are constant to 18 digits.
 constexpr Real end_of_tau = 42.0L;
 
 /// Force at the end of a half period that starts with f0 at a reversal, and the integral of force e^(-j phase) over it.
-/// In tau, with cos(phase) = 1/cosh(tau), sin(phase) = tanh(tau): what happens next to a reversal, over whatever small
-/// fraction of the period, takes a tau of order 1.
+/// In tau, with cos(phase) = 1/cosh(tau), sin(phase) = tanh(tau): transients next to a reversal, over any small
+/// fraction of the period, take a tau of order 1.
 std::pair<Real, Complex> half_period(const bench::Bristle<Real>& bristle, Real f0, Real tolerance, Real longest) {
   using State = std::array<Real, 3>;
   State y{f0, 0, 0};

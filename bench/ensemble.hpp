@@ -12,8 +12,8 @@
 namespace bench {
 
 inline constexpr double ensemble_duration = 250.0;
-inline constexpr int ensemble_size = 800;    ///< that limcycle runs
-inline constexpr int ensemble_checked = 60;  ///< the first ones, that the peers run and whose errors are measured
+inline constexpr int ensemble_size = 800;    ///< run by limcycle
+inline constexpr int ensemble_checked = 60;  ///< the first ones, which the peers run and whose errors are measured
 
 /// Servos with gains and friction drawn from ranges around the case's; the same on every machine.
 inline std::vector<Servo<double>> random_servos() {

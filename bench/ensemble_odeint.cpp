@@ -1,5 +1,5 @@
 /// @file
-/// Random servos one by one with Boost.Odeint, and their final positions as a reference.
+/// Random servos, one at a time with Boost.Odeint, and their final positions as a reference.
 ///   ensemble_odeint FILE      writes the reference
 #include <array>
 #include <boost/numeric/odeint.hpp>

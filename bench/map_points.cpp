@@ -1,5 +1,5 @@
 /// @file
-/// How long each point of a map takes, in the order of the map.
+/// Computing time of each point of a map, in the order of the map.
 ///   map_points CASE X_PATH FROM TO N  Y_PATH FROM TO N      prints CPU seconds, one point a line, x fastest
 #include <algorithm>
 #include <cstdio>
@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/hunting_map.hpp"
+#include "limcycle/analysis/study/map/hunting_map.hpp"
 #include "limcycle/bench/measure.hpp"
-#include "limcycle/cases/case.hpp"
-#include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cases/loader/case.hpp"
+#include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/models/assemble.hpp"
 
 namespace {
@@ -25,7 +25,7 @@ struct Side {
 
 Side side(char** words) { return {words[0], std::stod(words[1]), std::stod(words[2]), std::stoi(words[3])}; }
 
-/// As `limcycle map` computes it (cli/map.cpp).
+/// As `limcycle map` computes it (cli/commands/map.cpp).
 void compute(const limcycle::Case& from, const limcycle::PredictOptions& options,
              const std::vector<std::pair<std::string, double>>& values) {
   const auto parts = limcycle::parts_with(from, values);
@@ -33,7 +33,7 @@ void compute(const limcycle::Case& from, const limcycle::PredictOptions& options
   try {
     limcycle::map_point(limcycle::build_loop(*parts), options);
   } catch (const std::invalid_argument&) {
-    // no valid loop: the map says so, and it cost next to nothing
+    // no valid loop: the map states it, at almost no cost
   }
 }
 

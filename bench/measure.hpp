@@ -10,15 +10,15 @@
 
 namespace bench {
 
-/// CPU time of this process, s: other programs on the machine disturb it less than they do wall time.
+/// CPU time of this process, s: other programs on the machine affect it less than wall time.
 inline double cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Least CPU time of `run`, which is repeated for a tenth of a second, at most 41 times. The least, since whatever else
-/// the machine does only adds to the times.
+/// Least CPU time of `run`, which is repeated for a tenth of a second, at most 41 times. The least, since other work of
+/// the machine only adds to the times.
 template <class Run>
 double least_cpu_seconds(Run&& run) {
   double least = 0.0, total = 0.0;
@@ -32,16 +32,16 @@ double least_cpu_seconds(Run&& run) {
   return least;
 }
 
-/// One measured run. An empty status means that it ended; what is wrong with its answer shows in the error.
+/// One measured run. An empty status means that it ended; an inaccurate answer shows in the error.
 struct Row {
   std::string part;       ///< stepping, df, cycles, ensembles
-  std::string problem;    ///< which of the part's problems
-  std::string contender;  ///< who solved it
+  std::string problem;    ///< one of the part's problems
+  std::string contender;  ///< the program or method
   std::string setting;    ///< tolerance, mesh, ...
-  double error = -1.0;    ///< true error; negative: there is no answer
+  double error = -1.0;    ///< true error; negative: no answer
   double seconds = 0.0;   ///< CPU
   long evaluations = 0;   ///< of the right side; 0: not counted
-  std::string status{};   ///< why there is no answer
+  std::string status{};   ///< reason for a missing answer
 };
 
 inline void print(const Row& row) {

@@ -1,5 +1,5 @@
 /// @file
-/// limcycle finds and follows limit cycles; and the errors of the periods, its own and those of AUTO-07p.
+/// limcycle finds and follows limit cycles; errors of the periods, its own and those of AUTO-07p.
 ///   ours_cycles AUTO_POINTS SERVO_CASE VAN_DER_POL_CASE      AUTO_POINTS as auto_cycles.py writes it
 #include <algorithm>
 #include <cmath>
@@ -8,17 +8,17 @@
 #include <stdexcept>
 #include <string>
 
-#include "limcycle/analysis/orbit/continuation.hpp"
-#include "limcycle/analysis/orbit/settle.hpp"
+#include "limcycle/analysis/orbit/branch/continuation.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/bench/measure.hpp"
-#include "limcycle/cases/case.hpp"
+#include "limcycle/cases/loader/case.hpp"
 
 namespace {
 
 using limcycle::Cycle;
 using limcycle::Loop;
 
-/// A cycle followed over one parameter from where its case stands.
+/// A cycle followed over one parameter from the value in its case.
 struct Family {
   std::string name;
   limcycle::LoopFamily loop;
@@ -47,8 +47,8 @@ Family van_der_pol(const std::string& file) {
           5.0};
 }
 
-/// As `predict` does from one start: simulates from y displaced by 1 until the motion repeats itself, then shoots. The
-/// multipliers, which tell that the cycle is stable, are wanted to some 1e-6 only.
+/// As `predict` does from one start: simulates from y(0) = 1 until the motion is periodic, then shoots. The
+/// multipliers, which show that the cycle is stable, are needed to about 1e-6 only.
 Cycle cold(const Loop& loop, double accuracy) {
   limcycle::SettleOptions options;
   options.shooting.accuracy = accuracy;
@@ -60,7 +60,7 @@ Cycle cold(const Loop& loop, double accuracy) {
   return settled.shot->cycle;
 }
 
-/// Periods to about 1e-12 by shooting, each from the one before: ask in the order of the branch.
+/// Periods to about 1e-12 by shooting, each from the one before: to be called in the order of the branch.
 class Truth {
  public:
   explicit Truth(const Family& family) : family_(family), at_(family.begin), cycle_(cold(*family.loop(at_), 1e-10)) {
@@ -110,8 +110,8 @@ std::vector<AutoPoint> read_auto(const char* file) {
   return all;
 }
 
-/// One row a mesh; returns how far AUTO's longest branch goes. Its first three points are not judged: the mesh is still
-/// that of the start orbit.
+/// One row a mesh; returns the end of AUTO's longest branch. Its first three points are not assessed: they still have
+/// the mesh of the start orbit.
 double judge_auto(const Family& family, Truth& truth, const std::vector<AutoPoint>& points) {
   std::vector<bench::Row> rows;  // in the order of the meshes
   double end = family.begin;

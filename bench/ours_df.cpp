@@ -7,12 +7,12 @@
 #include <string>
 #include <string_view>
 
-#include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/analysis/lanes/isa.hpp"
-#include "limcycle/analysis/study/experiments/laws.hpp"
+#include "limcycle/analysis/study/experiments/runs/laws.hpp"
 #include "limcycle/bench/bristle.hpp"
 #include "limcycle/bench/measure.hpp"
-#include "limcycle/cases/case.hpp"
+#include "limcycle/cases/loader/case.hpp"
 
 namespace {
 
@@ -31,7 +31,7 @@ double largest_error(const Table& table, const std::vector<bench::DfReference>& 
 
 /// The element, and the points of its table.
 struct Question {
-  const limcycle::Element<double>& element;
+  const limcycle::Element& element;
   std::vector<limcycle::DfPoint> points;
 
   Table answer(const limcycle::DfOptions& options) const {
@@ -50,7 +50,7 @@ void measure(const Question& question, const limcycle::DfOptions& options, const
   bench::print(row);
 }
 
-/// Wall time, which is what threads are for: the least of five turns in which one and two threads follow each other.
+/// Wall time, which threads are to reduce: the least of five rounds in which one and two threads alternate.
 void measure_threads(const Question& question, limcycle::DfOptions options) {
   double least[2] = {INFINITY, INFINITY};
   for (int turn = 0; turn < 5; ++turn)
@@ -66,8 +66,8 @@ void measure_threads(const Question& question, limcycle::DfOptions options) {
                   least[threads - 1]});
 }
 
-/// Other laws with their presets' values on 40 x 40 points of the same range. Error: the largest that is stated;
-/// evaluations: the points that a kernel answered.
+/// Other laws with their presets' values on 40 x 40 points of the same range. Error: the largest stated one;
+/// evaluations: the points computed by a kernel.
 void measure_laws(const std::vector<limcycle::DfPoint>& points, limcycle::DfOptions options) {
   constexpr std::string_view labels[] = {"lugre", "dahl", "bouc-wen", "elasto-plastic", "xiong", "gms"};
   options.accuracy = 1e-6;

@@ -1,5 +1,5 @@
 /// @file
-/// limcycle on the random servos: in lanes with every instruction set of this machine, in one lane, and one by one.
+/// limcycle on the random servos: in lanes with every instruction set of this machine, in one lane, and one at a time.
 ///   ours_ensemble REFERENCE CASE
 #include <algorithm>
 #include <fstream>
@@ -7,10 +7,11 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/orbit/ensemble.hpp"
+#include "limcycle/analysis/orbit/simulate/ensemble.hpp"
 #include "limcycle/bench/ensemble.hpp"
 #include "limcycle/bench/measure.hpp"
-#include "limcycle/cases/case.hpp"
+#include "limcycle/cases/loader/case.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
 
 namespace {
 
@@ -21,7 +22,7 @@ Loop loop_of(const bench::Servo<double>& servo, limcycle::LoopParts parts) {
   controller.kp = servo.kp;
   controller.ki = servo.ki;
   controller.kd = servo.kd;
-  auto& law = std::get<limcycle::LuGre<double>>(*parts.friction);
+  auto& law = law_of<limcycle::LuGre<double>>(*parts.friction);
   law.Fs = law.Fs_minus = servo.Fs;
   law.vs = servo.vs;
   law.sigma0 = servo.sigma0;

@@ -1,12 +1,12 @@
 /// @file
-/// limcycle on the hunting servo, as `limcycle simulate` marches it.
+/// limcycle on the hunting servo, integrated as in `limcycle simulate`.
 ///   ours_stepping REFERENCE CASE
 #include <string>
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/bench/stepping.hpp"
-#include "limcycle/cases/case.hpp"
+#include "limcycle/cases/loader/case.hpp"
 
 namespace {
 
@@ -21,7 +21,7 @@ limcycle::Loop servo(const char* file, double sigma0) {
   return limcycle::build_loop(limcycle::need_loop(given));
 }
 
-/// The default stepper with the tolerances of `limcycle simulate`. It lands on the samples, as that does.
+/// The default stepper with the tolerances of `limcycle simulate`; as there, its steps end at the samples.
 bench::Positions march(const limcycle::Loop& loop, limcycle::StepperKind kind, double rtol) {
   limcycle::LoopField field(loop);
   limcycle::State x(field.size(), 0.0);

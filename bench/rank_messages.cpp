@@ -1,7 +1,6 @@
 /// @file
-/// What messages cost the writer of a map on several ranks: the calls of cli/ranks.cpp without anything else.
-///   mpirun -n 2 rank_messages      prints the round trip of one message; with more ranks, how long the writer takes
-///   for each
+/// Cost of messages for the writer of a map on several ranks: the calls of cli/ranks/ranks.cpp without anything else.
+///   mpirun -n 2 rank_messages      prints the round trip of one message; with more ranks, the writer's time for each
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
@@ -16,7 +15,7 @@ namespace {
 constexpr int messages = 10'000;
 constexpr std::size_t row_bytes = 32 + 8 * 9;  // one point of a map with one method: head, index, eight numbers
 
-/// Waits for a message as cli/ranks.cpp does, but without pauses.
+/// Waits for a message as cli/ranks/ranks.cpp does, but without pauses.
 int received(std::string& into) {
   int arrived = 0;
   MPI_Status status;
@@ -34,8 +33,8 @@ void send(int to, const std::string& content) {
   MPI_Wait(&request, MPI_STATUS_IGNORE);
 }
 
-/// Takes rows from whoever sends, and gives the next points for them. Seconds a message: of many hundreds, the quarter
-/// that went best, for in the others this or another process was not let work.
+/// Takes rows from any sender, and returns the next points to it. Seconds a message: of many hundreds, the fastest
+/// quarter, as in the others this or another process was interrupted.
 double serve(int others) {
   std::string rows;
   const std::string points(sizeof(std::size_t), 'p');

@@ -1,5 +1,5 @@
 """A map on many ranks, simulated event by event: one writer that serves messages in order, and ranks that hold one piece in
-the making and one more. The rules are those of cli/rank_sweep.cpp."""
+the making and one more. The rules are those of cli/ranks/rank_sweep.cpp."""
 import bisect
 import collections
 import heapq
@@ -7,7 +7,7 @@ import itertools
 import math
 from dataclasses import dataclass
 
-PIECE_SECONDS = 0.05   # piece_seconds of cli/rank_sweep.cpp
+PIECE_SECONDS = 0.05   # piece_seconds of cli/ranks/rank_sweep.cpp
 WRITER_SECONDS = 1e-4  # writer_seconds
 PATIENCE = 1.5         # patience
 

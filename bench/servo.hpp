@@ -1,5 +1,5 @@
 /// @file
-/// The hunting servo (cases/pid-lugre.toml) as anybody would write it down, for the peers.
+/// The hunting servo (cases/pid-lugre.toml) in a straightforward implementation, for the peers.
 #pragma once
 
 #include <cmath>
@@ -10,15 +10,15 @@
 
 namespace bench {
 
-/// A right side that was asked too often: the method would not end within reasonable time.
+/// Too many evaluations of the right-hand side: the method would not end within reasonable time.
 struct GaveUp : std::runtime_error {
   explicit GaveUp(long evaluations)
       : std::runtime_error("gave up after " + std::to_string(evaluations) + " evaluations") {}
 };
 
-/// Mass under PID control on LuGre friction. State: integral of the error I, position x, velocity over vs, bristle
-/// force f = sigma0 z. These are the scales on which one scalar tolerance is right for all components: an absolute
-/// tolerance on a velocity in m/s breaks stiction early.
+/// Mass under PID control with LuGre friction. State: integral of the error I, position x, velocity over vs, bristle
+/// force f = sigma0 z. On these scales one scalar tolerance is suitable for all components: an absolute tolerance on a
+/// velocity in m/s breaks stiction early.
 template <class Real>
 struct Servo {
   Real mass = 1, kp = 3, ki = 4, kd = 6;
@@ -47,7 +47,7 @@ struct Servo {
     d[3] = sigma0 * z_rate;
   }
 
-  /// J(i, j) = d rate_i / d state_j through `put(i, j, value)`; entries not put are zero.
+  /// J(i, j) = d rate_i / d state_j through `put(i, j, value)`; entries without a call are zero.
   template <class State, class Put>
   void jacobian(const State& state, Put&& put) const {
     using std::abs;
@@ -70,8 +70,7 @@ struct Servo {
   }
 };
 
-/// Right side and Jacobian as Odeint's rosenbrock4 wants them, for uBLAS vectors and matrices. The servo must outlive
-/// them.
+/// Right-hand side and Jacobian for Odeint's rosenbrock4, with uBLAS vectors and matrices. The servo must outlive them.
 template <class Vector, class Matrix, class Real>
 auto stiff_system(Servo<Real>& servo) {
   const auto rate = [&servo](const Vector& y, Vector& d, Real) { servo.rate(y, d); };

@@ -1,5 +1,5 @@
 /// @file
-/// Part "stepping": one run of the hunting servo for each contender and tolerance, held against the reference.
+/// Part "stepping": one run of the hunting servo for each contender and tolerance, compared with the reference.
 #pragma once
 
 #include <array>
@@ -60,14 +60,14 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
   double worst = 0.0;
   for (std::size_t i = 0; i < b.size(); ++i) {
     const double difference = i < a.size() ? std::abs(a[i] - b[i]) : INFINITY;
-    if (!(difference <= worst)) worst = difference;  // a NaN stays
+    if (!(difference <= worst)) worst = difference;  // keeps a NaN
   }
   return worst;
 }
 
 /// Runs `march(sigma0, tolerance)` -> Positions over the tolerances and prints a row for each; after a slow run the
-/// next tolerance is left out, after a very slow one the next three. Once it gave up at a tolerance the tighter ones
-/// are not tried.
+/// next tolerance is skipped, after a very slow one the next three. After a run that gave up, tighter tolerances are
+/// not tried.
 template <class March>
 void stepping_ladder(const char* contender, double sigma0, const std::vector<double>& reference, double least,
                      March&& march) {

@@ -24,7 +24,7 @@ std::vector<double> sample_times() {
   return times;
 }
 
-/// Odeint's own integrate function: dense steppers interpolate at the samples, controlled ones land on them.
+/// Odeint's own integrate function: dense steppers interpolate at the samples, controlled ones step to them.
 template <class Stepper, class System, class Vector>
 std::vector<double> at_samples(Stepper stepper, System system, Vector y) {
   static const std::vector<double> times = sample_times();

@@ -1,7 +1,7 @@
 /// @file
 /// Reference positions of the hunting servo in long double: Odeint's rosenbrock4 at a tolerance of 1e-15 for every
-/// stiffness, checked against itself at 1e-13 and, as far as an explicit method can go, against fehlberg78 (order 8).
-///   stepping_reference FILE      writes the file, prints how well the runs agree
+/// stiffness, checked against itself at 1e-13 and, as far as an explicit method is able, against fehlberg78 (order 8).
+///   stepping_reference FILE      writes the file, prints the agreement of the runs
 #include <boost/numeric/odeint.hpp>
 #include <boost/numeric/odeint/stepper/rosenbrock4.hpp>
 #include <boost/numeric/odeint/stepper/rosenbrock4_controller.hpp>
@@ -17,7 +17,7 @@ namespace odeint = boost::numeric::odeint;
 namespace ublas = boost::numeric::ublas;
 using Real = long double;
 
-/// Lands on every sample: no interpolation is involved.
+/// Steps to every sample, without interpolation.
 template <class Stepper, class System, class State>
 std::vector<double> land_on_samples(Stepper stepper, System system, State y, Real first) {
   std::vector<double> x;

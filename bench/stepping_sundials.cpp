@@ -65,7 +65,7 @@ struct Workspace {
   Workspace& operator=(const Workspace&) = delete;
 };
 
-/// `advance(t, y)` -> flag goes on to t.
+/// `advance(t, y)` -> flag integrates to t.
 template <class Advance>
 Positions sampled(Servo& servo, N_Vector y, const char* call, Advance&& advance) {
   Positions run;
@@ -94,7 +94,7 @@ Positions cvode(int method, double sigma0, double tolerance) {
   if (method == CV_BDF) {
     CVodeSetLinearSolver(solver.memory, work.linear, work.matrix);
     CVodeSetJacFn(solver.memory, jacobian);
-    CVodeSetJacEvalFrequency(solver.memory, 1);  // a fresh Jacobian whenever it factorises saves up to a fifth here
+    CVodeSetJacEvalFrequency(solver.memory, 1);  // a new Jacobian for every factorisation saves up to a fifth here
   } else {
     CVodeSetNonlinearSolver(solver.memory, work.fixed_point);
   }
@@ -104,7 +104,7 @@ Positions cvode(int method, double sigma0, double tolerance) {
   });
 }
 
-/// Newton has to be solved well, with a fresh Jacobian: at the defaults the error stays at 1e-4 for any tolerance.
+/// Newton's method needs a tight tolerance and a new Jacobian: with the defaults the error stays at 1e-4.
 Positions arkode(double sigma0, double tolerance) {
   Servo servo(sigma0);
   Workspace work;

@@ -1,8 +1,8 @@
 /// @file
-/// What a row costs the writer of a map: when rows come one by one, one for each message, which wakes the store's own
-/// thread each time, and when they come at once.
-///   store_rows FILE      prints CPU seconds a row: one by one, of the thread that hands it over and of the store's; at
-///   once, of both
+/// Cost of a row for the writer of a map: for rows handed over one at a time, one for each message, which wakes the
+/// store's own thread each time, and for all rows at once.
+///   store_rows FILE      prints CPU seconds a row: one at a time, of the thread that hands it over and of the store's;
+///   at once, of both
 #include <time.h>
 
 #include <cstdio>
@@ -26,7 +26,7 @@ struct RowCost {
   double handing = 0.0, storing = 0.0;
 };
 
-/// Writes rows that are so many seconds apart.
+/// Writes rows at intervals of `between` seconds.
 RowCost cost_of_rows(const std::string& file, double between) {
   limcycle::SweepIdentity identity;
   identity.command = "map";

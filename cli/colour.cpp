@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "limcycle/cli/ranks.hpp"
+#include "limcycle/cli/ranks/ranks.hpp"
 
 namespace limcycle {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view bold = "\x1b[1m", faint = "\x1b[2m", red = "\x1b[31m", green = "\x1b[32m",
                            yellow = "\x1b[33m", plain = "\x1b[0m";
 
-// Whether something is stable is told by yes or no, in the column of that name.
+// Stability is a yes or no in the column of that name, see colour_of_cell().
 constexpr std::array<std::pair<std::string_view, std::string_view>, 10> verdicts{{{"confirmed", green},
                                                                                   {"holds", green},
                                                                                   {"proved", green},
@@ -32,19 +32,19 @@ std::string painted(std::string_view colour, std::string_view text) {
 
 bool is_rule(std::string_view line) { return line.size() > 3 && line.find_first_not_of('-') == std::string_view::npos; }
 
-/// A heading stands after an empty line and before one that is not, begins with a capital and is no sentence.
+/// True for a heading: it follows an empty line, precedes a non-empty one, begins with a capital and is no sentence.
 bool is_heading(std::string_view before, std::string_view line, std::string_view after) {
   if (!before.empty() || line.empty() || after.empty() || line.size() > 60) return false;
   return line.front() >= 'A' && line.front() <= 'Z' && line.back() != '.' && line.back() != ';' &&
          line.find("  ") == std::string_view::npos;
 }
 
-/// Where the cell that begins at `from` ends: at two spaces, or the end of the line.
+/// End of the cell that begins at `from`: two spaces, or the end of the line.
 std::size_t end_of_cell(std::string_view line, std::size_t from) {
   return std::min(line.find("  ", from), line.size());
 }
 
-/// Colour of a cell that ends at column `end`; `stable_end`: where the heading "stable" ends.
+/// Colour of a cell that ends at column `end`; `stable_end`: end of the heading "stable".
 std::string_view colour_of_cell(std::string_view cell, std::size_t end, std::size_t stable_end) {
   for (const auto& [word, colour] : verdicts)
     if (cell == word) return colour;
@@ -57,7 +57,7 @@ std::string coloured_cells(std::string_view line, std::size_t stable_end) {
   for (std::size_t i = 0; i < line.size();) {
     const std::size_t end = end_of_cell(line, i);
     const std::string_view cell = line.substr(i, end - i);
-    // A line that is one cell is prose.
+    // A line with one cell only is prose.
     const auto colour = cell.size() == line.size() ? std::string_view() : colour_of_cell(cell, end, stable_end);
     out += colour.empty() ? std::string(cell) : painted(colour, cell);
     for (i = end; i < line.size() && line[i] == ' '; ++i) out += ' ';
@@ -72,7 +72,7 @@ bool colours_wanted(std::string_view when, int descriptor) {
   const char* const refused = std::getenv("NO_COLOR");
   const char* const terminal = std::getenv("TERM");
   if (refused != nullptr && *refused != '\0') return false;
-  if (was_launched()) return false;  // mpirun gives its processes terminals and passes on what they write there
+  if (was_launched()) return false;  // mpirun gives its processes terminals and forwards their output
   return terminal != nullptr && *terminal != '\0' && std::string_view(terminal) != "dumb" && isatty(descriptor) == 1;
 }
 

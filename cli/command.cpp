@@ -13,7 +13,8 @@
 
 #include "build_info.hpp"
 #include "limcycle/cli/interrupt.hpp"
-#include "limcycle/cli/ranks.hpp"
+#include "limcycle/cli/option_values.hpp"
+#include "limcycle/cli/ranks/ranks.hpp"
 #include "limcycle/cli/time_limit.hpp"
 
 namespace limcycle {
@@ -22,7 +23,7 @@ namespace {
 
 constexpr auto* common = "Options of every command";
 
-/// Flags that every subcommand has, whatever it makes.
+/// Flags of every subcommand, for any kind of output.
 void add_terminal_flags(CLI::App& command, CommonFlags& flags) {
   command.add_option("-o,--output", flags.output, "Write the text to FILE instead of stdout")
       ->type_name("FILE")
@@ -34,7 +35,7 @@ void add_terminal_flags(CLI::App& command, CommonFlags& flags) {
       ->group(common);
   command.add_option("--time-limit", flags.time_limit, "Stop after S seconds and keep the results; 0: no limit")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(number_in(0.0, 1e9))
       ->capture_default_str()
       ->group(common);
   command.add_flag("--quiet", flags.quiet, "No progress bar and no messages but errors")->group(common);
@@ -56,12 +57,12 @@ void add_result_flags(CLI::App& command, CommonFlags& flags) {
 void add_computing_flags(CLI::App& command, CommonFlags& flags) {
   command.add_option("--seed", flags.seed, "Seed of everything random")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber)
+      ->check(zero_or_more())
       ->capture_default_str()
       ->group(common);
   command.add_option("--threads", flags.threads, "Threads; 0: one a core; results do not depend on it")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_in(0, 1024))
       ->capture_default_str()
       ->group(common);
   std::vector<std::string> sets{"auto"};
@@ -73,7 +74,7 @@ void add_computing_flags(CLI::App& command, CommonFlags& flags) {
       ->group(common);
 }
 
-/// Runs a command and tells, with --verbose, what it took.
+/// Runs a command and, with --verbose, reports time and memory.
 int timed(const CommonFlags& flags, const Action& run) {
   const auto begin = std::chrono::steady_clock::now();
   const TimeLimit limit(rank() == 0 ? flags.time_limit : 0.0);  // rank 0 ends the others
@@ -131,10 +132,10 @@ Provenance provenance(const CommonFlags& flags, const Case* from) {
   made.commit = build_info::commit;
   made.compiler = build_info::compiler;
   made.build_type = build_info::build_type;
-  instruction_set(flags);  // one that this machine lacks is refused by every command
+  instruction_set(flags);  // every command rejects one that this machine lacks
   made.isa = to_string(Isa::scalar);
   made.seed = flags.seed;
-  // Of the machine, also where mpirun gives this process a part of it: a result has the same bytes either way.
+  // Threads of the machine, even if mpirun gives this process a part of it: results have the same bytes either way.
   made.threads =
       flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   made.time_is_over = interrupted_by_time();

@@ -2,11 +2,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "limcycle/analysis/lanes/isa.hpp"
-#include "limcycle/cases/case.hpp"
+#include "limcycle/cases/loader/case.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace CLI {
@@ -15,35 +16,51 @@ class App;
 
 namespace limcycle {
 
-/// How the program ends.
+/// Exit codes of the program.
 enum ExitCode : int {
   exit_done = 0,       ///< whether or not a cycle exists
   exit_disagreed = 1,  ///< a claim or a required agreement failed
   exit_bad_input = 2,  ///< wrong usage or input (InputError, std::invalid_argument)
-  exit_no_answer = 3   ///< not answered: undecided, cut short, not written, or a defect of the program
+  exit_no_answer = 3   ///< no answer: undecided, interrupted, not written, or a defect of the program
 };
 
-/// What every subcommand understands.
+/// A valid case with numbers that no method can handle: exit_no_answer.
+class NoAnswer : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Result of compute(). A method that rejects a valid case is no error of the input: throws NoAnswer with its message.
+template <class Compute>
+auto answer_of(const Compute& compute) {
+  try {
+    return compute();
+  } catch (const std::invalid_argument& refused) {
+    throw NoAnswer(std::string("this case is valid, but could not be computed: ") + refused.what());
+  }
+}
+
+/// Flags common to all subcommands.
 struct CommonFlags {
   std::string case_file;
   std::vector<std::string> set;  ///< --set PATH=VALUE, in order
-  std::string json, csv;         ///< file, "-" for stdout, empty: not wanted
-  std::string output;            ///< -o: file for what would go to stdout; empty: stdout
+  std::string json, csv;         ///< file, "-" for stdout, empty: none
+  std::string output;            ///< -o: file for the output to stdout; empty: stdout
   std::uint64_t seed = 0;
   int threads = 1;
   std::string isa = "auto";
-  std::string color = "auto";  ///< --color auto, always or never, of what goes to the terminal
-  bool quiet = false;          ///< nothing on stderr but errors
-  bool verbose = false;        ///< also what was done, and on stderr how long it took
+  std::string color = "auto";  ///< --color auto, always or never, for output to the terminal
+  bool quiet = false;          ///< nothing on stderr except errors
+  bool verbose = false;        ///< also details of the work, and on stderr its duration
   double time_limit = 0.0;     ///< --time-limit, s; 0: none
 };
 
-/// What the command line asked for; set while it is parsed, run afterwards. The result is the exit code.
+/// The requested command; set while the command line is parsed, run afterwards. Returns the exit code.
 using Action = std::function<int()>;
 
-/// Declares subcommand `name` with the common flags; with `takes_case` also the positional CASE. Options of its own are
-/// added to what is returned. `run` becomes the action when the subcommand is chosen. What help and manual page say of
-/// it at length stands in descriptions.cpp.
+/// Declares subcommand `name` with the common flags; with `takes_case` also the positional CASE. Its own options are
+/// added to the returned object. `run` becomes the action if the subcommand is chosen. Its long description for help
+/// and manual page is in descriptions.cpp.
 CLI::App* add_command(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
                       bool takes_case, const std::shared_ptr<CommonFlags>& flags, Action run);
 
@@ -55,15 +72,15 @@ CLI::App* add_plain_command(CLI::App& program, Action& action, const std::string
 /// The case of the command line, read and validated. Throws InputError.
 Case load_case(const CommonFlags& flags);
 
-/// The instruction set that --isa names; "auto" is the widest that all ranks have. Throws std::invalid_argument if this
+/// The instruction set named by --isa; "auto" is the widest that all ranks have. Throws std::invalid_argument if this
 /// machine lacks it.
 Isa instruction_set(const CommonFlags& flags);
 
-/// Who made a result (with the portable instruction set: a command whose kernels use another says so), with which
-/// settings, from what. `from`: the case, or null if the command has none.
+/// Program (with the portable instruction set; commands whose kernels use another one set it), settings and input of a
+/// result. `from`: the case, or null if the command has none.
 Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 
-/// What is wrong with the command line: `key` is the flag or word, with its value. Message: "KEY: RULE; SUGGESTION".
+/// Error in the command line: `key` is the flag or word, with its value. Message: "KEY: RULE; SUGGESTION".
 InputError refusal(const std::string& key, const std::string& rule, const std::string& suggestion = {});
 
 // Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.

@@ -1,9 +1,9 @@
 #pragma once
-#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
 
 namespace limcycle {
 
-/// Is it known what the loop does: does it have a limit cycle, or was the outcome of at least one start determined?
+/// True if the loop is known to have a limit cycle, or the outcome of at least one start was determined.
 bool decided(const PredictReport& report);
 
 }  // namespace limcycle

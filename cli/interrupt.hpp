@@ -4,26 +4,26 @@
 namespace limcycle {
 
 /// From now on the first SIGINT (Ctrl-C) or SIGTERM only raises a flag; one that comes a second later or more ends the
-/// program at once. Those in between are taken for the same wish: `timeout` and `mpirun` signal the program and then
-/// its group, so that one Ctrl-C comes twice, and what was computed would be lost.
+/// program at once. Signals in between count as the same request: `timeout` and `mpirun` signal the program and then
+/// its group, so that one Ctrl-C arrives twice, and the computed results would be lost.
 void catch_interrupts();
 
-/// Raises the flag too: what this process computes is not wanted any more.
+/// Raises the flag too: the results of this process are no longer needed.
 void interrupt();
 
 /// Raises the flag because the time of --time-limit is over.
 void time_is_over();
 
-/// Has the user asked to stop, is the time over, or was interrupt() called? Cheap, safe from any thread.
+/// True if the user asked to stop, the time is over, or interrupt() was called. Cheap, safe from any thread.
 bool interrupted();
 
-/// Has the user?
+/// True if the user asked to stop.
 bool interrupted_by_signal();
 
-/// Was the time over before the user asked?
+/// True if the time was over before the user asked to stop.
 bool interrupted_by_time();
 
-/// How a command ends whose work says nothing of it: converged, or interrupted.
+/// Status of a command whose work has none of its own: converged, or interrupted.
 Status ending_so_far();
 
 }  // namespace limcycle

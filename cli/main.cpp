@@ -1,22 +1,25 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <new>
 
 #include "build_info.hpp"
-#include "limcycle/cases/input_error.hpp"
+#include "limcycle/cases/loader/input_error.hpp"
 #include "limcycle/cli/colour.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/help.hpp"
+#include "limcycle/cli/help/help.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/option_values.hpp"
 #include "limcycle/cli/output.hpp"
-#include "limcycle/cli/rank_job.hpp"
-#include "limcycle/cli/rank_sweep.hpp"
-#include "limcycle/cli/ranks.hpp"
+#include "limcycle/cli/ranks/rank_job.hpp"
+#include "limcycle/cli/ranks/rank_sweep.hpp"
+#include "limcycle/cli/ranks/ranks.hpp"
 #include "limcycle/reports/store/store.hpp"
 
 namespace limcycle {
@@ -33,7 +36,7 @@ std::string version_text() {
          ", " + build_info::build_type + (built_for_ranks() ? ", MPI" : "") + ")";
 }
 
-/// A word where a command should stand, before the parser makes something else of it.
+/// Checks the word in the place of the command, which the parser would take for something else.
 void check_command(const CLI::App& program, int argc, char** argv) {
   if (argc < 2) throw refusal({}, "a command is needed", "'limcycle --help' lists them");
   const std::string word = argv[1];
@@ -44,7 +47,7 @@ void check_command(const CLI::App& program, int argc, char** argv) {
     throw refusal({}, "unknown command '" + word + "'", suggest(word, names));
 }
 
-/// What the parser could not place: a misspelt option or a second case.
+/// Error for an argument unknown to the parser: a misspelt option or a second case.
 InputError unexpected(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
   const std::string command = chosen.empty() ? "" : chosen.front()->get_name() + ": ";
@@ -57,17 +60,25 @@ InputError unexpected(const CLI::App& program) {
   return refusal({}, command + "unknown option '" + word + "'", suggest(word.substr(0, word.find('=')), names));
 }
 
-/// Of the command that was named, or of all.
+/// Prints to stdout, which may be a full disk or a closed pipe.
+void print(std::string_view text) {
+  errno = 0;
+  if (!(std::cout << text << std::flush))
+    throw OutputError(std::string("cannot write to stdout") +
+                      (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
+}
+
+/// Prints the help of the chosen command, or of the program.
 void help(const CLI::App& program, std::string_view colour) {
   const auto chosen = program.get_subcommands();
   std::string text;
   for (const auto& command : facts_of(program))
     if (!chosen.empty() && command.name == chosen.front()->get_name()) text = command_help(command);
   if (text.empty()) text = program_help(facts_of(program));
-  std::cout << (colours_wanted(colour, STDOUT_FILENO) ? coloured(text) : text) << std::flush;
+  print(colours_wanted(colour, STDOUT_FILENO) ? coloured(text) : text);
 }
 
-/// Is the command one that several ranks share? Any other is for rank 0 alone.
+/// True if the command is one that several ranks share. All others run on rank 0 alone.
 bool sweeps(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
   return !chosen.empty() && chosen.front()->get_option_no_throw("--store") != nullptr;
@@ -91,7 +102,7 @@ int run(int argc, char** argv) {
     help(program, colour_flag(argc, argv));
     return exit_done;
   } catch (const CLI::CallForVersion&) {
-    std::cout << version_text() << std::endl;
+    print(version_text() + "\n");
     return exit_done;
   } catch (const CLI::ExtrasError&) {
     throw unexpected(program);
@@ -102,12 +113,12 @@ int run(int argc, char** argv) {
   return rank() == 0 || sweeps(program) ? action() : exit_done;
 }
 
-/// Joins the ranks and does this one's part.
+/// Joins the ranks and runs the part of this one.
 Ending outcome(int argc, char** argv) {
   try {
     join_ranks();
     if (rank() > 0) {
-      // Rank 0 speaks for all, and a signal is for all.
+      // Rank 0 alone writes to stdout, and a signal reaches all ranks.
       if (std::freopen("/dev/null", "w", stdout) == nullptr) throw std::runtime_error("cannot open /dev/null");
       catch_interrupts();
     }
@@ -118,6 +129,8 @@ Ending outcome(int argc, char** argv) {
     return {exit_bad_input, error.what()};
   } catch (const std::invalid_argument& error) {
     return {exit_bad_input, error.what()};
+  } catch (const NoAnswer& error) {
+    return {exit_no_answer, error.what()};
   } catch (const std::bad_alloc&) {
     return {exit_no_answer, "out of memory"};
   } catch (const StoreError& error) {
@@ -131,6 +144,21 @@ Ending outcome(int argc, char** argv) {
   }
 }
 
+/// Terminate handler: some libraries allocate memory even to release some, and terminate when there is none left.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    std::fputs("limcycle: out of memory\n", stderr);
+    std::_Exit(exit_no_answer);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "limcycle: internal error: %s\n", error.what());
+  } catch (...) {
+    std::fputs("limcycle: internal error\n", stderr);
+  }
+  std::abort();
+}
+
 void complain(const Ending& ending, std::string_view colour) {
   if (rank() != 0 || ending.message.empty()) return;
   const std::string line = "limcycle: " + one_line(ending.message, 2000) + "\n";
@@ -142,6 +170,7 @@ void complain(const Ending& ending, std::string_view colour) {
 
 int main(int argc, char** argv) {
   using namespace limcycle;
+  std::set_terminate(end_without_memory);
   try {
     const Ending ending = outcome(argc, argv);
     complain(ending, colour_flag(argc, argv));
@@ -149,7 +178,7 @@ int main(int argc, char** argv) {
     if (ending.message.empty()) complain(of_others, colour_flag(argc, argv));
     if (rank() > 0) return rank_count() > 1 ? exit_done : ending.code;
     return ending.code != exit_done ? ending.code : of_others.code;
-  } catch (const std::exception& error) {  // nobody can be told any more how this one ends
+  } catch (const std::exception& error) {  // this ending cannot be reported any more
     std::fprintf(stderr, "limcycle: internal error: %s\n", error.what());
     abort_ranks(exit_no_answer);
   }

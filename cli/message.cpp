@@ -3,7 +3,7 @@
 #include <cctype>
 #include <iostream>
 
-#include "limcycle/cases/printable.hpp"
+#include "limcycle/cases/loader/printable.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/reports/number.hpp"
 

@@ -6,17 +6,17 @@
 
 namespace limcycle {
 
-/// One line on stderr, "limcycle: MESSAGE", unless --quiet. What a terminal would obey is shown as escapes.
+/// One line on stderr, "limcycle: MESSAGE", unless --quiet. Terminal controls are shown as escapes.
 void tell(const CommonFlags& flags, const std::string& message);
 
-/// Where the work was interrupted: says by whom, and what became of it.
+/// If the work was interrupted: reports the cause, and what was kept of the results.
 void tell_cut_short(const CommonFlags& flags, Status status,
                     const std::string& kept = "the results computed so far are written");
 
-/// Where the work was interrupted: the first line of the text, and an empty one.
+/// If the work was interrupted: the first line of the text, and an empty one.
 std::string first_line(const CommonFlags& flags, Status status);
 
-/// The line of a text that names the page beside it: an empty line, then "report: FILE".
+/// The line of a text that names the page written with it: an empty line, then "report: FILE".
 std::string page_line(const std::string& file);
 
 }  // namespace limcycle

@@ -1,14 +1,22 @@
 #pragma once
+#include <string>
 
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace limcycle {
 
-/// Checks that hold for every option (not argument) of a command by the kind of value that its help names: a file has a
-/// name, a whole number (N) is written in decimal digits and fits 64 bits ("010" is ten), a number (S, V, X) is one and
-/// finite. To be called when all options are declared; checks of their ranges come after these.
+/// Checks for every option (not argument) of a command by the kind of value that its help names: a file has a name, a
+/// whole number (N) is written in decimal digits and fits 64 bits ("010" is ten), a number (S, V, X) is a finite
+/// number. To be called when all options are declared; checks of their ranges come after these.
 void check_option_values(CLI::App& command);
+
+/// Ranges of options. The parser's own print limits with all their digits: "2.2e-308 to 1797...".
+CLI::Validator whole_in(long long low, long long high);
+CLI::Validator number_in(double low, double high);
+CLI::Validator more_than_zero();
+CLI::Validator zero_or_more();
 
 }  // namespace limcycle

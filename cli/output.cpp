@@ -1,5 +1,7 @@
 #include "limcycle/cli/output.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,9 +10,9 @@
 #include <fstream>
 #include <iostream>
 
-#include "limcycle/cases/printable.hpp"
+#include "limcycle/cases/loader/printable.hpp"
 #include "limcycle/cli/colour.hpp"
-#include "limcycle/cli/ranks.hpp"
+#include "limcycle/cli/ranks/ranks.hpp"
 
 namespace limcycle {
 namespace {
@@ -19,7 +21,66 @@ bool written_to(std::ostream& out, std::string_view document) {
   return static_cast<bool>(out.write(document.data(), static_cast<std::streamsize>(document.size())).flush());
 }
 
-/// Puts `document` in place of a file only when it is complete on the disk: a write that fails leaves what stood there.
+/// Canonical name of a file, links resolved; the file need not exist. Empty if that fails.
+std::filesystem::path full_name(const std::string& path) {
+  std::error_code failed;
+  const auto name = std::filesystem::weakly_canonical(std::filesystem::absolute(path, failed), failed);
+  return failed ? std::filesystem::path() : name;
+}
+
+/// A new file in the folder of `target`, without a name if the file system allows it, so that a process that is killed
+/// leaves nothing behind. When complete and on the disk, it replaces `target`.
+class Draft {
+ public:
+  explicit Draft(const std::filesystem::path& target)
+      : target_(target), name_(target.string() + ".part" + std::to_string(getpid())) {
+    const std::filesystem::path folder = target.parent_path();
+    if (access("/proc/self/fd", X_OK) == 0)  // needed to give the file a name
+      file_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    named_ = file_ < 0;
+    if (named_) file_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  }
+  ~Draft() {
+    const int reason = errno;
+    if (file_ >= 0) close(file_);
+    if (named_) unlink(name_.c_str());
+    errno = reason;
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  bool write(std::string_view document) const {
+    while (file_ >= 0 && !document.empty()) {
+      const auto written = ::write(file_, document.data(), document.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written <= 0) return false;
+      document.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return file_ >= 0 && (fsync(file_) == 0 || errno == EINVAL || errno == EROFS);  // not every file system supports it
+  }
+
+  bool take_place() {
+    struct stat before {};
+    if (stat(target_.c_str(), &before) == 0 && fchmod(file_, before.st_mode & 07777U) != 0) return false;
+    if (!named_) {
+      const std::string held = "/proc/self/fd/" + std::to_string(file_);
+      unlink(name_.c_str());  // left by an earlier process with the same id
+      if (linkat(AT_FDCWD, held.c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) != 0) return false;
+      named_ = true;
+    }
+    if (rename(name_.c_str(), target_.c_str()) != 0) return false;
+    named_ = false;
+    return true;
+  }
+
+ private:
+  std::filesystem::path target_;
+  std::string name_;
+  int file_ = -1;
+  bool named_ = false;
+};
+
+/// Replaces a file by `document` only when that is complete on the disk: a failed write leaves the old file unchanged.
 bool replaced(const std::string& path, std::string_view document) {
   namespace fs = std::filesystem;
   std::error_code failed;
@@ -27,36 +88,13 @@ bool replaced(const std::string& path, std::string_view document) {
     std::ofstream out(path, std::ios::binary);
     return written_to(out, document);
   }
-  const fs::path target = fs::weakly_canonical(path, failed);  // a link stays a link
-  if (failed) return false;
-  const fs::path draft = target.string() + ".part" + std::to_string(getpid());
-  std::ofstream out(draft, std::ios::binary | std::ios::trunc);
-  bool done = written_to(out, document);
-  out.close();
-  done = done && out;
-  if (done) {
-    if (fs::exists(target, failed)) fs::permissions(draft, fs::status(target, failed).permissions(), failed);
-    fs::rename(draft, target, failed);
-    if (failed) errno = failed.value();
-    done = !failed;
-  }
-  if (!done) {
-    const int reason = errno;
-    std::error_code ignored;
-    fs::remove(draft, ignored);
-    errno = reason;
-  }
-  return done;
+  const fs::path target = full_name(path);  // a link stays a link
+  if (target.empty()) return false;
+  Draft draft(target);
+  return draft.write(document) && draft.take_place();
 }
 
-/// The one name that all ways to write it lead to, through links; the file need not exist. Empty where that fails.
-std::filesystem::path full_name(const std::string& path) {
-  std::error_code failed;
-  const auto name = std::filesystem::weakly_canonical(std::filesystem::absolute(path, failed), failed);
-  return failed ? std::filesystem::path() : name;
-}
-
-/// Do both names mean one file, which exists or not? Devices may be named twice.
+/// True if both names refer to one file, existing or not. A device may be named twice.
 bool same_file(const std::string& one, const std::string& other) {
   namespace fs = std::filesystem;
   if (one == "-" || other == "-") return one == other;
@@ -67,13 +105,13 @@ bool same_file(const std::string& one, const std::string& other) {
   return !first.empty() && first == full_name(other);
 }
 
-/// 0, or the error that a document would meet: it is written beside the file, which it then replaces.
+/// 0, or the error in writing a document, which is written next to the file that it then replaces.
 int cannot_be_replaced(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code failed;
   const auto status = fs::status(path, failed);
   if (fs::is_directory(status)) return EISDIR;
-  // Devices and pipes are not opened before there is something to write.
+  // Devices and pipes are opened only when there is something to write.
   if (fs::exists(status) && !fs::is_regular_file(status)) return 0;
   if (fs::exists(status) && access(path.c_str(), W_OK) != 0) return errno;
   const fs::path folder = full_name(path).parent_path();

@@ -14,13 +14,13 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Where a command's documents go, as the flags say: the text to stdout or to --output, JSON and CSV to their files.
-/// With "-" for one of them stdout carries that document and nothing else; the text is then dropped unless --output
-/// names a file for it.
+/// Destinations of a command's documents, from its flags: the text to stdout or to --output, JSON and CSV to their
+/// files. With "-" for one of them stdout receives that document and nothing else; the text is then dropped unless
+/// --output names a file for it.
 ///
-/// The constructor checks before anything is computed that every file can be written and that none takes the place of
-/// another or of what the command reads, by whatever name; it throws InputError otherwise. No file is created before
-/// its document is complete. Of several ranks only rank 0 touches any file.
+/// The constructor checks before anything is computed that every file can be written and that none replaces another or
+/// an input of the command, under any name; it throws InputError otherwise. No file is created before its document is
+/// complete. With several ranks only rank 0 touches any file.
 class Output {
  public:
   explicit Output(const CommonFlags& flags);
@@ -31,19 +31,19 @@ class Output {
   bool wants_csv() const { return !csv_.empty(); }
   bool wants_text() const { return !text_.empty(); }
 
-  /// Write the whole document at once, into a new file that then takes the place of the old one, so that a full disk
-  /// never costs an older result. A write that fails is kept for finish(), so that the others still go out.
-  /// On a terminal the text gets colours, as --color says. Text shows as escapes what a terminal would obey (see
-  /// printable()), and so does any document that goes to a terminal.
+  /// Write the whole document at once, into a new file that then replaces the old one, so that a full disk never costs
+  /// an older result. An error is kept for finish(), so that the other documents are still written. On a terminal the
+  /// text is coloured as --color asks. The text shows terminal controls as escapes (see printable()), and so does any
+  /// document that goes to a terminal.
   void text(std::string_view document);
   void json(std::string_view document) { write(json_, document); }
   void csv(std::string_view document) { write(csv_, document); }
 
-  /// A file that the command reads or keeps by itself, `what` in words ("the store"): no document may go there. A path
-  /// that is empty is none.
+  /// A file that the command reads or writes by itself, `what` in words ("the store"): no document may go there. An
+  /// empty path is ignored.
   void keep(const std::string& what, const std::string& path);
 
-  /// Any other file (an HTML page, say) under the same rules: check_file() first, then, when there is something,
+  /// Any other file (an HTML page, say) under the same rules: check_file() first, then, when the document is ready,
   /// file().
   void check_file(const std::string& flag, const std::string& path);
   void file(const std::string& path, std::string_view document) { write(path, document); }
@@ -54,10 +54,10 @@ class Output {
  private:
   void write(const std::string& path, std::string_view document);
 
-  std::string text_, json_, csv_;  // "-" is stdout, empty: not wanted
+  std::string text_, json_, csv_;  // "-" is stdout, empty: none
   bool colours_ = false;
   struct TakenFile {
-    std::string flag;  // of the document that goes there; empty for what the command reads
+    std::string flag;  // of the document that goes there; empty for a file that the command reads
     std::string path, what;
   };
   std::vector<TakenFile> taken_;

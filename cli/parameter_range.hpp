@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "limcycle/analysis/study/hunting_map.hpp"
+#include "limcycle/analysis/study/map/hunting_map.hpp"
 
 namespace limcycle {
 
@@ -15,7 +15,7 @@ struct ParameterRange {
 ParameterRange parameter_range(const std::string& flag, const std::string& text);
 
 /// "PATH=FROM:TO:N" or "PATH=FROM:TO:N:log" of a flag: one side of a map. Throws InputError likewise; N is 2 to 10000,
-/// and both ends of a logarithmic side have one sign.
+/// and both ends of a logarithmic side have the same sign.
 MapAxis map_axis(const std::string& flag, const std::string& text);
 
 }  // namespace limcycle

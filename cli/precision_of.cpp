@@ -4,7 +4,7 @@ namespace limcycle {
 
 PrecisionReport precision_of(const Case& from, const PrecisionOptions& options) {
   const bool friction = from.element || (from.loop && from.loop->friction);
-  const Element<double>* element = from.df || friction ? &df_element(from) : nullptr;
+  const Element* element = from.df || friction ? &df_element(from) : nullptr;
   std::vector<DfPoint> points;
   if (from.df)
     points = representative_points(from.df->amplitude, from.df->frequency);

@@ -16,7 +16,7 @@ namespace {
 constexpr int bar_width = 30;
 constexpr std::size_t line_width = 78;
 
-/// "3 s left": as long as it seems to take, but no longer than the time limit allows.
+/// "3 s left": the estimate, limited by the time limit.
 std::string left_in_words(double seconds) { return as_waiting_time(std::min(seconds, TimeLimit::left())) + " left"; }
 
 }  // namespace

@@ -9,9 +9,9 @@
 
 namespace limcycle {
 
-/// Progress bar with the time left on stderr: only on a terminal, only when the work takes more than a second, never
-/// with --quiet; erased at the end. With --verbose it tells at the end, terminal or not, how long each thing took that
-/// was being done. Calls from several threads are fine.
+/// Progress bar with the time left on stderr: only on a terminal, only if the work takes more than a second, never with
+/// --quiet; erased at the end. With --verbose it reports at the end, on a terminal or not, the duration of each stage.
+/// Calls from several threads are safe.
 class Progress {
  public:
   explicit Progress(bool quiet, bool verbose = false);
@@ -19,11 +19,11 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `fraction` done in 0..1; `what` is being done. Draws at most ten times a second.
+  /// `fraction` done in 0..1; `what`: the present stage. Draws at most ten times a second.
   void show(double fraction, std::string_view what = {});
 
-  /// So many points of a sweep are known. What was known at the first call (from a store) counts neither for the rate
-  /// nor for the time left.
+  /// Number of known points of a sweep. Points known at the first call (from a store) count neither for the rate nor
+  /// for the time left.
   void count(std::size_t done, std::size_t total);
 
  private:
@@ -41,7 +41,7 @@ class Progress {
   std::mutex mutex_;
   const bool wanted_, verbose_;
   std::vector<Stage> stages_;  // in the order in which they first began
-  std::size_t stage_ = 0;      // the one under way
+  std::size_t stage_ = 0;      // the present one
   Clock::time_point stage_begin_ = Clock::now();
   bool drawn_ = false;
   std::optional<std::size_t> first_;

@@ -6,21 +6,21 @@
 #include <cmath>
 #include <new>
 
-#include "limcycle/analysis/study/hunting_map.hpp"
-#include "limcycle/analysis/study/local_sensitivity.hpp"
-#include "limcycle/analysis/study/verdicts.hpp"
+#include "limcycle/analysis/study/map/hunting_map.hpp"
+#include "limcycle/analysis/study/predict/verdicts.hpp"
+#include "limcycle/analysis/study/sensitivity/local_sensitivity.hpp"
 #include "limcycle/analysis/sweep.hpp"
-#include "limcycle/cases/case_numbers.hpp"
-#include "limcycle/cases/loop_variation.hpp"
+#include "limcycle/cases/loader/case_numbers.hpp"
+#include "limcycle/cases/loader/loop_variation.hpp"
+#include "limcycle/cli/commands/threshold.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/map_of.hpp"
 #include "limcycle/cli/precision_of.hpp"
-#include "limcycle/cli/threshold.hpp"
 
 namespace limcycle {
 namespace {
 
-/// Everything that a part is computed from.
+/// Inputs of a part.
 struct ReportQuestion {
   const Case& from;
   const Loop& loop;
@@ -136,7 +136,7 @@ ReportPart<PrecisionReport> precision_part(const ReportQuestion& ask) {
   return {{}, "There is neither a limit cycle nor a friction law to measure the methods on."};
 }
 
-/// One part, whatever becomes of it.
+/// One part, whether it succeeds or not.
 template <class Result>
 ReportPart<Result> attempted(bool wanted, const std::string& why_not, auto&& compute) {
   if (!wanted) return {{}, why_not};
@@ -166,7 +166,7 @@ LoopReport report_parts(const Case& from, const ReportWishes& wishes, const Comm
   PredictOptions options = from.predict;
   options.stop = interrupted;
   options.progress = [&](double fraction, std::string_view what) { progress.show(0.3 * fraction, what); };
-  report.predict = predict(loop, options);
+  report.predict = answer_of([&] { return predict(loop, options); });
   const ReportQuestion ask{from, loop, wishes, flags, report.predict};
   const std::string left_out = "Left out by --quick.";
   progress.show(0.3, "sensitivity");
@@ -182,7 +182,7 @@ LoopReport report_parts(const Case& from, const ReportWishes& wishes, const Comm
   progress.show(0.75, "accuracy and cost");
   report.precision = attempted<PrecisionReport>(!wishes.quick, left_out, [&] { return precision_part(ask); });
   report.interrupted = interrupted();
-  if (report.interrupted) report.predict.status = Status::interrupted;  // the document of the page says so too
+  if (report.interrupted) report.predict.status = Status::interrupted;  // the document of the page states it too
   return report;
 }
 

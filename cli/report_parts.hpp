@@ -1,23 +1,23 @@
 #pragma once
 #include <string>
 
-#include "limcycle/cases/case.hpp"
+#include "limcycle/cases/loader/case.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/progress.hpp"
-#include "limcycle/reports/report.hpp"
+#include "limcycle/reports/page/report.hpp"
 
 namespace limcycle {
 
-/// What a report is to hold beside the prediction.
+/// Parts of a report in addition to the prediction.
 struct ReportWishes {
-  bool quick = false;  ///< neither sensitivity nor dissipativity nor work-precision
+  bool quick = false;  ///< without sensitivity, dissipativity and work-precision
   std::string x, y;    ///< of a map, PATH=FROM:TO:N[:log]; both empty: no map
 };
 
-/// Throws InputError for wishes that this case cannot fulfil.
+/// Throws InputError for wishes that do not apply to this case.
 void check_wishes(const Case& from, const ReportWishes& wishes);
 
-/// Computes all parts; one that does not apply, fails or is interrupted says so and costs no other.
+/// Computes all parts; one that does not apply, fails or is interrupted states it and does not affect the others.
 LoopReport report_parts(const Case& from, const ReportWishes& wishes, const CommonFlags& flags, Progress& progress);
 
 }  // namespace limcycle

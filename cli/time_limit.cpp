@@ -17,9 +17,9 @@ namespace {
 
 using LimitClock = std::chrono::steady_clock;
 
-constexpr double last_share = 1.8;      // of the limit, after which a command is ended that did not stop
-constexpr double least_patience = 0.5;  // s, to write what is known
-constexpr double longest_wait = 1e8;    // s; what a clock can count
+constexpr double last_share = 1.8;      // multiple of the limit after which a command that did not stop is ended
+constexpr double least_patience = 0.5;  // s, to write the results
+constexpr double longest_wait = 1e8;    // s; within the range of a clock
 
 std::atomic<double> limit_at{std::numeric_limits<double>::infinity()};  // of the clock, s
 
@@ -56,7 +56,7 @@ void TimeLimit::watch(double seconds) {
   if (ended_within(std::max(least_patience, (last_share - 1.0) * seconds))) return;
   constexpr std::string_view words =
       "limcycle: the time limit was passed, and the computation did not stop: nothing could be kept\n";
-  if (write(STDERR_FILENO, words.data(), words.size()) < 0) std::_Exit(exit_no_answer);  // nobody listens
+  if (write(STDERR_FILENO, words.data(), words.size()) < 0) std::_Exit(exit_no_answer);  // stderr is closed
   std::_Exit(exit_no_answer);  // a launcher ends the other ranks
 }
 

@@ -5,9 +5,9 @@
 
 namespace limcycle {
 
-/// Keeps a command to its --time-limit. After `seconds` it asks the command to stop, as Ctrl-C does (time_is_over()).
-/// A command that has not ended after 1.8 times as long is ended with exit code 3 and one line on stderr, so that none
-/// takes twice its limit. Zero: no limit.
+/// Limits a command to its --time-limit. After `seconds` it asks the command to stop, as Ctrl-C does (time_is_over()).
+/// A command still running after 1.8 times as long is ended with exit code 3 and one line on stderr, so that none takes
+/// twice its limit. Zero: no limit.
 class TimeLimit {
  public:
   explicit TimeLimit(double seconds);

@@ -4,7 +4,7 @@
 
 namespace limcycle {
 
-/// Metres and newtons where there is something mechanical, else bare numbers.
+/// Metres and newtons for a mechanical loop, else bare numbers.
 Units units_of(const LoopParts& loop);
 
 }  // namespace limcycle

@@ -32,16 +32,16 @@ install(FILES ${PROJECT_BINARY_DIR}/package/limcycle.pc DESTINATION ${CMAKE_INST
   COMPONENT development)
 
 # Headers that the program does not include, and a user may: methods that it reaches through others, laws of one's own.
-set(entries models/friction/own_law.hpp analysis/frequency/composite_describing_function.hpp
-  analysis/frequency/harmonic_balance.hpp analysis/orbit/ensemble.hpp analysis/orbit/floquet.hpp
-  analysis/study/dissipativity.hpp analysis/study/follow.hpp analysis/study/precision.hpp analysis/study/adequate.hpp)
+set(entries models/friction/own_law.hpp analysis/frequency/composite/composite_describing_function.hpp
+  analysis/frequency/harmonic_balance/harmonic_balance.hpp analysis/orbit/simulate/ensemble.hpp analysis/orbit/cycle/floquet.hpp
+  analysis/study/dissipativity.hpp analysis/study/continuation/follow.hpp analysis/study/precision/precision.hpp analysis/study/adequacy/adequate.hpp)
 set(headers ${CMAKE_INSTALL_INCLUDEDIR}/limcycle)
 install(CODE "set(source [[${PROJECT_SOURCE_DIR}]])
 set(entries [[${entries}]])
 set(parts [[${parts}]])
 set(destination \"\${CMAKE_INSTALL_PREFIX}/${headers}\")" COMPONENT development)
 install(SCRIPT cmake/install_headers.cmake COMPONENT development)
-install(FILES ${PROJECT_BINARY_DIR}/include/limcycle/version.hpp DESTINATION ${headers} COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/include/limcycle/version.hpp DESTINATION ${headers} COMPONENT development)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 
 if(LIMCYCLE_PROGRAM)

@@ -2,7 +2,7 @@
 # `entries`, and all that these include in turn, of the parts that are built. Run by `cmake --install`; needs source,
 # destination, entries, parts.
 cmake_policy(VERSION 3.25)
-file(GLOB commands "${source}/cli/*.cpp" "${source}/cli/*.hpp")
+file(GLOB_RECURSE commands "${source}/cli/*.cpp" "${source}/cli/*.hpp")
 set(own "^#include \"limcycle/((models|analysis|cases|reports)/[^\"]+)\".*")
 foreach(command IN LISTS commands)
   file(STRINGS "${command}" lines REGEX "${own}")

@@ -1,10 +1,11 @@
 # The program, from cli/: the only place that sees every layer.
 find_package(CLI11 2.1 REQUIRED)
-file(GLOB cli_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cli/*.cpp)
+file(GLOB_RECURSE cli_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cli/*.cpp)
 add_executable(limcycle ${cli_sources})
 target_link_libraries(limcycle PRIVATE limcycle_options limcycle_cases limcycle_reports CLI11::CLI11 fmt::fmt
   nlohmann_json::nlohmann_json)
-limcycle_unoptimised_if_watched(limcycle)
+limcycle_hardly_optimised(limcycle)
+limcycle_precompiled(limcycle <CLI/CLI.hpp> <fmt/format.h> "${PROJECT_SOURCE_DIR}/analysis/study/predict/predict.hpp")
 if(LIMCYCLE_SANITIZE)
   limcycle_optimised_first(limcycle limcycle_analysis limcycle_models)
 endif()
@@ -15,7 +16,7 @@ if(LIMCYCLE_MPI)
   find_package(MPI COMPONENTS CXX)
   if(MPI_CXX_FOUND)
     target_link_libraries(limcycle PRIVATE MPI::MPI_CXX)
-    set_source_files_properties(cli/ranks.cpp PROPERTIES COMPILE_DEFINITIONS LIMCYCLE_MPI
+    set_source_files_properties(cli/ranks/ranks.cpp PROPERTIES COMPILE_DEFINITIONS LIMCYCLE_MPI
       SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endif()

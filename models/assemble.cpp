@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/models/element/compensation.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/output_rate.hpp"
+#include "limcycle/models/element/saturation.hpp"
 #include "limcycle/models/rubbing_coordinates.hpp"
 
 namespace limcycle {
@@ -11,7 +15,7 @@ namespace {
 using Eigen::Index;
 using Row = Eigen::RowVectorXd;
 
-/// Every signal of the loop is a row over [X | X delayed | w | external]; joining blocks is adding rows.
+/// Every signal of the loop is a row over [X | X delayed | w | external], so that joining blocks adds rows.
 struct SignalSpace {
   Index n, elements;
   Index size() const { return 2 * n + elements + 4; }
@@ -29,9 +33,7 @@ struct SignalSpace {
   }
 };
 
-bool is_set_valued(const Element<double>& friction) {
-  return std::visit([]<class E>(const E&) { return HasSelection<E, double>; }, friction);
-}
+bool is_set_valued(const Element& friction) { return friction.facts().has_selection; }
 
 /// Builds the rows of the loop block by block, from the error to the plant.
 class Assembly {
@@ -125,7 +127,7 @@ class Assembly {
     }
   }
 
-  Row add(const Element<double>& element, const char* path, const Row& input, bool rubs = false) {
+  Row add(const Element& element, const char* path, const Row& input, bool rubs = false) {
     loop_.elements.push_back(element);
     inputs_.push_back(input);
     loop_.ports.emplace_back().path = path;
@@ -182,13 +184,10 @@ class Assembly {
 
 }  // namespace
 
-std::optional<OutputRate<double>> output_rate(const Element<double>& element) {
-  return std::visit(
-      []<class E>(const E& e) -> std::optional<OutputRate<double>> {
-        if constexpr (requires { OutputRate<double>::of(e); }) return OutputRate<double>::of(e);
-        return std::nullopt;
-      },
-      element);
+std::optional<OutputRate<double>> output_rate(const Element& element) {
+  if (const auto* zone = element.as<DeadZone<double>>()) return OutputRate<double>::of(*zone);
+  if (const auto* limit = element.as<Saturation<double>>()) return OutputRate<double>::of(*limit);
+  return std::nullopt;
 }
 
 bool uses_error(const LoopParts& parts) {

@@ -1,16 +1,17 @@
 #pragma once
+#include "limcycle/models/element/output_rate.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {
 
-/// Joins the parts of a loop, unchecked: what validate() refuses comes out wrong. The states are those of the loop at
-/// rest, whatever the rate of the reference.
+/// Joins the parts of a loop without checking them: where validate() reports an error, the result is wrong. The states
+/// are those of the loop at rest, for any rate of the reference.
 Loop assemble(const LoopParts& parts);
 
-/// What stands for the rate of the output of an element on the error; empty where that rate is not to be had.
-std::optional<OutputRate<double>> output_rate(const Element<double>& element);
+/// Element that computes the rate of the output of an element on the error; empty where that rate is not available.
+std::optional<OutputRate<double>> output_rate(const Element& element);
 
-/// Is the error e = r - y used at all? Without a controller it is not, unless an element in series takes it.
+/// True if the error e = r - y is used; false for friction without a controller or an element in series.
 bool uses_error(const LoopParts& parts);
 
 }  // namespace limcycle

@@ -1,10 +1,12 @@
 #include "limcycle/models/delay.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "limcycle/models/element/delayed_relay.hpp"
+#include "limcycle/models/element/relay.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -22,7 +24,7 @@ void check_order(int order) {
 /// k-th partial denominator of the continued fraction of tanh(x/2): 2, 6, 10, ...
 double denominator(Index k) { return 4.0 * static_cast<double>(k) - 2.0; }
 
-/// Rates of the inputs from their rows, where all that they read is states of now.
+/// Computes the rates of the inputs from their rows, for inputs that read present states only.
 void make_rates(Loop& loop) {
   for (std::size_t i = 0; i < loop.ports.size(); ++i) {
     Port& port = loop.ports[i];
@@ -31,8 +33,8 @@ void make_rates(Loop& loop) {
     port.D_v = port.C * loop.B;
     port.c_v = port.C * loop.E;
     port.c_v(reference_slope) += port.c(reference_value);
-    const bool needs_rate = std::visit([]<class E>(const E&) { return NeedsRate<E>; }, loop.elements[i]);
-    // What passes straight through the approximation also passes into the rate. What is rounding is no loop.
+    const bool needs_rate = loop.elements[i].facts().needs_rate;
+    // A direct path through the approximation also enters the rate. An entry of rounding size closes no loop.
     const auto own = static_cast<Index>(i);
     const double size = (port.C.cwiseAbs() * loop.B.cwiseAbs()).maxCoeff();
     for (Index k = 0; k < port.D_v.size(); ++k)
@@ -44,12 +46,12 @@ void make_rates(Loop& loop) {
   }
 }
 
-/// Position of a relay in front of the plant that may take over the delay.
+/// Index of a relay in front of the plant that can take over the delay.
 std::optional<std::size_t> relay_before_plant(const Loop& loop) {
   std::optional<std::size_t> relay;
   for (std::size_t i = 0; i < loop.ports.size(); ++i) {
     if (loop.ports[i].path == "loop.controller.friction_compensation") return std::nullopt;
-    if (loop.ports[i].path == "loop.element" && std::holds_alternative<Relay<double>>(loop.elements[i])) relay = i;
+    if (loop.ports[i].path == "loop.element" && (loop.elements[i].as<Relay<double>>() != nullptr)) relay = i;
   }
   return relay;
 }
@@ -67,7 +69,7 @@ Loop without_delay(Loop loop) {
 
 TimeDomainLoop delay_relay(const Loop& from, std::size_t i) {
   Loop loop = without_delay(from);
-  const auto& relay = std::get<Relay<double>>(from.elements[i]);
+  const auto& relay = law_of<Relay<double>>(from.elements[i]);
   DelayedRelay<double> delayed;
   delayed.level = relay.level;
   delayed.hysteresis = relay.hysteresis;
@@ -88,28 +90,25 @@ MatrixXd delayed_rows(const Loop& loop) {
   return rows;
 }
 
-/// Orthonormal rows that span the given ones: the independent signals that are read late.
+/// Orthonormal rows that span the given ones: the independent delayed signals.
 MatrixXd independent_signals(MatrixXd rows) {
   for (auto row : rows.rowwise())
     if (const double size = row.norm(); size > 0.0) row /= size;
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.cols(), rows.rows());
-  qr.setThreshold(1e-13);
-  qr.compute(rows.transpose());
-  const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(rows.cols(), qr.rank());
-  return Q.transpose();
+  const PivotedQr qr = pivoted_qr(rows.transpose(), 1e-13);
+  return qr.Q.leftCols(qr.rank).transpose();
 }
 
-/// A block with rows of zeros below.
+/// A block with zero rows appended.
 MatrixXd stacked(const MatrixXd& top, Index below) {
   MatrixXd all = MatrixXd::Zero(top.rows() + below, top.cols());
   all.topRows(top.rows()) = top;
   return all;
 }
 
-/// The loop with an approximation of the delay for each row of `signals`, driven by that signal.
+/// The loop with one approximation of the delay for each row of `signals`, driven by that signal.
 Loop with_pade(const Loop& from, const MatrixXd& signals, const StateSpace& pade) {
   const Index n = from.states(), m = pade.states(), more = signals.rows() * m;
-  // Row of coefficients over the late signals -> row over [X | states of the approximations].
+  // Row of coefficients over the delayed signals -> row over [X | states of the approximations].
   const auto late = [&](const auto& rows) {
     const MatrixXd share = rows * signals.transpose();  // the signals are orthonormal
     MatrixXd wide = MatrixXd::Zero(share.rows(), n + more);
@@ -177,7 +176,7 @@ double pade_error(double w, double delay, int order) {
     throw std::invalid_argument("w = " + std::to_string(w) + ", delay = " + std::to_string(delay) +
                                 ": must be finite, delay >= 0");
   const double turn = w * delay;
-  double g = 0.0;  // the tail of the continued fraction; infinite where it has a pole, as it should
+  double g = 0.0;  // the tail of the continued fraction; infinite at a pole, which the next step handles
   for (Index k = order; k >= 1; --k) g = turn / (denominator(k) - turn * g);
   return 2.0 * std::abs(std::sin(0.5 * turn - std::atan(g)));
 }

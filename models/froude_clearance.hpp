@@ -4,14 +4,14 @@
 #include <span>
 #include <utility>
 
-#include "limcycle/models/friction/lugre.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/linear/plants.hpp"
 #include "limcycle/models/scalar.hpp"
 
 namespace limcycle {
 
-/// What a Froude pendulum needs beyond FroudePendulum once its sleeve has play: the contact of sleeve and shaft after
-/// Hunt and Crossley (1975), N = stiffness d^exponent (1 + dissipation dd/dt), clipped at 0, d the penetration.
+/// Additional data of a Froude pendulum whose sleeve has play: the contact of sleeve and shaft after Hunt and Crossley
+/// (1975), N = stiffness d^exponent (1 + dissipation dd/dt), clipped at 0, d the penetration.
 struct SleeveContact {
   double stiffness{}, exponent{1.5}, dissipation{0.0};  ///< N/m^exponent, 1, s/m
 };
@@ -22,13 +22,13 @@ struct SleeveContact {
 ///   penetration   d = e - clearance,
 ///   rubbing       v = (r + e) dphi/dt - r Omega - t . d(X, Y)/dt     (without play: the v of FroudePendulum),
 ///   force         -N n + F t on the sleeve, with the torque -(r + e) F about its centre.
-/// Friction is that of a LuGre law whose force is taken at the nominal load N0 = mass gravity and goes with the load:
-/// F = N/N0 F_law(v, z), so that the law is one of friction coefficients (levels over N0). Off the shaft the bristle is
+/// Friction is that of a LuGre law whose force is taken at the nominal load N0 = mass gravity and scales with the load:
+/// F = N/N0 F_law(v, z), so that the law gives friction coefficients (levels over N0). Off the shaft the bristle is
 /// relaxed: z = 0.
 ///
-/// A reconstruction: the paper that reports such a pendulum (Piatkowski and Wolski 2018) was seen without its
-/// equations. State: X, Y, phi, dX/dt, dY/dt, dphi/dt, z, W (work of all forces but gravity and the elastic part of N,
-/// for an audit of energy).
+/// A reconstruction: the equations of the paper that reports such a pendulum (Piatkowski and Wolski 2018) were not
+/// available. State: X, Y, phi, dX/dt, dY/dt, dphi/dt, z, W (work of all forces except gravity and the elastic part of
+/// N, for an audit of energy).
 template <class S>
 struct FroudeClearance {
   FroudePendulum pendulum;
@@ -37,7 +37,7 @@ struct FroudeClearance {
 
   static constexpr int states = 8;
   enum StateIndex : std::size_t { x, y, angle, x_rate, y_rate, angle_rate, bristle, work };
-  /// touching: N by the formula; apart: no penetration; released: penetrated, but parting so fast that N would pull.
+  /// touching: N by the formula; apart: no penetration; released: penetrated, but separating so fast that N would pull.
   enum class Phase { touching, apart, released };
 
   double load() const { return pendulum.mass * pendulum.gravity; }  ///< N0
@@ -54,7 +54,7 @@ struct FroudeClearance {
     return std::nullopt;
   }
 
-  /// Where sleeve and shaft are relative to each other, and what acts between them.
+  /// Relative position of sleeve and shaft, and the forces between them.
   struct Meeting {
     S nx{}, ny{}, e{}, penetration{}, approach{};  ///< approach: rate of the penetration
     S elastic{}, normal{}, rubbing{}, friction{};  ///< elastic: that part of N
@@ -64,7 +64,7 @@ struct FroudeClearance {
     const double r = pendulum.shaft_radius;
     Meeting m;
     m.e = sqrt(q[x] * q[x] + q[y] * q[y]);
-    m.ny = S(-1.0);  // any direction serves where the two centres meet
+    m.ny = S(-1.0);  // any direction will do where the two centres coincide
     if (value_of(m.e) > 0.0) {
       m.nx = q[x] / m.e;
       m.ny = q[y] / m.e;
@@ -104,7 +104,7 @@ struct FroudeClearance {
     dq[work] = m.friction * surface - (m.normal - m.elastic) * m.approach - p.damping * w * w;
   }
 
-  /// Guards of the phase: non-negative as long as it lasts.
+  /// Guards of the phase: non-negative while it lasts.
   void guard(std::span<const S> q, Phase phase, std::span<S> g) const {
     const Meeting m = meet(q, Phase::apart);
     const S pushing = 1.0 + contact.dissipation * m.approach;
@@ -130,8 +130,8 @@ struct FroudeClearance {
   }
 };
 
-/// The same pendulum and friction without play and with a contact that does not give: the limit of FroudeClearance.
-/// The force that carries the sleeve, P along the arm and Q across it, is the resultant of N and F, whence
+/// The same pendulum and friction without play and with a rigid contact: the limit of FroudeClearance. The force that
+/// carries the sleeve, P along the arm and Q across it, is the resultant of N and F, so that
 /// N^2 (1 + mu^2) = P^2 + Q^2 with mu = F_law/N0. State: phi, dphi/dt, z.
 template <class S>
 struct FroudeRigid {
@@ -140,7 +140,7 @@ struct FroudeRigid {
 
   static constexpr int states = 3;
 
-  /// N. Q holds N itself, by way of the angular acceleration: a quadratic equation, whose positive root it is.
+  /// N. Q contains N itself, through the angular acceleration: N is the positive root of a quadratic equation.
   S normal(std::span<const S> q) const {
     using std::cos;
     using std::sin;
@@ -150,7 +150,7 @@ struct FroudeRigid {
     const double share = p.mass * p.arm / p.inertia;
     const S along = p.mass * (p.arm * q[1] * q[1] + p.gravity * cos(q[0]));
     const S across = p.mass * p.gravity * sin(q[0]) * (1.0 - share * p.arm) - share * p.damping * q[1];
-    const S k = share * p.shaft_radius * mu;  // across grows by -k N
+    const S k = share * p.shaft_radius * mu;  // `across` changes by -k N
     const S a = 1.0 + mu * mu - k * k, b = across * k;
     return (sqrt(b * b + a * (along * along + across * across)) - b) / a;
   }

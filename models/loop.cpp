@@ -1,10 +1,11 @@
 #include "limcycle/models/loop.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "limcycle/models/assemble.hpp"
+#include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -13,24 +14,17 @@ namespace {
 using Eigen::Index;
 using Row = Eigen::RowVectorXd;
 
-bool uses_rate(const Element<double>& element) {
-  return std::visit(
-      []<class E>(const E&) {
-        return requires { E::uses_rate; }
-        || NeedsRate<E>;
-      },
-      element);
-}
+bool uses_rate(const Element& element) { return element.facts().uses_rate; }
 
-/// Size of a row product compared with rounding of its terms: is C B really zero?
+/// True if the row product C B is zero to rounding of its terms.
 bool vanishes(const Row& C, const Eigen::VectorXd& B) {
   const double size = (C.cwiseAbs() * B.cwiseAbs()).value();
   return std::abs((C * B).value()) <= 1e-12 * size;
 }
 
-/// Steady motion X_r t along a ramp: A X_r + E_r rate = 0 with every input standing still (what rubs may move along;
-/// how fast it rubs must not change). With an element between error and controller the first part alone leaves X_r
-/// open. Rows are scaled to one size, so that the least-squares solution is exact wherever there is one.
+/// Steady motion X_r t along a ramp: A X_r + E_r rate = 0 with every input constant (a rubbing displacement may move,
+/// but its velocity must not change). With an element between error and controller the first condition alone does not
+/// determine X_r. Rows are scaled to one size, so that the least-squares solution is exact if there is one.
 Eigen::VectorXd steady_motion(const Loop& loop, double rate) {
   const Index n = loop.states(), inputs = std::ssize(loop.ports);
   Eigen::MatrixXd rows(n + inputs, n);
@@ -71,12 +65,10 @@ std::optional<BrokenRule> move_along(Loop& loop, double rate) {
   return std::nullopt;
 }
 
-/// Whether an element is told the force that holds its input: only friction on a body has one.
-bool needs_applied_force(const Element<double>& element) {
-  return std::visit([]<class E>(const E& e) { return NeedsDrive<E> || drive_band(e) > 0.0; }, element);
-}
+/// True if an element uses the force that holds its input: only friction on a body has one.
+bool needs_applied_force(const Element& element) { return element.needs_drive() || element.drive_band() > 0.0; }
 
-/// What passes straight into an input that must have a rate.
+/// Elements with a direct path into an input that must have a rate.
 std::string straight_into(const Loop& loop, const Port& port) {
   std::string names;
   for (std::size_t i = 0; i < loop.ports.size(); ++i)
@@ -92,7 +84,7 @@ std::optional<BrokenRule> validate_ports(const Loop& loop) {
       return BrokenRule{port.path, "needs the rate of its input, into which the output of " +
                                        straight_into(loop, port) + " passes straight: add loop.controller.lag"};
     const Row later = port.D_v.tail(port.D_v.size() - static_cast<Index>(i));
-    const bool output_needs_rate = std::visit([]<class E>(const E&) { return NeedsRate<E>; }, loop.elements[i]);
+    const bool output_needs_rate = loop.elements[i].facts().needs_rate;
     if (output_needs_rate && !later.isZero(1e-12))
       return BrokenRule{port.path, "makes an algebraic loop: its input rate depends on its own output; add a lag"};
   }
@@ -104,8 +96,8 @@ std::optional<BrokenRule> validate_error(const LoopParts& parts, double D_rate) 
   if (!uses_error(parts))
     return BrokenRule{"loop.error", "needs a controller: with friction alone the error is not used"};
   if (D_rate == 0.0 || output_rate(*parts.error)) return std::nullopt;
-  const std::string kind(std::visit([](const auto& e) { return e.kind; }, *parts.error));
-  const bool jumps = std::holds_alternative<Quantizer<double>>(*parts.error);
+  const std::string kind(parts.error->kind());
+  const bool jumps = parts.error->as<Quantizer<double>>() != nullptr;
   return BrokenRule{"loop.controller.tf", "must be > 0: kd differentiates the output of the " + kind +
                                               (jumps ? ", which jumps" : " on the error, whose rate is not known")};
 }

@@ -4,62 +4,62 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/models/elements.hpp"
+#include "limcycle/models/element/element.hpp"
 #include "limcycle/models/linear/controllers.hpp"
 #include "limcycle/models/linear/plants.hpp"
 
 namespace limcycle {
 
-/// What a loop is made of, as a case file says it.
+/// Parts of a loop, as in a case file.
 struct LoopParts {
   Plant plant;
   Controller controller;
-  std::optional<Element<double>> element;   ///< in series after the controller
-  std::optional<Element<double>> friction;  ///< opposes the rubbing velocity of the plant
-  std::optional<Element<double>> error;     ///< acts on e = r - y before the controller
-  double reference = 0.0;                   ///< set-point r at t = 0
-  double reference_rate = 0.0;              ///< dr/dt of a ramp
-  double load = 0.0;                        ///< constant force added to the plant's input
+  std::optional<Element> element;   ///< in series after the controller
+  std::optional<Element> friction;  ///< opposes the rubbing velocity of the plant
+  std::optional<Element> error;     ///< acts on e = r - y before the controller
+  double reference = 0.0;           ///< set-point r at t = 0
+  double reference_rate = 0.0;      ///< dr/dt of a ramp
+  double load = 0.0;                ///< constant force added to the plant's input
 };
 
-/// Signals from outside, in the order of the columns below: the constant 1, r, dr/dt, force.
+/// External signals, in the order of the columns below: the constant 1, r, dr/dt, force.
 using External = Eigen::Vector4d;
 enum ExternalIndex : Eigen::Index { constant_one = 0, reference_value = 1, reference_slope = 2, external_force = 3 };
 
-/// Where element i is connected: input x = C X + D w + c ext, rate v = C_v X + D_v w + c_v ext, with X the linear
-/// state, w the outputs of all elements. D is strictly lower triangular over the elements: they are evaluated in order.
-/// What the rate owes to X(t - delay) is left out of C_v: no frequency-domain method asks, and in_time_domain() has it.
+/// Connections of element i: input x = C X + D w + c ext, rate v = C_v X + D_v w + c_v ext, with X the linear state, w
+/// the outputs of all elements. D is strictly lower triangular over the elements: they are evaluated in order. C_v
+/// omits the dependence on X(t - delay): no frequency-domain method uses it, and in_time_domain() restores it.
 struct Port {
   Eigen::RowVectorXd C, D, C_v, D_v;
   Eigen::RowVector4d c, c_v;
   Eigen::RowVectorXd C_delayed;  ///< part of the input row that reads X(t - delay)
-  /// The set-valued friction law whose choice of sign at v = 0 this element shares (friction compensation).
+  /// The set-valued friction law whose selection at v = 0 this element shares (friction compensation).
   std::optional<std::size_t> selection_of;
-  bool rubs = false;  ///< x and v are rubbing displacement and velocity: what matters is v, x may move along
+  bool rubs = false;  ///< x and v are rubbing displacement and velocity: v matters, x may drift
   std::string path;   ///< "loop.plant.gravity", "loop.error", "loop.error.rate",
                       ///< "loop.controller.friction_compensation", "loop.controller.saturation", "loop.element",
-                      ///< "loop.friction": in this order, if there
+                      ///< "loop.friction": in this order, if present
 };
 
 /// Lur'e form: linear part  dX/dt = A X + A_delayed X(t - delay) + B w + E ext,  y = C_y X,  with nonlinear elements
 /// w_i = element_i(x_i, v_i, own state) in feedback. Friction enters with its sign: its column of B is negative.
 ///
-/// States, y and the signals from outside are measured from where the loop rests, `origin`, if it rests at all: a
-/// motion of micrometres about a set-point of metres has as many digits as the same motion about zero. With a ramp
-/// reference that point moves steadily, origin + origin_rate t, so that cycles about it are periodic.
+/// States, y and the external signals are measured from the rest point, `origin`, if there is one: a motion of
+/// micrometres about a set-point of metres has as many digits as the same motion about zero. With a ramp reference that
+/// point moves steadily, origin + origin_rate t, so that cycles about it are periodic.
 struct Loop {
   Eigen::MatrixXd A, A_delayed, B;
   Eigen::Matrix<double, Eigen::Dynamic, 4> E;
   Eigen::RowVectorXd C_y;
-  std::vector<Element<double>> elements;
+  std::vector<Element> elements;
   std::vector<Port> ports;
   External external = External::Zero();
   double delay = 0.0;
   Eigen::VectorXd origin, origin_rate;          ///< states of the case are origin + origin_rate t + X; empty: zero
-  External external_origin = External::Zero();  ///< signals from outside are these and `external`
-  double output_origin = 0.0;                   ///< y of the case is this, ramp_output_rate t, and C_y X
+  External external_origin = External::Zero();  ///< external signals are these plus `external`
+  double output_origin = 0.0;                   ///< y of the case is the sum of this, ramp_output_rate t and C_y X
   double ramp_output_rate = 0.0;
-  std::vector<std::string> state_names;  ///< as the case writes them; see own_states
+  std::vector<std::string> state_names;  ///< as written in the case; see own_states
   /// The states that state_names name = own_states (origin + X) (see rubbing_coordinates()); empty: origin + X.
   Eigen::MatrixXd own_states;
 
@@ -71,22 +71,21 @@ struct Loop {
   /// The same at any s off the poles.
   Eigen::MatrixXcd element_response(std::complex<double> s) const;
 
-  /// The same loop with everything measured from its rest point; unchanged where rest_point() is not exact.
+  /// The same loop, measured from its rest point; unchanged if rest_point() is not exact.
   void measure_from_rest();
 
   /// Response of y to the outputs of the elements, 1 x n_e.
   Eigen::RowVectorXcd output_response(double w) const;
 
-  /// Rest point of the linear part without elements, but with those that pull back (gravity): A X + E ext + B w = 0 in
-  /// the least-squares sense; `exact` tells whether it solves the equation. Of several the one near hanging, or where
-  /// the elements see least; where a torque is more than gravity can hold, that of the tangent.
+  /// Rest point of the linear part without elements except those with a restoring output (gravity): A X + E ext + B w =
+  /// 0 in the least-squares sense; `exact` is true if it solves the equation. Of several points the one near hanging,
+  /// or the one with the smallest inputs of the elements; for a torque that gravity cannot hold, that of the tangent.
   Eigen::VectorXd rest_point(bool& exact) const;
-  /// The same of the means of an oscillation: with the mean outputs of the elements given, but for those that pull
-  /// back, whose mean outputs are found for a sinusoid of amplitude swings(i) on their input. A X + E ext + B w = 0.
+  /// The same for the means of an oscillation, A X + E ext + B w = 0: with the given mean outputs of the elements,
+  /// except restoring ones, whose mean outputs are found for a sinusoid of amplitude swings(i) on their input.
   Eigen::VectorXd mean_point(const Eigen::VectorXd& mean_outputs, const Eigen::VectorXd& swings, bool& exact) const;
 
-  /// A (without delay) with the elements that pull back replaced by their tangents at the rest point; A itself where
-  /// there are none.
+  /// A (without delay), the restoring elements replaced by their tangents at the rest point; A itself without them.
   Eigen::MatrixXd tangent() const;
 };
 

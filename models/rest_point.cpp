@@ -1,4 +1,4 @@
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +6,7 @@
 #include "limcycle/models/loop.hpp"
 
 /// @file
-/// Where a loop rests, and the means of an oscillation.
+/// Rest point of a loop, and the means of an oscillation.
 
 namespace limcycle {
 namespace {
@@ -14,17 +14,12 @@ namespace {
 using Eigen::Index;
 using Row = Eigen::RowVectorXd;
 
-/// Mean output and slope of an element that pulls back; nothing of another.
-std::optional<std::pair<double, double>> pull_of(const Element<double>& element, double mean, double swing) {
-  return std::visit(
-      [&]<class E>(const E& e) -> std::optional<std::pair<double, double>> {
-        if constexpr (PullsBack<E>) return std::pair(e.mean_output(mean, swing), e.mean_slope(mean, swing));
-        return std::nullopt;
-      },
-      element);
+/// Mean output and slope of an element with a restoring output; empty for any other.
+std::optional<std::pair<double, double>> pull_of(const Element& element, double mean, double swing) {
+  return element.pull(mean, swing);
 }
 
-/// What the elements that pull back add to the rates at X, and to the matrix.
+/// Contribution of the restoring elements to the rates at X, and to the matrix.
 struct Pull {
   Eigen::VectorXd force;
   Eigen::MatrixXd slope;
@@ -45,7 +40,7 @@ Pull pull_at(const Loop& loop, const Eigen::VectorXd& X, const Eigen::VectorXd& 
   return sum;
 }
 
-/// Whether X solves matrix X + given + pull = 0 but for rounding.
+/// True if X solves matrix X + given + pull = 0 to rounding.
 bool solves(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& X, const Eigen::VectorXd& given,
             const Eigen::VectorXd& pull) {
   const double size = given.norm() + pull.norm() + (matrix.cwiseAbs() * X.cwiseAbs()).norm();
@@ -55,8 +50,8 @@ bool solves(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& X, const Eigen
   return solves(matrix, X, given, Eigen::VectorXd::Zero(X.size()));
 }
 
-/// The X that solves matrix X + given = 0 best with rows and columns in units (powers of two) in which their largest
-/// entries are about 1, so that no row is taken for rounding because of the unit it is written in; and whether it does.
+/// Best solution X of matrix X + given = 0, with rows and columns in units (powers of two) in which their largest
+/// entries are about 1, so that the unit of a row cannot make it look like rounding; `exact`: it solves the equation.
 Eigen::VectorXd solution_in_own_units(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& given, bool& exact) {
   Eigen::MatrixXd scaled = matrix;
   Eigen::VectorXd rows = Eigen::VectorXd::Ones(matrix.rows()), columns = Eigen::VectorXd::Ones(matrix.cols());
@@ -78,7 +73,7 @@ Eigen::VectorXd solution_in_own_units(const Eigen::MatrixXd& matrix, const Eigen
   return columns.cwiseProduct(found);
 }
 
-/// A + A_delayed times X, plus E times what comes from outside, in more digits than these have.
+/// A + A_delayed times X, plus E times the external signals, in extended precision.
 Eigen::VectorXd pushed(const Loop& loop, const Eigen::VectorXd& X) {
   Eigen::VectorXd out(X.size());
   for (Index i = 0; i < X.size(); ++i) {
@@ -92,8 +87,8 @@ Eigen::VectorXd pushed(const Loop& loop, const Eigen::VectorXd& X) {
   return out;
 }
 
-/// X to the last digit of each of its components, large or small: a velocity that should be zero is, beside a position
-/// of kilometres. What is left of a component after its first correction, or as large as its last one, was rounding.
+/// Refines each component of X, large or small, to its last digit: a velocity that should be zero is zero, even next to
+/// a position of kilometres. A component no larger than its last correction, or a tiny part of its first, was rounding.
 void refine(const Loop& loop, Eigen::VectorXd& X) {
   Eigen::VectorXd first, step;
   for (int i = 0; i < 3; ++i) {
@@ -108,8 +103,8 @@ void refine(const Loop& loop, Eigen::VectorXd& X) {
     if (std::abs(X(i)) <= std::max(8.0 * std::abs(step(i)), 1e-6 * std::abs(first(i)))) X(i) = 0.0;
 }
 
-/// Of several points of rest, the one at which the elements that do not rub see the least: a servo with a dead zone on
-/// its error rests at its reference, wherever the origin is.
+/// Of several rest points, selects the one with the smallest inputs of the elements that do not rub: a servo with a
+/// dead zone on its error rests at its reference, wherever the origin is.
 void centre(const Loop& loop, Eigen::VectorXd& X) {
   Eigen::MatrixXd inputs(0, loop.states());
   Eigen::VectorXd seen(0);
@@ -126,15 +121,14 @@ void centre(const Loop& loop, Eigen::VectorXd& X) {
     seen(seen.size() - 1) = input / size;
   }
   if (!off) return;
-  const Eigen::FullPivLU<Eigen::MatrixXd> still(loop.A + loop.A_delayed);
-  if (still.dimensionOfKernel() == 0) return;
-  const Eigen::MatrixXd free = still.kernel();
+  const Eigen::MatrixXd free = kernel(loop.A + loop.A_delayed);
+  if (free.cols() == 0) return;
   const Eigen::VectorXd moved = X + free * least_squares(inputs * free, -seen);
   if (solves(loop.A + loop.A_delayed, moved, loop.E * loop.external)) X = moved;
 }
 
-/// Whether the elements that hold a loop where it moves see less at its rest point than at zero. A relay that holds a
-/// body against its weight keeps it far from where it would rest on a soft spring alone.
+/// True if the inputs of the elements that hold a loop are no larger at its rest point than at zero. A relay that holds
+/// a body against its weight keeps it far from the point where it would rest on a soft spring alone.
 bool nearer_to_its_elements(const Loop& loop, const Eigen::VectorXd& rest) {
   for (std::size_t i = 0; i < loop.elements.size(); ++i) {
     const Port& port = loop.ports[i];
@@ -155,8 +149,8 @@ Eigen::VectorXd Loop::rest_point(bool& exact) const {
   return X;
 }
 
-/// Newton's method, from the rest point of the tangents at 0. Under a constant torque it comes from below, and the sine
-/// bends away from its tangent: every step falls short, so that none leaves the branch near hanging.
+/// Newton's method, from the rest point of the tangents at 0. Under a constant torque it approaches from below, and the
+/// sine bends away from its tangent: every step falls short, so that none leaves the branch near hanging.
 Eigen::VectorXd Loop::mean_point(const Eigen::VectorXd& mean_outputs, const Eigen::VectorXd& swings,
                                  bool& exact) const {
   Eigen::VectorXd given = E * external;
@@ -205,7 +199,7 @@ void Loop::measure_from_rest() {
 }
 
 Eigen::MatrixXd Loop::tangent() const {
-  const auto pulls = [](const Element<double>& element) { return pull_of(element, 0.0, 0.0).has_value(); };
+  const auto pulls = [](const Element& element) { return pull_of(element, 0.0, 0.0).has_value(); };
   if (std::ranges::none_of(elements, pulls)) return A;
   bool exact = false;
   const Eigen::VectorXd X = rest_point(exact);

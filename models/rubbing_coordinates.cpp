@@ -1,11 +1,12 @@
 #include "limcycle/models/rubbing_coordinates.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "limcycle/models/linear/balance.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -31,13 +32,13 @@ bool needs_change(const PlantModel& plant) {
          does_not_reach(plant.C_y, plant.B_F);
 }
 
-/// Product of matrices, entries that are no more than rounding set to zero.
+/// Product of matrices, with entries of rounding size set to zero.
 MatrixXd product(const MatrixXd& a, const MatrixXd& b, const MatrixXd& c) {
   const MatrixXd value = a * b * c, size = a.cwiseAbs() * b.cwiseAbs() * c.cwiseAbs();
   return (value.array().abs() <= rounding * size.array()).select(0.0, value);
 }
 
-/// Rows in the order of choice that are independent of those before; sizes are compared in units of the states.
+/// Rows, in the order of choice, that are independent of the previous ones; sizes are in units of the states.
 class Rows {
  public:
   explicit Rows(VectorXd units) : units_(std::move(units)), rows_(0, units_.size()), basis_(0, units_.size()) {}
@@ -64,13 +65,13 @@ class Rows {
   MatrixXd rows_, basis_;
 };
 
-constexpr double dependent = 1e-6;  ///< share below which a row is not worth being a state of its own
+constexpr double dependent = 1e-6;  ///< share below which a row is too dependent to become a state
 
 /// The matrix T; empty if displacement and velocity are not independent.
 MatrixXd states_that_rub(const PlantModel& plant) {
   const Index n = plant.A.rows();
   const double reach = (plant.C_v * plant.B_F).value();
-  const MatrixXd takes_out = plant.B_F * plant.C_v / reach;  // a projection, so that it weighs like A over a frequency
+  const MatrixXd takes_out = plant.B_F * plant.C_v / reach;  // a projection: scaled like A divided by a frequency
   const VectorXd units = balancing_units(plant.A + takes_out * plant.A.cwiseAbs().maxCoeff());
   Rows rows(units);
   rows.add(plant.C_x);
@@ -95,7 +96,7 @@ PlantCoordinates rubbing_coordinates(PlantModel plant) {
   const MatrixXd T = states_that_rub(plant);
   if (T.size() == 0) return {std::move(plant), {}};
   const Index n = plant.A.rows();
-  const MatrixXd back = T.partialPivLu().solve(MatrixXd::Identity(n, n)), one = MatrixXd::Identity(1, 1);
+  const MatrixXd back = solve_columns(T, MatrixXd::Identity(n, n)), one = MatrixXd::Identity(1, 1);
   if (!back.allFinite()) return {std::move(plant), {}};
   const RowVectorXd C_rate = plant.C_x * plant.A, size = plant.C_x.cwiseAbs() * plant.A.cwiseAbs();
   const bool is_rate = ((C_rate - plant.C_v).array().abs() <= 1e-9 * size.array()).all();

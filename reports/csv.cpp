@@ -14,7 +14,7 @@ std::string yes_no(const std::optional<bool>& value) { return value ? (*value ? 
 
 std::string index_cell(const std::optional<std::size_t>& value) { return value ? std::to_string(*value) : ""; }
 
-/// Columns of predict: a row fills those it knows by name, the others stay empty.
+/// Columns of predict: a row fills its own by name, the others stay empty.
 constexpr std::string_view predict_columns[] = {
     "kind",      "index",    "method",  "amplitude",     "first_harmonic", "period",
     "frequency", "offset",   "stable",  "multiplier_re", "multiplier_im",  "sticking_fraction",
@@ -54,7 +54,7 @@ void add_cycle(std::string& out, std::size_t i, const Cycle& cycle) {
 }
 
 void add_prediction(std::string& out, std::size_t i, const Prediction& prediction) {
-  // A prediction is of y's first harmonic, which is the column that compares with that of a cycle.
+  // A prediction refers to y's first harmonic, which is the column to compare with that of a cycle.
   add_row(out, {{"kind", "prediction"},
                 {"index", std::to_string(i)},
                 {"method", prediction.method},
@@ -67,7 +67,7 @@ void add_prediction(std::string& out, std::size_t i, const Prediction& predictio
                 {"why", prediction.why}});
 }
 
-/// Numbers and plain words only, so no field needs quotes. What a result without an answer holds is left empty.
+/// Numbers and plain words only, so that no field needs quotes. Values of a result without an answer are left empty.
 void add_df_row(std::string& out, const DfPoint& point, const DescribingFunction& result, std::size_t orders) {
   const auto add = [&](double value, bool known) {
     if (known) append_shortest(out, value);

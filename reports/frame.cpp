@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "limcycle/reports/json_values.hpp"
 
 namespace limcycle {
@@ -26,7 +28,7 @@ Json head(const std::string& command, const Provenance& provenance) {
             {"overrides", provenance.overrides}}}};
 }
 
-/// The members, one a line; of a list of structures one structure a line. The closing brace is left to the caller.
+/// The members, one a line; of a list of structures, one structure a line. The caller adds the closing brace.
 std::string framed(const Json& top) {
   std::string text = "{";
   bool first = true;
@@ -43,7 +45,7 @@ std::string framed(const Json& top) {
   return text;
 }
 
-/// As an escape of JSON where a terminal would obey the character; empty otherwise. `text` begins with a character.
+/// JSON escape of a character that controls a terminal; empty for any other. `text` begins with a character.
 std::string steering_escape(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const unsigned a = byte(0), b = byte(1), c = byte(2);
@@ -90,16 +92,31 @@ std::string json_beginning(const std::string& command, const Provenance& provena
   return framed(head(command, provenance));
 }
 
+namespace {
+
+/// True if a spreadsheet would evaluate the field. Numbers begin with a sign too.
+bool looks_like_formula(const std::string& field) {
+  if (field.empty() || std::string_view("=+-@\t\r").find(field.front()) == std::string_view::npos) return false;
+  double number = 0.0;
+  const char* const end = field.data() + field.size();
+  const auto read = std::from_chars(field.data() + (field.front() == '+' ? 1 : 0), end, number);
+  return read.ptr != end || read.ec == std::errc::invalid_argument;
+}
+
+}  // namespace
+
 std::string csv_line(const std::vector<std::string>& fields) {
   std::string line;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (i > 0) line += ',';
-    if (fields[i].find_first_of(",\"\r\n") == std::string::npos) {
-      line += fields[i];
+    // Spreadsheets use this mark for a field that is to stay a text.
+    const std::string field = (looks_like_formula(fields[i]) ? "'" : "") + fields[i];
+    if (field.find_first_of(",\"\r\n") == std::string::npos) {
+      line += field;
       continue;
     }
     line += '"';
-    for (const char c : fields[i]) line += c == '"' ? std::string("\"\"") : std::string(1, c);
+    for (const char c : field) line += c == '"' ? std::string("\"\"") : std::string(1, c);
     line += '"';
   }
   return line + '\n';

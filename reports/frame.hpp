@@ -8,11 +8,11 @@
 
 namespace limcycle {
 
-/// The name of a status, but "time-limit" for `interrupted` where the time limit is what interrupted the command.
+/// The name of a status, but "time-limit" for `interrupted` if the time limit interrupted the command.
 std::string_view status_word(const Provenance& provenance, Status status);
 
 /// JSON document of schema "limcycle/1": schema, command, case and provenance, then the members of `body`, itself the
-/// text of a JSON object, whose "status" is put as status_word() does. Without a case its title, file and sha256 are
+/// text of a JSON object, whose "status" is replaced as by status_word(). Without a case its title, file and sha256 are
 /// null. Text that is not UTF-8 is replaced.
 std::string json_document(const std::string& command, const Provenance& provenance, const std::string& body);
 

@@ -1,12 +1,12 @@
 #include "limcycle/reports/html.hpp"
 
-#include "limcycle/reports/answer.hpp"
 #include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/figures/plotly.hpp"
-#include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/json.hpp"
+#include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
-#include "limcycle/reports/predict_sections.hpp"
+#include "limcycle/reports/predict/answer.hpp"
+#include "limcycle/reports/predict/predict_sections.hpp"
 
 namespace limcycle {
 namespace {

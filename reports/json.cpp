@@ -117,8 +117,8 @@ Json prediction_json(const Prediction& prediction) {
           {"trust", trust_json(prediction.trust)}};
 }
 
-/// Appends a number as the library does; null for one that does not exist. A table has a million of them: no Json is
-/// made for each.
+/// Appends a number as the library does; null for one that does not exist. A table has a million of them, so that no
+/// Json is made for each.
 void append_number(std::string& out, double value) {
   if (!std::isfinite(value)) {
     out += "null";
@@ -137,7 +137,7 @@ void append_pair(std::string& out, double first, double second) {
 }
 
 void append_point(std::string& out, const DfPoint& point, const DescribingFunction& result) {
-  // A result without an answer holds zeros, which are not numbers that exist.
+  // The zeros of a result without an answer are not values.
   const auto known = [&](double value) { return result.answered() ? value : NAN; };
   const auto add = [&](std::string_view key, double value) {
     out.append(key);

@@ -2,10 +2,10 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/energy/audit.hpp"
-#include "limcycle/analysis/frequency/describing_function.hpp"
-#include "limcycle/analysis/orbit/agreement.hpp"
-#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/analysis/energy/loop/audit.hpp"
+#include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
+#include "limcycle/analysis/orbit/cycle/agreement.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace limcycle {
@@ -15,14 +15,14 @@ namespace limcycle {
 /// UTF-8 is replaced. One line a key, and one line an element of a list of objects or rows; numbers in shortest exact
 /// form.
 
-/// `df`: results of the first points (fewer than points when the work was stopped). Throws std::invalid_argument when
+/// `df`: results of the first points (fewer than points if the work was interrupted). Throws std::invalid_argument if
 /// there are more results than points.
 std::string df_json(const Provenance& provenance, const std::vector<DfPoint>& points,
                     const std::vector<DescribingFunction>& results);
 
 std::string predict_json(const Provenance& provenance, const PredictReport& report);
 
-/// `second`: what a run of other tolerances says; "agreement" is null without one. `energy`: where it went; likewise.
+/// `second`: agreement with a run at other tolerances, `energy`: energy balance; null in the document without them.
 std::string simulate_json(const Provenance& provenance, const Simulation& run,
                           const std::optional<Agreement>& second = std::nullopt,
                           const std::optional<EnergyBalance>& energy = std::nullopt);

@@ -21,7 +21,7 @@ inline Json numbers(const std::vector<double>& values) {
   return list;
 }
 
-/// A number of a figure: seven digits are more than a screen can show.
+/// A number of a figure, rounded to seven digits, more than a screen can show.
 inline Json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
   char text[32];
@@ -30,8 +30,8 @@ inline Json rounded(double value) {
   return value;
 }
 
-/// On one line; bytes that are not UTF-8 are replaced, and characters that steer a terminal (DEL, C1, separators,
-/// directions) are written as escapes, which mean the same.
+/// On one line; bytes that are not UTF-8 are replaced, and characters that control a terminal (DEL, C1, separators,
+/// directions) are written as equivalent escapes.
 std::string json_text(const Json& document);
 
 template <class T>

@@ -19,10 +19,10 @@ int leading_place(double value, int digits) {
   return std::stoi(text.substr(text.find('e') + 1));
 }
 
-/// Decimal place of the last digit that an absolute error leaves: all of 10^place, not less.
+/// Decimal place of the last digit that an absolute error permits: 10^place is at most twice the error.
 int last_place(double error) { return static_cast<int>(std::floor(std::log10(2.0 * error))); }
 
-/// `whole`: an integer part is printed in full even if it has more digits than asked for.
+/// `whole`: an integer part is printed in full even if it has more digits than requested.
 std::string printed(double value, int digits, bool whole) {
   if (!std::isfinite(value)) return "-";
   if (value == 0.0) return "0";

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view column_gap = "  ";
 
-/// Next code point of a UTF-8 text; a byte that does not belong there is its own.
+/// Next code point of a UTF-8 text; an invalid byte counts as its own.
 char32_t next_code_point(std::string_view& text) {
   const auto lead = static_cast<unsigned char>(text[0]);
   const std::size_t length = lead < 0x80 ? 1 : lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
@@ -127,7 +127,7 @@ std::size_t display_width(std::string_view text) {
 
 namespace {
 
-/// Where the word that begins at `from` ends; a per cent sign stays with its number.
+/// End of the word that begins at `from`; a per cent sign stays with its number.
 std::size_t end_of_word(std::string_view text, std::size_t from) {
   std::size_t end = std::min(text.find_first_of(" \n", from), text.size());
   if (end > from && text.substr(end).starts_with(" %")) end = std::min(text.find_first_of(" \n", end + 2), text.size());

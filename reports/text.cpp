@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/answer.hpp"
 #include "limcycle/reports/figures/multipliers.hpp"
 #include "limcycle/reports/number.hpp"
+#include "limcycle/reports/predict/answer.hpp"
 
 namespace limcycle {
 namespace {
@@ -64,8 +64,8 @@ Table cycle_table(const PredictReport& report, const Units& units) {
               {}};
   for (std::size_t i = 0; i < report.cycles.size(); ++i) {
     const auto& cycle = report.cycles[i];
-    // The error is of period and amplitude. An offset is a mean over the same orbit: it has that of the amplitude in
-    // absolute terms; seven digits of the harmonic are enough to compare it with a prediction.
+    // The error is that of period and amplitude. An offset is a mean over the same orbit: its absolute error is that of
+    // the amplitude; seven digits of the harmonic are enough to compare it with a prediction.
     const double error = cycle.error * cycle.amplitude;
     const double of_harmonic = std::max(cycle.error, 0.6e-6);
     table.rows.push_back({std::to_string(i), with_error(cycle.period, cycle.error),

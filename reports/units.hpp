@@ -3,7 +3,7 @@
 
 namespace limcycle {
 
-/// Units to print. They follow the case: metres and newtons for a servo or a belt, rad and N m where the file says so,
+/// Units to print. They follow the case: metres and newtons for a servo or a belt, rad and N m where that is stated,
 /// none for a loop of bare transfer functions.
 struct Units {
   std::string y = "m";      ///< of the measured output; empty: none

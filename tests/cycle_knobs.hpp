@@ -5,11 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "limcycle/analysis/orbit/cycle_derivatives.hpp"
-#include "limcycle/analysis/orbit/settle.hpp"
+#include "limcycle/analysis/orbit/derivatives/cycle_derivatives.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/loops.hpp"
 
-/// Derivatives of cycles by numbers of a loop's parts, and the same by differences of cycles.
+/// Derivatives of cycles with respect to numbers of a loop's parts, and the same from differences of cycles.
 namespace limcycle::test {
 
 /// A number of the parts of a loop.
@@ -20,7 +22,7 @@ struct Knob {
 
 template <class Law>
 Knob of_law(const char* name, double Law::*member) {
-  return {name, [member](LoopParts& parts) -> double& { return std::get<Law>(*parts.friction).*member; }};
+  return {name, [member](LoopParts& parts) -> double& { return law_of<Law>(*parts.friction).*member; }};
 }
 template <class Type>
 Knob of_plant(const char* name, double Type::*member) {
@@ -30,7 +32,7 @@ inline Knob of_pid(const char* name, double Pid::*member) {
   return {name, [member](LoopParts& parts) -> double& { return std::get<Pid>(parts.controller).*member; }};
 }
 inline Knob of_relay(const char* name, double Relay<double>::*member) {
-  return {name, [member](LoopParts& parts) -> double& { return std::get<Relay<double>>(*parts.element).*member; }};
+  return {name, [member](LoopParts& parts) -> double& { return law_of<Relay<double>>(*parts.element).*member; }};
 }
 
 inline double value(const LoopParts& parts, const Knob& knob) {
@@ -42,15 +44,9 @@ inline double value(const LoopParts& parts, const Knob& knob) {
 inline Loop with(const LoopParts& parts, const Knob& knob, double to) {
   LoopParts changed = parts;
   knob.of(changed) = to;
-  if (changed.friction)
-    std::visit(
-        [](auto& law) {
-          if constexpr (requires { law.Fs_minus; }) {
-            law.Fs_minus = law.Fs;
-            law.Fc_minus = law.Fc;
-          }
-        },
-        *changed.friction);
+  if (changed.friction && changed.friction->number("Fs_minus"))
+    changed.friction = changed.friction->with("Fs_minus", *changed.friction->number("Fs"))
+                           .with("Fc_minus", *changed.friction->number("Fc"));
   return build_loop(changed);
 }
 
@@ -91,7 +87,7 @@ inline Derived derived(const LoopParts& parts, const std::vector<Knob>& knobs, d
   return result;
 }
 
-/// Derivatives by differences of whole solutions, of order 4: period, amplitude, and the largest multiplier.
+/// Derivatives from differences of whole solutions, of order 4: period, amplitude, and the largest multiplier.
 struct Differences {
   double period, amplitude, multiplier;
 };
@@ -122,8 +118,8 @@ inline void check(double found, double error, double expected, double relative, 
   CHECK(std::abs(found - expected) <= error + floor);
 }
 
-/// Period and amplitude against differences: to 1e-5, and to the error that is stated. The floor is what differences of
-/// numbers that are right to 1e-11 leave.
+/// Checks period and amplitude against differences: to 1e-5, and to the stated error. The floor is the error of
+/// differences of numbers that are accurate to 1e-11.
 inline void check_differences(const LoopParts& parts, const std::vector<Knob>& knobs, const Derived& found,
                               double accuracy = 1e-5) {
   for (std::size_t k = 0; k < knobs.size(); ++k) {
@@ -141,20 +137,20 @@ inline std::vector<Knob> servo_knobs() {
 }
 template <class Law>
 std::vector<Knob> and_levels(std::vector<Knob> knobs) {
-  knobs.push_back({"Fs", [](LoopParts& parts) -> double& { return std::get<Law>(*parts.friction).Fs; }});
-  knobs.push_back({"Fc", [](LoopParts& parts) -> double& { return std::get<Law>(*parts.friction).Fc; }});
+  knobs.push_back({"Fs", [](LoopParts& parts) -> double& { return law_of<Law>(*parts.friction).Fs; }});
+  knobs.push_back({"Fc", [](LoopParts& parts) -> double& { return law_of<Law>(*parts.friction).Fc; }});
   return knobs;
 }
 inline std::vector<Knob> lugre_knobs() {
   using Law = LuGre<double>;
   auto knobs = and_levels<Law>(servo_knobs());
-  knobs.push_back({"vs", [](LoopParts& parts) -> double& { return std::get<Law>(*parts.friction).vs; }});
+  knobs.push_back({"vs", [](LoopParts& parts) -> double& { return law_of<Law>(*parts.friction).vs; }});
   knobs.push_back(of_law("sigma0", &Law::sigma0));
   knobs.push_back(of_law("sigma1", &Law::sigma1));
   knobs.push_back(of_law("sigma2", &Law::sigma2));
   return knobs;
 }
-inline LoopParts belt_parts(Element<double> friction) {
+inline LoopParts belt_parts(Element friction) {
   LoopParts parts;
   parts.plant = Belt{1.0, 2.0, 0.0, 0.1};
   parts.friction = std::move(friction);

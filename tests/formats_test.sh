@@ -9,13 +9,13 @@ complain() {
   failed=true
 }
 
-keys=$(tr '\n' ' ' <<<"$(cat cases/read_*.cpp)" | grep -oE 'allow\(\{[^}]*\}' | grep -oE '"[^"]+"' | tr -d '"' | sort -u)
+keys=$(tr '\n' ' ' <<<"$(cat cases/loader/read_*.cpp)" | grep -oE 'allow\(\{[^}]*\}' | grep -oE '"[^"]+"' | tr -d '"' | sort -u)
 (($(wc -w <<<"$keys") > 30)) || complain "only these keys were found: $keys"
 for key in $keys; do
   grep -qE "[\`{. ]$key[\`,} ]|loop\\.$key\\]" docs/formats.md || complain "docs/formats.md does not name the key $key"
 done
 
-commands=$(grep -l 'wants_json()' cli/*.cpp | sed 's|cli/||; s|\.cpp||' | grep -v '^output$')
+commands=$(grep -rl 'wants_json()' cli --include=*.cpp | sed 's|.*/||; s|\.cpp||' | grep -v '^output$')
 (($(wc -w <<<"$commands") > 10)) || complain "only these commands were found: $commands"
 for command in $commands; do
   [[ $command != report ]] || continue # its document is that of predict

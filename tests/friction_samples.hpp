@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "limcycle/models/elements.hpp"
+#include "limcycle/models/element/element.hpp"
 
-/// Parameter sets of every friction law, with what the conformance tests may ask of each. A law in the list
+/// Parameter sets of every friction law, with the properties that the conformance tests check. A law in the list
 /// `FrictionLaws` without samples here does not compile.
 namespace limcycle::test {
 
@@ -26,19 +26,19 @@ struct Sample {
   double level = 0.0;             ///< |F| <= level + per_speed |v| + per_way |x|
   double per_speed = 0.0;         ///< N s/m
   double per_way = 0.0;           ///< N/m
-  bool passive = false;           ///< no work can be had from the unloaded law, at any speed
+  bool passive = false;           ///< no work can be extracted from the unloaded law, at any speed
   bool rate_independent = false;  ///< the force is a function of the path alone
-  double fastest = infinite;      ///< s, shortest time constant of its own
-  double slowest = 0.0;           ///< s, longest time constant of its own
-  double settles = 40.0;          ///< way of steady sliding after which it is steady, in Scales::displacement
+  double fastest = infinite;      ///< s, shortest own time constant
+  double slowest = 0.0;           ///< s, longest own time constant
+  double settles = 40.0;          ///< path of steady sliding after which it is steady, in Scales::displacement
   double steady = nothing;        ///< N, level of steady sliding of a law without a Stribeck curve; `nothing`: none
-  bool sustained = true;          ///< under a mean velocity too a periodic state is reached in finite time
-  bool is_steady = true;          ///< at constant speed the force becomes one number
+  bool sustained = true;          ///< with a mean velocity too a periodic state is reached in finite time
+  bool is_steady = true;          ///< at constant speed the force becomes constant
   double closes = nothing;        ///< relative gap of a closed slow minor loop; `nothing`: it does not close
   double holds_below = 0.0;       ///< N, a periodic force below that causes no drift; 0: it drifts
   double wobbles = 1e-12;         ///< m, largest displacement per cycle that counts as none
-  /// Under a slow drift (two-point memory: in sliding too) the periodic state takes more periods than are searched: the
-  /// describing function may end without an answer, which it must say.
+  /// With a slow drift (two-point memory: in sliding too) the periodic state takes more periods than are searched: the
+  /// describing function may end without an answer, and must state it.
   bool settles_slowly = false;
   static constexpr double nothing = std::numeric_limits<double>::infinity();
 };
@@ -80,7 +80,7 @@ Law made(const Settings& settings) {
   return law;
 }
 
-/// `base` with other settings after it.
+/// `base` followed by further settings.
 inline Settings with(Settings base, std::initializer_list<Settings::value_type> more) {
   for (const auto& setting : more) {
     std::erase_if(base, [&](const auto& old) { return old.first == setting.first; });
@@ -135,7 +135,7 @@ inline std::vector<Sample> samples_of_kind(std::string_view kind) {
              .holds_below = 1.5},
             {.name = "uneven", .settings = uneven, .level = 1.5, .passive = true, .holds_below = 1.2}};
   if (kind == "karnopp" || kind == "quinn" || kind == "awrejcewicz") {
-    const bool passive = kind == "karnopp";  // the others have within the band the sign of the applied force
+    const bool passive = kind == "karnopp";  // in the band the others have the sign of the applied force
     return {{.name = "thesis",
              .settings = with(stribeck_set, {{"dv", 1e-5}}),
              .level = 1.5,
@@ -377,7 +377,7 @@ inline std::vector<Sample> samples_of_kind(std::string_view kind) {
              .settles_slowly = true}};
   }
   // A branch stretched from its return point to its target has, with the Koizumi-Shibazaki curve, no stiffness at the
-  // target: a periodic force never quite gets there, and where it turns wobbles from cycle to cycle (but stays there).
+  // target: a periodic force never quite reaches it, and its reversals vary from cycle to cycle (without drift).
   constexpr double short_of_target = 2e-8;
   if (kind == "two-state")
     return {{.name = "short",

@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
-/// A plain march of one law through a prescribed motion, for tests: Runge-Kutta of order 4 with small steps, switches
-/// by bisection. It shares no code with the methods that it checks.
+/// A simple integration of one law along a prescribed motion, for tests: Runge-Kutta of order 4 with small steps,
+/// switches by bisection. It shares no code with the methods that it checks.
 namespace limcycle::test {
 
 /// Largest steps of a march.
@@ -41,15 +41,15 @@ class LawMarch {
 
   double x() const { return x_; }
   double force() const { return law_.output(at(1.0), mode_, z_); }
-  double work() const { return work_; }         ///< done on the law since the beginning, J
-  double least_work() const { return least_; }  ///< least value of that so far
+  double work() const { return work_; }         ///< done on the law since the start, J
+  double least_work() const { return least_; }  ///< least value of it so far
   long events() const { return events_; }
   Mode mode() const { return mode_; }
   const std::vector<double>& z() const { return z_; }
   const Law& law() const { return law_; }
 
  private:
-  /// What moves at the part s of the stroke.
+  /// Input at the fraction s of the stroke.
   Input<double> at(double s) const {
     using std::numbers::pi;
     const double way = to_ - from_, direction = way < 0.0 ? -1.0 : 1.0;
@@ -121,7 +121,7 @@ class LawMarch {
     return next;
   }
 
-  /// The first negative guard, or -1.
+  /// Index of the first negative guard, or -1.
   int negative_guard(double s, const std::vector<double>& z) {
     guards_.assign(static_cast<std::size_t>(law_.guards(mode_)), 0.0);
     law_.guard(at(s), mode_, z, guards_);

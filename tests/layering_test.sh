@@ -31,17 +31,17 @@ wrong() {  # FILE LINE MESSAGE
 }
 
 right models/loop.hpp '#include <Eigen/Core>'
-right models/friction/dahl.hpp '#include "limcycle/models/loop.hpp"'
+right models/friction/bristle/dahl.hpp '#include "limcycle/models/loop.hpp"'
 right analysis/cycle.hpp '#include "limcycle/models/loop.hpp"'
-right analysis/motion/rodas5p.hpp '#include <boost/numeric/odeint/stepper/stepper_categories.hpp>'
-right analysis/motion/march.cpp '#include "limcycle/analysis/motion/rodas5p.hpp"'
+right analysis/motion/steppers/rodas5p.hpp '#include <boost/numeric/odeint/stepper/stepper_categories.hpp>'
+right analysis/motion/march.cpp '#include "limcycle/analysis/motion/steppers/rodas5p.hpp"'
 right analysis/frequency/root.cpp '#include <gsl/gsl_multiroots.h>'
-right analysis/orbit/shooting.cpp '  #  include "limcycle/analysis/cycle.hpp"  // not "limcycle/analysis/frequency/root.hpp"'
-right analysis/study/predict.cpp '#include "limcycle/analysis/frequency/root.hpp"'
+right analysis/orbit/cycle/shooting.cpp '  #  include "limcycle/analysis/cycle.hpp"  // not "limcycle/analysis/frequency/root.hpp"'
+right analysis/study/predict/predict.cpp '#include "limcycle/analysis/frequency/root.hpp"'
 right cases/load.cpp '#include <toml++/toml.h>'
-right reports/page.cpp '#include "limcycle/analysis/orbit/shooting.hpp"'
+right reports/page.cpp '#include "limcycle/analysis/orbit/cycle/shooting.hpp"'
 right cli/main.cpp '#include "build_info.hpp"'
-right cli/predict.cpp '#include "limcycle/cases/load.hpp"'
+right cli/commands/predict.cpp '#include "limcycle/cases/load.hpp"'
 right tests/analysis/root_test.cpp '#include <gsl/gsl_sf_ellint.h>'
 
 arrow='may not include'
@@ -50,20 +50,20 @@ wrong models/a.cpp '#include <gsl/gsl_math.h>' 'not a library of models'
 wrong models/a.hpp '#include <boost/math/special_functions.hpp>' 'third-party header'
 wrong models/a.cpp '#include <fstream>' 'prints nothing'
 wrong analysis/a.hpp '#include "limcycle/analysis/motion/march.hpp"' "$arrow"
-wrong analysis/motion/a.cpp '#include "limcycle/analysis/orbit/shooting.hpp"' "$arrow"
-wrong analysis/frequency/a.cpp '#include "limcycle/analysis/orbit/shooting.hpp"' "$arrow"
+wrong analysis/motion/a.cpp '#include "limcycle/analysis/orbit/cycle/shooting.hpp"' "$arrow"
+wrong analysis/frequency/a.cpp '#include "limcycle/analysis/orbit/cycle/shooting.hpp"' "$arrow"
 wrong analysis/orbit/a.cpp '#include "limcycle/analysis/frequency/root.hpp"' "$arrow"
-wrong analysis/orbit/a.cpp '#include "limcycle/analysis/study/predict.hpp"' "$arrow"
-wrong analysis/energy/a.cpp '#include "limcycle/analysis/orbit/shooting.hpp"' "$arrow"
+wrong analysis/orbit/a.cpp '#include "limcycle/analysis/study/predict/predict.hpp"' "$arrow"
+wrong analysis/energy/a.cpp '#include "limcycle/analysis/orbit/cycle/shooting.hpp"' "$arrow"
 wrong analysis/frequency/a.hpp '#include <fftw3.h>' 'third-party header'
-wrong analysis/orbit/a.hpp '#include "limcycle/analysis/motion/rodas5p.hpp"' 'third-party types'
+wrong analysis/orbit/a.hpp '#include "limcycle/analysis/motion/steppers/rodas5p.hpp"' 'third-party types'
 wrong analysis/study/a.cpp '#include <iostream>' 'prints nothing'
 wrong analysis/study/a.cpp '#include <nlohmann/json.hpp>' 'not a library of analysis'
 wrong analysis/study/a.cpp '#include "limcycle/cases/load.hpp"' "$arrow"
 wrong analysis/new/a.cpp '#include "limcycle/models/loop.hpp"' 'no rule for the folder'
 wrong cases/a.cpp '#include "limcycle/reports/page.hpp"' "$arrow"
 wrong cases/a.hpp '#include <toml++/toml.h>' 'third-party header'
-wrong cases/a.cpp '#include "limcycle/analysis/motion/rodas5p.hpp"' 'third-party types'
+wrong cases/a.cpp '#include "limcycle/analysis/motion/steppers/rodas5p.hpp"' 'third-party types'
 wrong reports/a.cpp '#include "limcycle/cases/load.hpp"' "$arrow"
 wrong reports/a.cpp '#include "limcycle/cli/options.hpp"' "$arrow"
 wrong reports/a.cpp '#include <CLI/CLI.hpp>' 'not a library of reports'

@@ -2,6 +2,11 @@
 #include <cmath>
 #include <vector>
 
+#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/dry/coulomb.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
 #include "limcycle/models/loop.hpp"
 
 /// Loops that several tests use.
@@ -60,36 +65,36 @@ inline Pid pid(double kp, double ki, double kd) {
 }
 
 /// m = 1 kg under PID (3, 4, 6): the servo of the 1995 paper.
-inline LoopParts servo_parts(Element<double> friction) {
+inline LoopParts servo_parts(Element friction) {
   LoopParts parts;
   parts.plant = Mass{1.0, 0.0, 0.0};
   parts.controller = pid(3.0, 4.0, 6.0);
   parts.friction = std::move(friction);
   return parts;
 }
-inline Loop servo(Element<double> friction) { return build_loop(servo_parts(std::move(friction))); }
+inline Loop servo(Element friction) { return build_loop(servo_parts(std::move(friction))); }
 
 /// m = 1 kg, k = 2 N/m on a belt at 0.1 m/s.
-inline Loop belt(Element<double> friction) {
+inline Loop belt(Element friction) {
   LoopParts parts;
   parts.plant = Belt{1.0, 2.0, 0.0, 0.1};
   parts.friction = std::move(friction);
   return build_loop(parts);
 }
 
-/// States as the case has them, of states measured from where a loop rests.
+/// States as in the case, from states measured from the rest point of a loop.
 inline Eigen::VectorXd in_the_case(const Loop& loop, const Eigen::VectorXd& X) {
   return loop.origin.size() > 0 ? Eigen::VectorXd(loop.origin + X) : X;
 }
 
-inline Loop forward(Element<double> element, std::vector<double> numerator, std::vector<double> denominator) {
+inline Loop forward(Element element, std::vector<double> numerator, std::vector<double> denominator) {
   LoopParts parts;
   parts.plant = TransferFunction{std::move(numerator), std::move(denominator), 0.0};
   parts.element = std::move(element);
   return build_loop(parts);
 }
 
-/// A pendulum that rubs on a turning shaft, and its loop.
+/// A pendulum with friction on a turning shaft, and its loop.
 inline FroudePendulum froude_pendulum(double shaft_speed) {
   FroudePendulum p;
   p.mass = 5.0;

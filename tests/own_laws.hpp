@@ -6,7 +6,7 @@
 /// Friction laws as a user writes them: plain types on double, which share no code with those of the library.
 namespace limcycle::test {
 
-/// LuGre with the levels of its paper; nothing but what is needed.
+/// LuGre with the levels of its paper; required members only.
 struct PlainLuGre {
   double Fs = 1.5, Fc = 1.0, vs = 1e-3, sigma0 = 1e5, sigma1 = std::sqrt(1e5), sigma2 = 0.4;
 
@@ -22,7 +22,7 @@ struct PlainLuGre {
   Scales scales() const { return {.displacement = Fs / sigma0, .velocity = vs, .output = Fs}; }
 };
 
-/// The same with what else it may say of itself.
+/// The same with optional members.
 struct NamedLuGre : PlainLuGre {
   static constexpr std::string_view kind = "my-lugre";
   bool odd() const { return true; }
@@ -60,7 +60,7 @@ struct RoundStribeck {
   Scales scales() const { return {.velocity = v0, .output = Fs}; }
 };
 
-/// Jenkins' slider: two modes on each side of one that sticks, and where it comes to by sliding.
+/// Jenkins' slider: a sticking mode, a slipping one on each side, and its state after long sliding.
 struct OwnJenkins {
   static constexpr std::string_view kind = "my-jenkins";
   double k = 1e4, Fc = 1.0;
@@ -96,6 +96,76 @@ struct OwnJenkins {
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return {-mode.value}; }
   Scales scales() const { return {.displacement = Fc / k, .output = Fc}; }
+};
+
+/// Dry friction with stiction, which holds its body at rest: modes 0 at rest, +1 and -1 sliding.
+struct OwnStiction {
+  static constexpr std::string_view kind = "my-stiction";
+  static constexpr Held holds = Held::rate;
+  double Fs = 1.5, Fc = 1.0, sigma2 = 0.4;
+
+  double output(const Input<double>& in, Mode mode, std::span<const double>) const {
+    return mode.value == 0 ? in.drive : static_cast<double>(mode.value) * Fc + sigma2 * in.v;
+  }
+  Held held(Mode mode) const { return mode.value == 0 ? Held::rate : Held::nothing; }
+  int guards(Mode mode) const { return mode.value == 0 ? 2 : 1; }
+  void guard(const Input<double>& in, Mode mode, std::span<const double>, std::span<double> g) const {
+    if (mode.value != 0) {
+      g[0] = static_cast<double>(mode.value) * in.v;
+      return;
+    }
+    g[0] = Fs - in.drive;
+    g[1] = Fs + in.drive;
+  }
+  Mode next(const Input<double>& in, Mode mode, std::span<double>, int fired) const {
+    if (mode.value == 0) return {fired == 0 ? 1 : -1};
+    return at_rest(in.drive);
+  }
+  Mode start(const Input<double>& in, std::span<double>) const {
+    return in.v > 0.0 ? Mode{1} : in.v < 0.0 ? Mode{-1} : at_rest(in.drive);
+  }
+  Mode at_rest(double drive) const { return {drive > Fs ? 1 : drive < -Fs ? -1 : 0}; }
+  bool odd() const { return true; }
+  Mode mirror(Mode mode) const { return {-mode.value}; }
+  Scales scales() const { return {.output = Fs}; }
+};
+
+/// The same bristle as TemplatedDahl, which converts itself to another scalar.
+template <class S>
+struct RemadeDahl {
+  S Fc{1.0}, sigma0{1e4};
+
+  template <class To>
+  RemadeDahl<To> on() const {
+    return {To(value_of(Fc)), To(value_of(sigma0))};
+  }
+  int states() const { return 1; }
+  void rate(const Input<S>& in, Mode, std::span<const S> z, std::span<S> dz) const {
+    using std::abs;
+    dz[0] = in.v - sigma0 * abs(in.v) * z[0] / Fc;
+  }
+  S output(const Input<S>&, Mode, std::span<const S> z) const { return sigma0 * z[0]; }
+  Scales scales() const { return {.displacement = value_of(Fc / sigma0), .output = value_of(Fc)}; }
+};
+
+/// A bristle on any scalar, with the parameter table that converts it: its derivatives are exact.
+template <class S>
+struct TemplatedDahl {
+  static constexpr std::string_view kind = "templated-dahl";
+  S Fc{1.0}, sigma0{1e4};
+
+  static std::vector<Parameter<TemplatedDahl, S>> parameters() {
+    return {{"Fc", "N", "level", &TemplatedDahl::Fc, positive},
+            {"sigma0", "N/m", "stiffness", &TemplatedDahl::sigma0, positive}};
+  }
+  int states() const { return 1; }
+  void rate(const Input<S>& in, Mode, std::span<const S> z, std::span<S> dz) const {
+    using std::abs;
+    dz[0] = in.v - sigma0 * abs(in.v) * z[0] / Fc;
+  }
+  S output(const Input<S>&, Mode, std::span<const S> z) const { return sigma0 * z[0]; }
+  bool odd() const { return true; }
+  Scales scales() const { return {.displacement = value_of(Fc / sigma0), .output = value_of(Fc)}; }
 };
 
 }  // namespace limcycle::test

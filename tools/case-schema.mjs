@@ -7,7 +7,7 @@ const laws = JSON.parse(readFileSync(0, 'utf8')).laws;
 const of_group = (group) => laws.filter((law) => law.group === group);
 const name_of = (law) => `${law.group.replace(' ', '-')}-${law.kind}`;
 
-/// As many entries as a list, or rows and columns as a matrix, may have: longest_list of cases/parameters.hpp.
+/// As many entries as a list, or rows and columns as a matrix, may have: longest_list of cases/loader/parameters.hpp.
 const longest = { maxItems: 201 };
 
 function bounds({ low, high, low_open, high_open }) {
@@ -47,7 +47,7 @@ const group = (description, some) =>
 
 const friction = of_group('friction');
 const elements = of_group('element');
-// Two of the elements may act on the error too: ErrorElements of models/elements.hpp.
+// Two of the elements may act on the error too: ErrorElements of models/laws.hpp.
 const both = elements.filter(({ kind }) => ['dead-zone', 'saturation'].includes(kind));
 
 /// JSON in one line, and with what fits into a line of 120 in one.

@@ -1,4 +1,4 @@
-// The sections of a case file as JSON Schema, for tools/case-schema.mjs: written out after cases/read_*.cpp, as no
+// The sections of a case file as JSON Schema, for tools/case-schema.mjs: written out after cases/loader/read_*.cpp, as no
 // table of the program lists them. tests/case_schema_test.mjs holds them against the program.
 
 const number = (description, more = {}) => ({ type: 'number', ...more, description });
@@ -40,7 +40,7 @@ export const by_kind = (description, kinds, meanings, type = 'object') => ({
   })),
 });
 
-// ---- signals of time: cases/read_signal.cpp
+// ---- signals of time: cases/loader/read_signal.cpp
 
 const start = number('before which it is 0, s', { minimum: 0, default: 0 });
 const rate = number('slope, 1/s');
@@ -71,7 +71,7 @@ const signal_meanings = Object.values(signal_kinds).flatMap((keys) =>
   Object.entries(keys).map(([key, { description }]) => [key, description]));
 const signal = by_kind('A signal of time: a number, or a table', signal_names, signal_meanings, ['number', 'object']);
 
-// ---- sections: cases/case.cpp, read_loop.cpp, read_methods.cpp, read_sensitivity.cpp, read_claims.cpp
+// ---- sections: cases/loader/case.cpp, read_loop.cpp, read_methods.cpp, read_sensitivity.cpp, read_claims.cpp
 
 const loop = table('The loop, or one lone friction or element', {
   plant: ref('plant'),

@@ -2,8 +2,8 @@
 
 namespace limcycle {
 
-/// Solves m x = b for each right-hand side, in their place, n at most 8. Without exchange of rows: for matrices like
-/// those of L-stable collocation, whose pivots do not vanish.
+/// Solves m x = b in place for each right-hand side, n at most 8. Without row exchange: for matrices like those of
+/// L-stable collocation, whose pivots do not vanish.
 template <class P, int n, class... Right>
 [[gnu::always_inline]] inline void eliminate(P (&m)[n][n], Right (&... right)[n]) {
 #pragma GCC unroll 8

@@ -23,7 +23,7 @@ std::string_view to_string(Isa isa) {
 
 bool is_available(Isa isa) {
 #if defined(__x86_64__) && defined(__GNUC__)
-  // Asks the operating system too: registers that it does not save cannot be used.
+  // Includes the operating system's support: registers that it does not save cannot be used.
   if (isa == Isa::avx2) return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
   if (isa == Isa::avx512)
     return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&

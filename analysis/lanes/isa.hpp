@@ -5,10 +5,10 @@
 
 namespace limcycle {
 
-/// Instruction set that a kernel computes with. Its numbers are the same on every machine that has it; those of another
-/// one differ by roundings.
+/// Instruction set that a kernel computes with. Results are the same on every machine that has it; those of different
+/// sets differ by roundings.
 enum class Isa {
-  scalar,  ///< what every machine has that runs this program
+  scalar,  ///< baseline of every machine that runs this program
   avx2,    ///< x86-64-v3: AVX2 and FMA, 4 lanes of double
   avx512,  ///< x86-64-v4: AVX-512 F, DQ and VL, 8 lanes
 };
@@ -20,7 +20,7 @@ constexpr int lanes_of(Isa isa) { return isa == Isa::avx512 ? 8 : isa == Isa::av
 /// where the program was not built for x86-64.
 std::string_view to_string(Isa isa);
 
-/// Whether this program was built with that set and this machine has it.
+/// True if this program was built with that set and this machine has it.
 bool is_available(Isa isa);
 
 /// The widest set that is available. Cost: two look-ups.
@@ -29,7 +29,7 @@ Isa best_isa();
 /// All sets, narrowest first.
 std::span<const Isa> all_isas();
 
-/// The set of that name, "auto" being the best one. Empty for a name that is none.
+/// The set of that name, "auto" for the best one. Empty for an unknown name.
 std::optional<Isa> isa_named(std::string_view name);
 
 }  // namespace limcycle

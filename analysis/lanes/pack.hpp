@@ -24,21 +24,20 @@ struct Registers<8> {
   using Bits [[gnu::vector_size(64)]] = std::int64_t;
 };
 
-/// How a * b + c rounds: once where the set has such an instruction (avx2, avx512) and twice where not, or always
-/// twice.
+/// Rounding of a * b + c: once if the set has such an instruction (avx2, avx512) and otherwise twice, or always twice.
 enum class Products { fused, rounded };
 
 /// N doubles that are computed on together, a Scalar for laws: one instruction each where `set` has registers of that
 /// width. `set` and `products` are part of the type so that no function of one source file compiled with them can be
-/// taken for that of another: a source that uses Pack<N, set, products> is compiled with the options of both, and holds
-/// no other inline code. Within one set every machine rounds alike.
+/// mistaken for that of another: a source that uses Pack<N, set, products> is compiled with the options of both, and
+/// holds no other inline code. Within one set every machine rounds alike.
 template <int N, Isa set, Products products = Products::fused>
 struct Pack {
   static constexpr int lanes = N;
   using Values = typename Registers<N>::Values;
   using Bits = typename Registers<N>::Bits;
 
-  /// What a comparison of two packs says, lane by lane.
+  /// Result of a comparison of two packs, lane by lane.
   struct Mask {
     Bits bits;  ///< -1 where true, 0 where not
 
@@ -96,7 +95,7 @@ struct Pack {
   friend Pack select(const Mask& condition, const Pack& yes, const Pack& no) {
     return Pack(condition.bits ? yes.v : no.v);
   }
-  /// The smaller of a and b; b where one of them is NaN. `max` likewise.
+  /// The smaller of a and b; b if one of them is NaN. `max` likewise.
   friend Pack min(const Pack& a, const Pack& b) { return Pack(a.v < b.v ? a.v : b.v); }
   friend Pack max(const Pack& a, const Pack& b) { return Pack(a.v > b.v ? a.v : b.v); }
   friend Pack abs(const Pack& a) { return from_bits(to_bits(a) & INT64_MAX); }
@@ -177,7 +176,7 @@ struct Pack {
 #if defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
     if constexpr (N == 8) return Pack(__builtin_ia32_scalefpd512_mask(a.v, n.v, a.v, -1, 4));
 #endif
-    // In two factors: the result may be a number though 2^n is none.
+    // In two factors: the result may be finite although 2^n is not.
     const Pack first = max(Pack(-1000.0), min(Pack(1000.0), n));
     return a * two_to(first) * two_to(n - first);
   }

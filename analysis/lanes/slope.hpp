@@ -2,8 +2,8 @@
 
 namespace limcycle {
 
-/// A pack and its derivative by one variable: a Scalar for laws, in lanes. As Dual is for doubles; see there for what
-/// is meant at kinks. The exponent of power() is a constant, the same in all lanes.
+/// A pack and its derivative by one variable: a Scalar for laws, in lanes, as Dual is for doubles; see there for the
+/// treatment of kinks. The exponent of power() is a constant, the same in all lanes.
 template <class P>
 struct Slope {
   P value{}, slope{};

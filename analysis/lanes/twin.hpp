@@ -2,8 +2,8 @@
 
 namespace limcycle {
 
-/// Two packs side by side, a Scalar for laws with twice the lanes. For methods whose every operation waits for the one
-/// before (marching): what is done to one half fills the pauses of the other. It pays where there are registers for
+/// Two packs side by side, a Scalar for laws with twice the lanes. For methods in which every operation depends on the
+/// previous one (marching): operations on one half fill the pauses of the other. Worthwhile if there are registers for
 /// both (AVX-512: 1.15 times as fast; AVX2: 1.04 times, not used).
 template <class P>
 struct Twin {

@@ -26,7 +26,7 @@ double ErrorWeights::norm(const State& x_old, const State& x_new, const State& e
   for (std::size_t i = 0; i < atol.size(); ++i) {
     const double reach = std::max(std::abs(x_old[i]), std::abs(x_new[i]));
     const double ratio = std::abs(error[i]) / (atol[i] + rtol * reach);
-    // std::max(a, NaN) would drop a NaN, so each component is looked at.
+    // std::max(a, NaN) would drop a NaN, so each component is checked.
     if (!std::isfinite(ratio) || !std::isfinite(x_new[i])) return std::numeric_limits<double>::infinity();
     worst = std::max(worst, ratio);
   }

@@ -1,5 +1,5 @@
 /// @file
-/// How large an error of a step is: the tolerances, and the norm every stepper of this folder is judged by.
+/// Error norm of a step: the tolerances, and the norm used by every stepper in this folder.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace limcycle {
 struct ErrorWeights {
   double rtol = 0;    ///< relative tolerance, 0 or more, finite
   State atol;         ///< absolute tolerance of each component, more than 0, finite, in the component's own unit
-  double time = 1.0;  ///< s, a time of the motion as a whole: what is short or long to the march is so beside it
+  double time = 1.0;  ///< s, a time scale of the whole motion: times are short or long to the march relative to it
 
   /// Throws std::invalid_argument, quoting the value, unless every tolerance is in its range and there is at least one.
   void require_valid() const;
@@ -28,7 +28,7 @@ struct ErrorWeights {
   /// Throws std::invalid_argument unless there is one tolerance for each of n components.
   void require_size(std::size_t n) const;
 
-  /// The same for another relative tolerance, the absolute ones in proportion.
+  /// The same for another relative tolerance, with the absolute ones in proportion.
   ErrorWeights scaled_to(double other_rtol) const {
     ErrorWeights other{other_rtol, atol, time};
     for (double& value : other.atol) value *= other_rtol / rtol;
@@ -45,9 +45,9 @@ struct ErrorWeights {
 /// The same norm as an error checker of odeint::controlled_runge_kutta. Odeint 1.74 rejects if `error > 1`, which a NaN
 /// passes: the step is accepted and the step size grows. Here a NaN counts as +infinity.
 ///
-/// An explicit stepper's checker is not shown x_new; it stands for x_old + dt dxdt_old in the allowance. A right side
-/// that hides its own NaN from every stage of the error formula cannot be seen here (the step after it is rejected, as
-/// its x_old is NaN), so whoever marches should look at the state too.
+/// An explicit stepper's checker does not receive x_new, which is replaced by x_old + dt dxdt_old in the allowance. A
+/// right side that hides its own NaN from every stage of the error formula cannot be seen here (the step after it is
+/// rejected, as its x_old is NaN), so the caller should check the state too.
 class WeightedErrorChecker {
  public:
   using value_type = double;

@@ -6,12 +6,11 @@
 #include <stdexcept>
 #include <variant>
 
-#include "limcycle/analysis/motion/affine_flow.hpp"
-#include "limcycle/analysis/motion/controlled_rodas5p.hpp"
-#include "limcycle/analysis/motion/explicit_steppers.hpp"
-#include "limcycle/analysis/motion/sticking.hpp"
+#include "limcycle/analysis/motion/field/affine_flow.hpp"
+#include "limcycle/analysis/motion/steppers/controlled_rodas5p.hpp"
+#include "limcycle/analysis/motion/steppers/explicit_steppers.hpp"
+#include "limcycle/analysis/motion/steppers/transition.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/motion/transition.hpp"
 
 namespace limcycle {
 namespace {
@@ -26,10 +25,10 @@ constexpr std::array<std::pair<StepperKind, std::string_view>, 6> names{{{Steppe
 /// Matrix exponentials instead of a stepper.
 struct ExactStepper {
   AffineFlow flow;
-  State tolerance;         ///< up to which the cubic through the ends of a step must be right
+  State tolerance;         ///< permitted error of the cubic through the ends of a step
   Eigen::MatrixXd last{};  ///< exponential of the last step, tried or repeated
   State rate_at_end, middle;
-  int at_floor = 0;  ///< steps in succession that were too long, but the shortest there are
+  int at_floor = 0;  ///< successive steps that were too long although the shortest possible
 };
 
 using AnyStepper =
@@ -50,10 +49,10 @@ AnyStepper make(StepperKind kind, const ErrorWeights& w, LoopField& field) {
   }
 }
 
-constexpr double longest_step = 1e15;  ///< times that of the motion
-constexpr int most_at_floor = 10'000;  ///< exact steps too long by their error; they get nowhere
+constexpr double longest_step = 1e15;  ///< relative to that of the motion
+constexpr int most_at_floor = 10'000;  ///< exact steps rejected at the shortest length: no progress
 
-/// The field as Odeint's explicit steppers want it, and with its Jacobian as the implicit one does.
+/// The field as Odeint's explicit steppers require it, and with its Jacobian as the implicit one does.
 auto right_side(LoopField& field) {
   return [&field](const State& x, State& dx, double t) { field.rate(x, dx, t); };
 }
@@ -76,20 +75,19 @@ std::string_view to_string(StepperKind kind) { return names[static_cast<std::siz
 StepperKind choose_stepper(const Loop& loop, double rtol, bool driven) {
   if (!driven && AffineFlow::applies(loop)) return StepperKind::exact;
   const bool bristle = std::ranges::any_of(loop.elements, [](const auto& element) {
-    return std::visit(
-        [](const auto& e) {
-          const bool band = drive_band(e) > 0.0 && NeedsDrive<std::decay_t<decltype(e)>>;  // a stiff layer at rest
-          return band || (e.states() > 0 && std::isfinite(e.scales().displacement));
-        },
-        element);
+    const bool band = element.drive_band() > 0.0 && element.needs_drive();  // a stiff layer at rest
+    return band || (element.states() > 0 && std::isfinite(element.scales().displacement));
   });
   // A body that truly sticks waits as long as an integrator needs, many times the slowest time constant of the free
-  // motion, while the fastest poles (the filter of a derivative) keep an explicit step short.
-  const bool sticks = std::ranges::any_of(loop.elements, [](const auto& element) {
-    return std::visit([]<class E>(const E&) { return holds_rate<E>(); }, element);
-  });
+  // motion, while the fastest poles (the filter of a derivative) limit the step of an explicit stepper.
+  const bool sticks = std::ranges::any_of(loop.elements, [](const auto& element) { return element.may_stick(); });
+  // The Jacobian of a curve that begins with infinite slope is unbounded where the body stops and breaks away: implicit
+  // steps shrink to nothing there, explicit ones pass.
+  constexpr double too_steep = 0.6;
+  const bool steep =
+      std::ranges::any_of(loop.elements, [](const auto& element) { return element.steep_exponent() < too_steep; });
   const auto moduli = pole_moduli(loop);
-  const double stiff = sticks ? 20.0 : 200.0;
+  const double stiff = steep ? 5000.0 : sticks ? 20.0 : 200.0;
   if (bristle || (!moduli.empty() && moduli.back() > stiff * moduli.front())) return StepperKind::rodas5p;
   return explicit_stepper(rtol);
 }
@@ -147,7 +145,7 @@ double March::first_dt() {
     speed = std::max(speed, std::abs(step_.dx0[i]) / scale);
   }
   const double h = size > 1e-5 && speed > 1e-5 ? 0.01 * size / speed : 1e-6 * weights_.time;
-  const double least = 1e-12 * (weights_.time + std::abs(t_));  // a motion at rest comes to such times
+  const double least = 1e-12 * (weights_.time + std::abs(t_));  // a motion at rest may reach such times
   return std::clamp(h, least, std::max(least, weights_.time));
 }
 
@@ -156,7 +154,7 @@ double March::first_dt() {
 bool March::try_exact(double& dt) {
   auto& exact = std::get<ExactStepper>(stepper_->any);
   const int longest = 60 + static_cast<int>(std::log2(weights_.time));
-  const int k = std::min(longest, static_cast<int>(std::floor(std::log2(dt))));  // at rest steps grow for ever
+  const int k = std::min(longest, static_cast<int>(std::floor(std::log2(dt))));  // at rest steps grow without limit
   const double h = truncated_ ? dt : std::ldexp(1.0, k);
   exact.last = truncated_ ? exact.flow.over(h) : exact.flow.over_power(k);
   AffineFlow::apply(exact.last, x_, step_.x1);
@@ -167,7 +165,7 @@ bool March::try_exact(double& dt) {
     const double cubic = 0.5 * (x_[i] + step_.x1[i]) + 0.125 * h * (step_.dx0[i] - exact.rate_at_end[i]);
     const double size = std::max(std::abs(x_[i]), 1e-3 * exact.tolerance[i]);
     const double miss = std::abs(cubic - exact.middle[i]) / (1e-6 * size);
-    error = std::isnan(miss) ? infinite : std::max(error, miss);  // beyond the range of numbers: too long
+    error = std::isnan(miss) ? infinite : std::max(error, miss);  // overflow: too long
   }
   const double factor = std::clamp(0.9 * std::pow(std::max(error, 1e-12), -0.25), 0.125, 4.0);
   const bool shortest = h <= 1e-14 * std::max(weights_.time, std::abs(t_));
@@ -202,7 +200,7 @@ bool March::try_step(double& dt) {
       stepper_->any);
   if (result != boost::numeric::odeint::success) return false;
   if (is_finite(step_.x1)) return true;
-  dt = 0.1 * tried;  // a NaN that the error estimate did not see
+  dt = 0.1 * tried;  // a NaN that the error estimate did not show
   return false;
 }
 
@@ -216,7 +214,7 @@ void March::repeat(double h, State& out) {
         } else if constexpr (std::is_same_v<S, ControlledRodas5p>) {
           stepper.stepper().repeat_step(implicit_system(field_), out, h, unused_);
         } else {
-          typename S::stepper_type fresh;  // Odeint's own keeps the rate of another point
+          typename S::stepper_type fresh;  // Odeint's own one keeps the rate of another point
           fresh.do_step(right_side(field_), step_.x0, step_.t0, out, h);
         }
       },
@@ -236,7 +234,7 @@ Status March::step(double t_end) {
   if (fresh_)
     field_.rate(x_, step_.dx0, t_);
   else
-    std::swap(step_.dx0, step_.dx1);  // the step before ended here
+    std::swap(step_.dx0, step_.dx1);  // the previous step ended here
   step_.t0 = t_;
   step_.x0 = x_;
   step_.switched.reset();
@@ -252,16 +250,16 @@ Status March::step(double t_end) {
     dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
     fresh_ = false;
   }
-  dt_ = std::min(dt_, longest_step * weights_.time);  // at rest steps grow for ever
+  dt_ = std::min(dt_, longest_step * weights_.time);  // at rest steps grow without limit
   double dt = std::min({dt_, dt_max_, t_end - t_});
-  bool shortened = dt < dt_;  // by what is asked for, not by the error: the next step may be as long as before
+  bool shortened = dt < dt_;  // by the requested end, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_;
   while (!try_step(dt)) {
     shortened = false;
     if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12 * weights_.time)))
       return is_finite(step_.x1) ? Status::stalled : Status::not_finite;
   }
-  if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers call a step that does not move a success
+  if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers accept a step that does not move
   dt_ = shortened ? std::max(dt, dt_) : dt;
   ++steps_;
   field_.rate(step_.x1, step_.dx1, step_.t1);

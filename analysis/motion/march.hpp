@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "limcycle/analysis/motion/error_weights.hpp"
-#include "limcycle/analysis/motion/loop_field.hpp"
+#include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/status.hpp"
 
 namespace limcycle {
@@ -20,11 +20,11 @@ StepperKind stepper_kind(const std::string& name);
 std::string_view to_string(StepperKind kind);
 
 /// Matrix exponentials for loops of piecewise affine elements, the stiff stepper for loops with bristle laws or a stiff
-/// linear part (where a body can stick and wait, a part that is stiff by much less), else an explicit one of Odeint: of
+/// linear part (if a body can stick and wait, a much less stiff part suffices), otherwise an explicit one of Odeint: of
 /// order 8 for tight tolerances, of order 5 for loose ones.
-/// `driven`: signals of time act from outside, so that matrix exponentials do not apply.
+/// `driven`: external signals vary in time, so that matrix exponentials do not apply.
 StepperKind choose_stepper(const Loop& loop, double rtol, bool driven = false);
-/// That of Odeint's that suits a tolerance.
+/// The stepper of Odeint for a tolerance.
 StepperKind explicit_stepper(double rtol);
 
 /// A surface C X = level in the space of the linear states, crossed in one direction (+1 upwards, -1 downwards).
@@ -35,7 +35,8 @@ struct Section {
   double value(const State& x) const {
     return direction * ((C * Eigen::Map<const Eigen::VectorXd>(x.data(), C.size())).value() - level);
   }
-  /// Clearly on the side that the crossing comes from, beyond the rounding of a point that was landed on the surface.
+  /// True on the side that the crossing comes from, by more than the rounding of a point that was landed on the
+  /// surface.
   bool before(const State& x) const {
     const double size =
         std::abs(level) + C.cwiseAbs() * Eigen::Map<const Eigen::VectorXd>(x.data(), C.size()).cwiseAbs();
@@ -49,7 +50,7 @@ struct Step {
   State x0, x1, dx0, dx1;
   std::optional<std::size_t> switched;  ///< the element that switched at t1
   bool on_section = false;              ///< t1 is a crossing of the section
-  /// d(state after the step, and after the switch at its end)/dx0, if the march tracks it; empty where a switch was not
+  /// d(state after the step, and after the switch at its end)/dx0, if the march tracks it; empty if a switch was not
   /// crossed transversally.
   Eigen::MatrixXd transition;
 
@@ -57,11 +58,11 @@ struct Step {
   void interpolate(double theta, State& x) const;
 };
 
-/// Marches a loop step by step through located events: no step spans a switch, no event is stepped over.
-/// With StepperKind::exact a step has no error; its length is such that the cubic through its ends is right to 1e-6 of
-/// the sizes, so that no event between them is overlooked.
-/// An event is located by repeating the step with other lengths until the guard is zero to rounding, so its time is as
-/// accurate as the stepper itself. Events that accumulate end the march with Status::chattering.
+/// Marches a loop step by step through located events: no step spans a switch, and no event is skipped. With
+/// StepperKind::exact a step has no error; its length is chosen so that the cubic through its ends is accurate to 1e-6
+/// of the sizes, and no event between them is missed. An event is located by repeating the step with other lengths
+/// until the guard is zero to rounding, so its time is as accurate as the stepper itself. Events that accumulate end
+/// the march with Status::chattering.
 class March {
  public:
   March(LoopField& field, StepperKind kind, ErrorWeights weights);
@@ -72,9 +73,9 @@ class March {
   /// Starts at (x, t) in the field's present modes. `section`: also stop at its crossings; a start on it does not
   /// count.
   void begin(State x, double t, std::optional<Section> section = {});
-  /// Forgets the run before, counts and step size included, so that the next one is what it would be in a new march.
+  /// Discards the previous run, counts and step size included, so that the next one is the same as in a new march.
   void reset();
-  /// One accepted step, not beyond t_end. Anything but converged means that the march cannot go on.
+  /// One accepted step, not beyond t_end. Any status but converged means that the march cannot continue.
   Status step(double t_end);
 
   const Step& last() const { return step_; }
@@ -89,11 +90,11 @@ class March {
   long events() const { return events_; }
   StepperKind kind() const { return kind_; }
   void limit_step(double dt_max) { dt_max_ = dt_max; }
-  /// Compute Step::transition from now on, or no more (autonomous loops only).
+  /// Switches the computation of Step::transition on or off (autonomous loops only).
   void track(bool wanted = true) { tracks_ = wanted; }
 
  private:
-  struct Stepper;  ///< one of Odeint's controlled steppers, our own, or the exact flow
+  struct Stepper;  ///< a controlled stepper of Odeint or limcycle, or the exact flow
 
   bool try_step(double& dt);
   bool try_exact(double& dt);

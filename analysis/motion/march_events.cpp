@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "limcycle/analysis/motion/march.hpp"
-#include "limcycle/analysis/motion/sticking.hpp"
 
 /// @file
 /// Location of events within a step: switches of elements and crossings of the section.
@@ -21,7 +20,7 @@ double March::event_value(std::size_t guard, const State& x, double t) {
   return guards_mid_[guard];
 }
 
-/// Looks at quarters of the step for the first guard that has turned negative, and brackets it by fractions of the
+/// Searches quarters of the step for the first guard that has turned negative, and brackets it by fractions of the
 /// step.
 bool March::negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard) {
   const bool watch_section = section_ && (armed_ || section_->before(step_.x0));
@@ -57,7 +56,7 @@ std::pair<double, double> March::crossing(std::size_t guard, double from, double
   return {from, to};
 }
 
-/// Of several events in one bracket, the one that the interpolant has first.
+/// The event that comes first on the interpolant, of several in one bracket.
 std::size_t March::first_of_candidates(const std::vector<double>& at_start, double from, double to) {
   if (candidates_.size() == 1) return candidates_.front();
   std::size_t first = candidates_.front();
@@ -72,7 +71,7 @@ std::size_t March::first_of_candidates(const std::vector<double>& at_start, doub
   return first;
 }
 
-/// Length of the step after which the guard is zero: bisection and secant on whole steps.
+/// Length of the step at whose end the guard is zero: bisection and secant on whole steps.
 double March::locate(std::size_t guard, double from, double to) {
   const double h = step_.t1 - step_.t0;
   if (from == 0.0 && guard != section_guard && guards_start_[guard] <= 0.0) return 0.0;
@@ -99,8 +98,8 @@ double March::locate(std::size_t guard, double from, double to) {
   return guard != section_guard && field_.holds(field_.owner(guard)) ? just_beyond(guard, best, to * h) : best;
 }
 
-/// A body that breaks away must be beyond its guard: with a force that rounding leaves short of break-away it would
-/// slide back, stick and break away again at the same instant.
+/// A body that breaks away must be beyond its guard: if rounding left the force short of break-away, it would slide
+/// back, stick and break away again at the same instant.
 double March::just_beyond(std::size_t guard, double at, double last) {
   double step = 2e-16 * std::max(last, std::abs(step_.t0));
   for (int i = 0; i < 20; ++i, step *= 2.0) {
@@ -131,8 +130,9 @@ Status March::land(std::size_t guard, double h) {
     return Status::converged;
   }
   step_.switched = field_.owner(guard);
-  // A body that is back at rest at once was carried there by a step so long that its velocity is within the tolerance.
-  if (h == 0.0 && may_stick(field_.loop().elements[*step_.switched]) && !field_.holds(*step_.switched))
+  // A body that is at once at rest again was carried there by such a long step that its velocity is within the
+  // tolerance.
+  if (h == 0.0 && field_.loop().elements[*step_.switched].may_stick() && !field_.holds(*step_.switched))
     dt_ = 0.125 * tried;
   if (tracks_) {
     Eigen::MatrixXd saltation;
@@ -146,7 +146,7 @@ Status March::land(std::size_t guard, double h) {
   ++events_;
   event_times_.push_back(t_);
   if (event_times_.size() > 50) event_times_.pop_front();
-  // In seconds, not in times of the motion: the slowest pole may be slower, the fastest faster, than any swing by far.
+  // In seconds, not relative to the motion: the slowest pole may be far slower, the fastest far faster, than any swing.
   const double short_time = 1e-10 * std::max(1.0, std::abs(t_));
   const bool accumulate = event_times_.size() == 50 && t_ - event_times_.front() < short_time;
   return accumulate ? Status::chattering : Status::converged;

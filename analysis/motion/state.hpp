@@ -8,8 +8,8 @@
 
 namespace limcycle {
 
-/// State of x' = f(x, t), one entry a component, in the units of the model. A std::vector because that is what
-/// Boost.Odeint resizes and copies without an adapter.
+/// State of x' = f(x, t), one entry per component, in the units of the model. A std::vector, because Boost.Odeint
+/// resizes and copies it without an adapter.
 using State = std::vector<double>;
 
 inline bool is_finite(const State& x) {

@@ -3,9 +3,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "limcycle/models/element/cubic.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/transfer.hpp"
 
@@ -27,7 +29,7 @@ class LinearSizes {
   }
 
   State find() {
-    std::vector<double> frequencies = pole_moduli(loop_);  // at which the linear part has something to say
+    std::vector<double> frequencies = pole_moduli(loop_);  // at which the linear part responds
     if (frequencies.empty()) frequencies.push_back(1.0);
     for (const double w : frequencies) respond(w);
     const double largest = size_.size() > 0 ? size_.maxCoeff() : 0.0;
@@ -47,7 +49,7 @@ class LinearSizes {
     return s * Eigen::MatrixXcd::Identity(n, n) - loop_.A.cast<std::complex<double>>();
   }
 
-  /// Full pivoting takes pivots that are small beside the largest for zero, which they may be by their units alone.
+  /// Full pivoting treats pivots much smaller than the largest as zero, although only their units may be small.
   static Eigen::MatrixXcd solution(const Eigen::MatrixXcd& M, const Eigen::MatrixXcd& right) {
     const Eigen::FullPivLU<Eigen::MatrixXcd> pivoted(M);
     if (pivoted.isInvertible()) return pivoted.solve(right);
@@ -65,7 +67,7 @@ class LinearSizes {
       }
   }
 
-  /// Whether a response that is small beside the others, in whatever units, is more than their rounding.
+  /// True if a response that is small compared with the others, in whatever units, exceeds their rounding.
   bool answers(Index i) const {
     if (!(size_(i) > 0.0)) return false;
     const Eigen::MatrixXcd M = resolvent(at_(i));
@@ -77,7 +79,7 @@ class LinearSizes {
     return size_(i) > 1e-13 * largest;
   }
 
-  /// A state that no element moves is as large as what it moves itself.
+  /// Size of a state that no element moves: that of the states it moves itself.
   double by_what_it_moves(Index i, double largest) const {
     double found = infinite;
     for (Index k = 0; k < size_.size(); ++k)
@@ -93,73 +95,22 @@ class LinearSizes {
   VectorXd size_, at_;          ///< and the frequency that gave it, rad/s
 };
 
-/// Gain of a memoryless element on its input, and on the rate of its input, where it works as it is meant to: inside a
-/// saturation, outside a dead zone; 0 for those without such a gain (friction, relay).
-std::pair<double, double> working_gain(const Element<double>& element) {
-  return std::visit(
-      []<class E>(const E& e) -> std::pair<double, double> {
-        if constexpr (SlopeBounded<E>) return {e.slope_bounds().second, 0.0};
-        if constexpr (requires {
-                        E::inside;
-                        E::outside;
-                      })
-          return {0.0, std::max(e.inside, e.outside)};
-        if constexpr (requires {
-                        e.half_gap;
-                        e.slope;
-                      })
-          return {e.slope, 0.0};
-        if constexpr (requires { e.step; }) return {1.0, 0.0};
-        return {0.0, 0.0};
-      },
-      element);
-}
-
-/// A with every element that has a gain replaced by it; empty where none has one.
-MatrixXd working_loop(const Loop& loop) {
-  const Index n = loop.states(), ne = std::ssize(loop.elements);
-  MatrixXd C(ne, n), D(ne, ne);
-  bool any = false;
-  for (Index i = 0; i < ne; ++i) {
-    const Port& port = loop.ports[static_cast<std::size_t>(i)];
-    const auto [gain, rate_gain] = working_gain(loop.elements[static_cast<std::size_t>(i)]);
-    any = any || gain != 0.0 || rate_gain != 0.0;
-    C.row(i) = gain * (port.C + port.C_delayed) + rate_gain * port.C_v;
-    D.row(i) = gain * port.D + rate_gain * port.D_v;
-  }
-  if (!any) return {};
-  const MatrixXd closed = MatrixXd::Identity(ne, ne) - D;
-  return loop.A + loop.A_delayed + loop.B * solve_columns_fully_pivoted(closed, C);
-}
-
-/// Input of the last element over which it changes what it does, and whether that is a rate.
-std::pair<double, bool> own_input(const Element<double>& element) {
-  const Scales scales = scales_of(element);
+/// Input scale over which the last element changes its behaviour; true if that is a rate.
+std::pair<double, bool> own_input(const Element& element) {
+  const Scales scales = element.scales();
   if (std::isfinite(scales.velocity)) return {scales.velocity, true};
   if (std::isfinite(scales.displacement)) return {scales.displacement, false};
-  const double size = std::visit(
-      []<class E>(const E& e) -> double {
-        if constexpr (requires {
-                        e.hysteresis;
-                        e.dead_zone;
-                      })
-          return std::max(e.hysteresis, e.dead_zone);
-        if constexpr (requires { e.half_gap; }) return e.half_gap;
-        if constexpr (requires { e.step; }) return e.step;
-        return 0.0;
-      },
-      element);
+  const double size = element.switching_input();
   return {size, false};
 }
 
-/// The frequency at which the output of the last element moves its own input by just what it changes over, in a loop
-/// whose poles are all at the origin, where the response is a power of s; 0 if there is none.
+/// The frequency at which the output of the last element moves its own input by the scale over which it changes, in a
+/// loop whose poles are all at the origin, where the response is a power of s; 0 if there is none.
 double frequency_of_scales(const Loop& loop) {
   const auto [size, is_rate] = own_input(loop.elements.back());
   const Index last = std::ssize(loop.elements) - 1;
   const auto moves = [&, by_rate = is_rate](double w) {
-    return std::abs(loop.element_response(w)(last, last)) * (by_rate ? w : 1.0) *
-           scales_of(loop.elements.back()).output;
+    return std::abs(loop.element_response(w)(last, last)) * (by_rate ? w : 1.0) * loop.elements.back().scales().output;
   };
   const double at_one = moves(1.0), at_two = moves(2.0), power = std::log2(at_one / at_two);
   const double found = size > 0.0 && power > 0.5 ? std::pow(at_one / size, 1.0 / std::round(power)) : 0.0;
@@ -180,28 +131,36 @@ void add_moduli(const MatrixXd& A, std::vector<double>& found) {
     if (moduli(i) > (i < zero ? root_of_rounding : negligible) * largest) found.push_back(moduli(i));
 }
 
-/// Factor on the velocity scale of a set-valued law whose curve begins with infinite slope, g = Fs - (...)|v/vs|^delta
-/// with delta < 1: the force is right to rtol only where v is right to vs rtol^(1/delta), and implicit stages must not
-/// cross the steep part unseen.
-double steepness(const Element<double>& element, double rtol) {
-  return std::visit(
-      [&]<class E>(const E& e) {
-        if constexpr (CanHold<E> && requires { e.curve.index, e.delta, e.vs; }) {
-          constexpr std::size_t tustin = 1;  // which is delta = 1, whatever delta is
-          if (e.curve.index != tustin && e.delta < 1.0) return 1e-3 * std::pow(rtol, 1.0 / e.delta - 1.0);
-        }
-        return 1.0;
-      },
-      element);
+/// Factor on the velocity scale of a law whose steep_exponent() is below 1: for a force accurate to rtol, v must be
+/// accurate to vs rtol^(1/delta), and implicit stages must not skip the steep part.
+double steepness(const Element& element, double rtol) {
+  const double delta = element.steep_exponent();
+  return delta < 1.0 ? 1e-3 * std::pow(rtol, 1.0 / delta - 1.0) : 1.0;
 }
 
 }  // namespace
+
+MatrixXd working_loop(const Loop& loop) {
+  const Index n = loop.states(), ne = std::ssize(loop.elements);
+  MatrixXd C(ne, n), D(ne, ne);
+  bool any = false;
+  for (Index i = 0; i < ne; ++i) {
+    const Port& port = loop.ports[static_cast<std::size_t>(i)];
+    const auto [gain, rate_gain] = loop.elements[static_cast<std::size_t>(i)].working_gain();
+    any = any || gain != 0.0 || rate_gain != 0.0;
+    C.row(i) = gain * (port.C + port.C_delayed) + rate_gain * port.C_v;
+    D.row(i) = gain * port.D + rate_gain * port.D_v;
+  }
+  if (!any) return loop.A + loop.A_delayed;
+  const MatrixXd closed = MatrixXd::Identity(ne, ne) - D;
+  return loop.A + loop.A_delayed + loop.B * solve_columns_fully_pivoted(closed, C);
+}
 
 std::vector<double> pole_moduli(const Loop& loop) {
   std::vector<double> found;
   if (loop.states() == 0) return found;
   add_moduli(loop.tangent(), found);
-  if (const MatrixXd working = working_loop(loop); working.allFinite() && working.size() > 0)
+  if (const MatrixXd working = working_loop(loop); working.allFinite() && working != loop.A + loop.A_delayed)
     add_moduli(working, found);
   if (found.empty() && !loop.elements.empty())
     if (const double own = frequency_of_scales(loop); own > 0.0) found.push_back(own);
@@ -215,8 +174,8 @@ double slow_time(const Loop& loop) {
 }
 
 double output_level(const Loop& loop, std::size_t element) {
-  const auto* cubic = std::get_if<Cubic<double>>(&loop.elements[element]);
-  if (!cubic || cubic->coefficient == 0.0) return scales_of(loop.elements[element]).output;
+  const auto* cubic = loop.elements[element].as<Cubic<double>>();
+  if (!cubic || cubic->coefficient == 0.0) return loop.elements[element].scales().output;
   std::vector<double> frequencies = pole_moduli(loop);
   if (frequencies.empty()) frequencies.push_back(1.0);
   double response = 0.0;
@@ -225,18 +184,14 @@ double output_level(const Loop& loop, std::size_t element) {
     if (const double here = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(k, k));
         std::isfinite(here))
       response = std::max(response, here);
-  if (!(response > 0.0)) return scales_of(loop.elements[element]).output;
+  if (!(response > 0.0)) return loop.elements[element].scales().output;
   return 1.0 / (response * std::sqrt(response * std::abs(cubic->coefficient)));
 }
 
 State typical_sizes(const Loop& loop) {
   State result = LinearSizes(loop).find();
   for (const auto& element : loop.elements)
-    std::visit(
-        [&](const auto& e) {
-          for (int k = 0; k < e.states(); ++k) result.push_back(e.state_scale(k));
-        },
-        element);
+    for (int k = 0; k < element.states(); ++k) result.push_back(element.state_scale(k));
   return result;
 }
 
@@ -256,7 +211,7 @@ ErrorWeights loop_weights(const Loop& loop, double rtol, State typical) {
   const auto n = static_cast<std::size_t>(loop.states());
   for (std::size_t i = 0; i < n; ++i) weights.atol[i] *= 1e-3;
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
-    const Scales scales = scales_of(loop.elements[k]);
+    const Scales scales = loop.elements[k].scales();
     const auto limit = [&](const Eigen::RowVectorXd& row, double scale) {
       if (!std::isfinite(scale)) return;
       for (std::size_t i = 0; i < n; ++i)
@@ -272,7 +227,9 @@ ErrorWeights loop_weights(const Loop& loop, double rtol, State typical) {
       if (const double part = std::abs(loop.ports[k].C_v(static_cast<Index>(i))); part > 0.0)
         weights.atol[i] = std::max(weights.atol[i], 1e-6 * speed / part);
   }
-  for (auto& value : weights.atol) value *= rtol;
+  // A loop whose numbers over- or underflow is still marched, as far as possible.
+  constexpr double least = std::numeric_limits<double>::min(), most = std::numeric_limits<double>::max();
+  for (auto& value : weights.atol) value = std::isnan(value) ? rtol : std::clamp(value * rtol, least, most);
   return weights;
 }
 

@@ -8,13 +8,17 @@ namespace limcycle {
 
 /// The frequencies of a loop, rad/s, slowest first: the moduli of the poles of its linear part without the elements
 /// (but with the tangent of gravity), and with those that have a gain (saturation, dead zone, backlash, quantizer)
-/// replaced by it; without those at the origin (less than 1e-9 of the largest). Where all poles are there, the
-/// frequency at which the last element's output moves its input by the size over which it changes (a relay's
-/// hysteresis, a Stribeck velocity); none where there is no such size. Without the delay, if there is one. Cost O(n^3).
+/// replaced by it; without those at the origin (less than 1e-9 of the largest). If all poles are there, the frequency
+/// at which the last element's output moves its input by the size over which it changes (a relay's hysteresis, a
+/// Stribeck velocity); none without such a size. A delay is ignored. Cost O(n^3).
 std::vector<double> pole_moduli(const Loop& loop);
 
-/// Slowest time constant of a loop, s: the inverse of the first of pole_moduli(); 1 where the loop has no time of its
-/// own.
+/// A + A_delayed with every element that has a gain in normal operation (saturation, dead zone, backlash, quantizer)
+/// replaced by that gain. Cost O(n^3).
+Eigen::MatrixXd working_loop(const Loop& loop);
+
+/// Slowest time constant of a loop, s: the inverse of the first of pole_moduli(); 1 if the loop has no time scale of
+/// its own.
 double slow_time(const Loop& loop);
 
 /// Typical output of an element of the loop: that of its Scales; of a cubic, which has no size of its own, the output
@@ -24,17 +28,17 @@ double output_level(const Loop& loop, std::size_t element);
 
 /// Typical size of every state of the loop (linear states, then element states): the largest response of the linear
 /// part, over the frequencies of its poles, to the element outputs. Position and velocity at a friction law are bounded
-/// by the law's own displacement and velocity scales, which are the ones that its switching from stick to slip needs.
+/// by the law's own displacement and velocity scales, which its switching from stick to slip requires.
 State typical_sizes(const Loop& loop);
 
-/// Typical rubbing velocity of the last element, from typical_sizes() and the speed of what it rubs on.
+/// Typical rubbing velocity of the last element, from typical_sizes() and the speed of the other surface.
 double typical_rubbing_velocity(const Loop& loop);
 
 /// Tolerances for marching the loop at relative tolerance rtol: absolute ones are rtol times a thousandth of the
-/// typical size, or the law's own scale where that is smaller (a loose tolerance on v breaks stiction early and lands
-/// on a false cycle). Throws std::invalid_argument if rtol is not in (0, 0.1].
+/// typical size, or the law's own scale if that is smaller (a loose tolerance on v breaks stiction early and lands on a
+/// false cycle). Throws std::invalid_argument if rtol is not in (0, 0.1].
 ErrorWeights loop_weights(const Loop& loop, double rtol);
-/// The same, where typical_sizes() are known already.
+/// The same for known typical_sizes().
 ErrorWeights loop_weights(const Loop& loop, double rtol, State typical);
 
 }  // namespace limcycle

@@ -4,51 +4,38 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "limcycle/analysis/energy/one_state_law.hpp"
+#include "limcycle/analysis/energy/one_state/one_state_law.hpp"
 
 namespace limcycle {
 namespace {
 
-std::optional<double> number_of(const Element<double>& element, std::string_view key) {
-  return std::visit(
-      [key]<class E>(const E& e) -> std::optional<double> {
-        if constexpr (requires { E::parameters(); })
-          for (const auto& parameter : E::parameters())
-            if (const auto* number = std::get_if<double E::*>(&parameter.member); number && parameter.key == key)
-              return e.*(*number);
-        return std::nullopt;
-      },
-      element);
-}
-
-std::vector<std::string> names_of_states(const Element<double>& element) {
-  const int n = std::visit([](const auto& e) { return e.states(); }, element);
+std::vector<std::string> names_of_states(const Element& element) {
+  const int n = element.states();
   std::vector<std::string> names;
   names.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) names.push_back(n == 1 ? "z" : "z" + std::to_string(i + 1));
   return names;
 }
 
-/// The verdict of one of many questions, which does not move the progress bar.
-Passive verdict(const Element<double>& law, const DissipativityOptions& options) {
+/// The verdict for one of many laws, without moving the progress bar.
+Passive verdict(const Element& law, const DissipativityOptions& options) {
   PassivityOptions quiet = options.passivity;
   quiet.progress = {};
   return passivity(law, quiet).passive;
 }
 
-ThresholdOptions threshold_options(const Element<double>& element, const DissipativityOptions& options) {
+ThresholdOptions threshold_options(const Element& element, const DissipativityOptions& options) {
   ThresholdOptions threshold;
   threshold.top_speed = options.passivity.top_speed;
   threshold.stop = options.passivity.stop;
-  if (!OneStateLaw::fits(element))
-    threshold.verdict = [&options](const Element<double>& law) { return verdict(law, options); };
+  if (!OneStateLaw::fits(element)) threshold.verdict = [&options](const Element& law) { return verdict(law, options); };
   return threshold;
 }
 
 /// The least sigma2: computed for a law with one state; 0 for another law that is passive without it.
-std::optional<SigmaThreshold> least_damping(const Element<double>& element, const DissipativityOptions& options,
+std::optional<SigmaThreshold> least_damping(const Element& element, const DissipativityOptions& options,
                                             Passive as_it_is) {
-  const auto own = number_of(element, "sigma2");
+  const auto own = element.number("sigma2");
   if (!own) return std::nullopt;
   if (OneStateLaw::fits(element)) {
     const LeastDamping least = least_sigma2(element, threshold_options(element, options));
@@ -62,7 +49,7 @@ std::optional<SigmaThreshold> least_damping(const Element<double>& element, cons
   return std::nullopt;
 }
 
-/// The speed of the other surface: where it stands in the parts, and the loop at another one.
+/// The speed of the other surface: its place in the parts, and the loop at another speed.
 struct SlidingSpeed {
   std::string path;
   double value = 0.0;
@@ -105,12 +92,12 @@ void look_at_sliding(const LoopParts& parts, const DissipativityOptions& options
 
 }  // namespace
 
-DissipativityReport dissipativity(const Element<double>& element, const std::string& path,
+DissipativityReport dissipativity(const Element& element, const std::string& path,
                                   const DissipativityOptions& options) {
   DissipativityReport report;
-  report.kind = kind_of(element);
+  report.kind = element.kind();
   report.path = path;
-  report.friction = is_friction(element);
+  report.friction = element.is_friction();
   report.states = names_of_states(element);
   report.top_speed = options.passivity.top_speed;
   PassivityOptions first = options.passivity;
@@ -159,7 +146,7 @@ DissipativityReport dissipativity(const LoopParts& parts, const DissipativityOpt
   LoopDissipationOptions energy;
   energy.stop = options.passivity.stop;
   if (parts.friction && report.threshold) {
-    energy.deficit = report.threshold->value - number_of(*parts.friction, "sigma2").value_or(0.0);
+    energy.deficit = report.threshold->value - parts.friction->number("sigma2").value_or(0.0);
   } else if (parts.friction && report.passivity.passive == Passive::yes) {
     energy.deficit = 0.0;
   }

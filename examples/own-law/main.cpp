@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/friction/own_law.hpp"
 #include "limcycle/reports/text.hpp"
 

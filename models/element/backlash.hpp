@@ -3,8 +3,8 @@
 
 namespace limcycle {
 
-/// Backlash with a friction-held output (play): the output follows slope (x -+ half_gap) while driven and stands while
-/// the input crosses the gap. Modes: +1 driven upwards, -1 driven downwards, 0 standing; state: the standing output.
+/// Backlash with a friction-held output (play): the output follows slope (x -+ half_gap) while driven and is constant
+/// while the input crosses the gap. Modes: +1 driven upwards, -1 driven downwards, 0 held; state: the held output.
 template <class S>
 struct Backlash {
   S slope{1.0}, half_gap{};
@@ -45,6 +45,8 @@ struct Backlash {
     z[0] = value_of(slope) * in.x;
     return {0};
   }
+  std::pair<double, double> working_gain() const { return {value_of(slope), 0.0}; }
+  double switching_input() const { return value_of(half_gap); }
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return {-mode.value}; }
   Scales scales() const { return {.output = value_of(slope * half_gap)}; }

@@ -2,20 +2,21 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
 /// Friction compensation: y = level sgn(v), v the rubbing velocity of the friction law in the same loop. Modes: +1 and
-/// -1, the sign of v. At v = 0 a law that really sticks has a selection, and the compensation takes the same one; the
-/// loop then puts out level times that selection (see Port::selection_of). Beside a law that never sticks, it is
-/// single-valued but at crossings.
+/// -1, the sign of v. At v = 0 a set-valued law has a selection, and the compensation takes the same one: the output is
+/// level times that selection (see Port::selection_of). With a law that is not set-valued, the output is single-valued
+/// except at zero crossings of v.
 template <class S>
 struct Compensation : Memoryless<S> {
   S level{};
 
   static constexpr Mode forward{1}, backward{-1};
   static constexpr std::string_view kind = "friction-compensation";
+  static constexpr bool acts_on_rate = true;
   static constexpr bool piecewise_affine = true;
   static constexpr bool output_needs_rate = true;
   static constexpr std::string_view equation = "y = level sgn(v); at v = 0 the selection of the friction law, if any";

@@ -1,5 +1,5 @@
 #pragma once
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 

@@ -5,13 +5,12 @@
 
 namespace limcycle {
 
-/// A relay with a dead time behind it: it decides as Relay does, and puts each decision out `delay` later.
+/// A relay with a dead time: it switches as Relay does, and each decision appears at its output `delay` later.
 ///
-/// State: the time left, s, until each pending decision comes out, oldest first; the unused ones are 0. Mode: the
-/// decision in force, the output, and the pending decisions, packed (see Queue). Guards: those of the decision, then
-/// the oldest timer. There is no sliding: what it decides now changes its input only later. A relay that would have to
-/// keep more than `capacity` decisions sets its timers to NaN, so that the run ends as not finite instead of going
-/// wrong.
+/// State: the time left, s, until each pending decision comes out, oldest first; unused ones are 0. Mode: the decision
+/// in force, the output, and the pending decisions, packed (see Queue). Guards: those of the decision, then the oldest
+/// timer. There is no sliding, since a decision changes the input only later. A relay that would have to keep more than
+/// `capacity` decisions sets its timers to NaN, so that the run ends as not finite instead of giving a wrong result.
 template <class S>
 struct DelayedRelay {
   S level{}, hysteresis{0.0}, dead_zone{0.0}, delay{};
@@ -19,13 +18,13 @@ struct DelayedRelay {
   static constexpr int capacity = 15;
   static constexpr std::string_view kind = "delayed-relay";
   static constexpr bool piecewise_affine = true;
-  /// The states are times: reflecting the motion leaves them as they are.
+  /// The states are times: reflecting the motion leaves them unchanged.
   static constexpr bool even_state(int) { return true; }
   static constexpr std::string_view equation = "y(t) = relay(x)(t - delay)";
   static constexpr std::string_view source = "exact: a relay commutes with a dead time behind it";
 
-  /// What a mode holds: values -1, 0, 1 in two bits each (0, 1, 2 standing for 0, 1, -1), the number of pending ones
-  /// in four. Mode{} is a relay that is off, nothing pending.
+  /// Contents of a mode: values -1, 0, 1 in two bits each (0, 1, 2 stand for 0, 1, -1), the number of pending decisions
+  /// in four. Mode{} is a relay that is off, with nothing pending.
   struct Queue {
     int decision = 0, output = 0, count = 0;
     int pending[capacity] = {};  ///< oldest first
@@ -88,7 +87,7 @@ struct DelayedRelay {
     }
     return queue.mode();
   }
-  /// As if the input had always been what it is; within the hysteresis the side of the input decides, at 0 its rate.
+  /// The input is taken as constant in the past; within the hysteresis the side of the input decides, at 0 its rate.
   Mode start(const Input<double>& in, std::span<double> z) const {
     for (int i = 0; i < capacity; ++i) z[static_cast<std::size_t>(i)] = 0.0;
     Queue queue;
@@ -100,6 +99,7 @@ struct DelayedRelay {
     queue.output = queue.decision;
     return queue.mode();
   }
+  double switching_input() const { return value_of(hysteresis > dead_zone ? hysteresis : dead_zone); }
   bool odd() const { return true; }
   Mode mirror(Mode mode) const {
     Queue queue = Queue::of(mode);
@@ -111,7 +111,7 @@ struct DelayedRelay {
   Scales scales() const { return {.output = value_of(level)}; }
   double state_scale(int) const { return value_of(delay); }
 
-  /// That of the relay, turned by the dead time: N = N_relay exp(-j w delay).
+  /// N of the relay with the phase shift of the dead time: N = N_relay exp(-j w delay).
   std::optional<std::complex<double>> exact_describing_function(double A, double w,
                                                                 double bias) const requires std::same_as<S, double> {
     const auto gain = relay().exact_describing_function(A, w, bias);
@@ -150,7 +150,7 @@ struct DelayedRelay {
     }
     clear_unused(queue, z);
   }
-  /// Timers that do not run forget what they were: otherwise deviations of theirs would last for ever.
+  /// Resets timers that do not run: otherwise their deviations would persist for ever.
   static void clear_unused(const Queue& queue, std::span<S> z) {
     for (int i = queue.count; i < capacity; ++i) z[static_cast<std::size_t>(i)] = S(0.0);
   }

@@ -1,192 +1,255 @@
 #pragma once
-#include <complex>
-#include <concepts>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string_view>
-#include <utility>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <typeinfo>
+#include <vector>
 
-#include "limcycle/models/parameter.hpp"
-#include "limcycle/models/scalar.hpp"
+#include "limcycle/models/dual.hpp"
+#include "limcycle/models/element/concepts.hpp"
+#include "limcycle/models/friction/features.hpp"
 
 namespace limcycle {
 
-/// What an element sees of its surroundings at one instant.
+/// Equations of an element on the scalar S, behind virtual calls: see LawOn and HasModes. Spans are at least as long as
+/// the number of states or guards.
 template <class S>
-struct Input {
-  S x{};      ///< input signal (friction: relative displacement, m)
-  S v{};      ///< its rate (friction: relative velocity, m/s)
-  S drive{};  ///< the output that would hold the signal named by `Held` at its present value; +-infinity where the
-              ///< surroundings cannot be held (prescribed motion), with the sign in which that signal is about to
-              ///< change (for friction: the sign of dv/dt, at v = 0 that of the coming motion)
+struct Equations {
+  virtual ~Equations() = default;
+  virtual S output(const Input<S>& in, Mode mode, std::span<const S> z) const = 0;
+  virtual void rate(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> dz) const = 0;
+  /// Output and rates in one call, so that shared terms are computed once; `dz` may be empty.
+  virtual S respond(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> dz) const = 0;
+  virtual void guard(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> g) const = 0;
+  virtual Mode next(const Input<S>& in, Mode mode, std::span<S> z, int fired) const = 0;
+  /// J; 0 where the element states no energy or has no state.
+  virtual S storage(Mode mode, std::span<const S> z) const = 0;
 };
 
-/// Discrete part of an element's state; its meaning is the element's own. Changed only at located events.
-struct Mode {
-  std::int64_t value = 0;
-  bool operator==(const Mode&) const = default;
+/// Properties of a class of elements, for any parameters.
+struct ElementFacts {
+  std::string_view kind;               ///< as in a case file; for a user's own law the name that it gives itself
+  std::string_view equation, source;   ///< in words and formulas
+  const Features* features = nullptr;  ///< of a friction law of this library
+  bool friction = false;               ///< a friction law, of this library or of the user
+  bool by_differences = false;         ///< written on double only: its derivatives are differences
+  bool has_modes = false;              ///< see HasModes; without, guards() is 0
+  Held holds = Held::nothing;          ///< see CanHold
+  bool needs_drive = false;            ///< see NeedsDrive
+  bool needs_rate = false;             ///< see NeedsRate
+  bool uses_rate = false;              ///< the output or a guard depends on the rate of the input
+  bool acts_on_rate = false;           ///< it responds to the rate of its input
+  bool piecewise_affine = false;       ///< see PiecewiseAffine
+  bool rate_independent = false;       ///< see RateIndependent
+  bool has_selection = false;          ///< see HasSelection
+  bool has_closed_form = false;        ///< see HasExactDescribingFunction
+  bool keeps_return_points = false;    ///< so that the number of its states in use changes along a motion
+  bool is_one_state = false;           ///< F and dz/dt are functions of one state and the velocity alone
+  std::optional<Mode> stuck = {};      ///< the mode of a body at rest
 };
 
-/// Which signal an element keeps at zero in its present mode, its output then being the drive.
-enum class Held { nothing, input, rate };
+/// An element behind virtual calls. Members that a class does not offer get neutral defaults: see element_face.hpp.
+struct ElementFace : Equations<double> {
+  virtual const ElementFacts& facts() const = 0;
+  virtual int states() const = 0;
+  virtual int guards(Mode mode) const = 0;
+  virtual Mode start(const Input<double>& in, std::span<double> z) const = 0;
+  virtual bool knows_sliding() const = 0;
+  virtual Mode after_sliding(const Input<double>& in, std::span<double> z) const = 0;
+  virtual bool odd() const = 0;
+  virtual Mode mirror(Mode mode) const = 0;
+  virtual Scales scales() const = 0;
+  virtual double state_scale(int i) const = 0;
+  virtual bool even_state(int i) const = 0;
+  virtual Held held(Mode mode) const = 0;
+  virtual double selection(Mode mode, double output) const = 0;
+  virtual bool drive_is_of_rate() const = 0;
+  virtual double drive_band() const = 0;
+  virtual bool arrests(Mode mode, int fired) const = 0;
+  virtual bool has_storage() const = 0;
+  virtual bool follows_position() const = 0;
+  virtual std::optional<std::complex<double>> exact_describing_function(double A, double w, double bias) const = 0;
+  virtual std::optional<double> exact_mean(double A, double bias) const = 0;
+  virtual std::optional<std::pair<double, double>> slope_bounds() const = 0;
+  virtual std::pair<double, double> working_gain() const = 0;
+  virtual double switching_input() const = 0;
+  virtual double steep_exponent() const = 0;
+  virtual std::optional<std::pair<double, double>> pull(double mean, double swing) const = 0;
+  virtual std::vector<std::pair<double, double>> state_bounds() const = 0;
+  virtual std::optional<double> force_bound(double speed) const = 0;
+  virtual std::vector<double> knots() const = 0;
 
-/// Sizes at which an element's behaviour changes; infinite where it has no such size. They set tolerances and meshes.
-struct Scales {
-  double displacement = infinite;  ///< input change over which the internal state settles (bristle: Fs/sigma0, m)
-  double velocity = infinite;      ///< input rate over which the output changes (Stribeck velocity, m/s)
-  double output = 1.0;             ///< typical size of the output (N)
+  virtual const std::vector<ParameterRow>& parameters() const = 0;
+  virtual std::vector<ParameterValue> values() const = 0;
+  virtual std::vector<ParameterValue> defaults() const = 0;
+  virtual std::shared_ptr<ElementFace> with(const std::vector<ParameterValue>& values) const = 0;
+  virtual std::optional<BrokenRule> validate() const = 0;
+
+  virtual std::shared_ptr<ElementFace> copy() const = 0;
+  virtual const std::type_info& type() const = 0;
+  virtual void* law() = 0;
+  virtual std::shared_ptr<const Equations<Dual<1>>> on_dual_1() const = 0;
+  virtual std::shared_ptr<const Equations<Dual<2>>> on_dual_2() const = 0;
+  virtual std::shared_ptr<const Equations<Dual<4>>> on_dual_4() const = 0;
 };
 
-/// An element maps a signal and its rate to an output. It is a value that holds parameters only: state and mode are
-/// passed in, the rate is handed out, so that one object serves many threads and methods.
-///
-/// Every element offers
-///  - `kind`, `equation`, `source`, `parameters()`, `validate()`: what it is;
-///  - `states()`: number of continuous states; `rate(in, mode, z, dz)`; `output(in, mode, z)`;
-///  - `odd()`: output changes sign when input and state do, `mirror(mode)` being the mode of the mirrored motion;
-///  - `scales()`, `state_scale(i)`.
-/// Elements with modes (see HasModes) add guards, which are >= 0 as long as the mode lasts, and the next mode.
-template <class E, class S>
-concept ElementOn = requires(const E e, const Input<S> in, Mode mode, std::span<const S> z, std::span<S> dz, int i) {
-  { E::kind } -> std::convertible_to<std::string_view>;
-  { e.states() } -> std::same_as<int>;
-  { e.output(in, mode, z) } -> std::same_as<S>;
-  e.rate(in, mode, z, dz);
-  { e.odd() } -> std::same_as<bool>;
-  { e.mirror(mode) } -> std::same_as<Mode>;
-  { e.scales() } -> std::same_as<Scales>;
-  { e.state_scale(i) } -> std::same_as<double>;
-};
+/// The face of a class. For classes of this library it is compiled in their own sources; element_face.hpp makes others.
+template <class Law>
+std::shared_ptr<ElementFace> face_of(const Law& law);
 
-/// Optional: an element whose equations change at located events. `guard` writes `guards(mode)` values that are
-/// non-negative while the mode lasts; when guard k turns negative `next` gives the mode that follows, and may reset the
-/// state; `start` gives the mode of an element without history at that input.
-template <class E, class S>
-concept HasModes = requires(const E e, const Input<S> in, Mode mode, std::span<const S> z, std::span<S> g, int k,
-                            std::span<S> z_next, std::span<double> z_out, const Input<double> at) {
-  { e.guards(mode) } -> std::same_as<int>;
-  e.guard(in, mode, z, g);
-  { e.next(in, mode, z_next, k) } -> std::same_as<Mode>;
-  { e.start(at, z_out) } -> std::same_as<Mode>;
-};
-
-/// Optional: an element that can hold a signal, `holds`, at zero (set-valued laws stick, an ideal relay slides).
-template <class E>
-concept CanHold = requires(const E e, Mode mode) {
-  { E::holds } -> std::convertible_to<Held>;
-  { e.held(mode) } -> std::same_as<Held>;
-};
-
-/// Optional: a law set-valued at rest that tells which element of Sgn(v) in [-1, 1] its output stands for.
-template <class E, class S>
-concept HasSelection = requires(const E e, Mode mode, const S output) {
-  { e.selection(mode, output) } -> std::same_as<S>;
-};
-
-/// Optional: an element whose output needs the drive, not only while it holds (a friction law that knows the applied
-/// force or the sign of the acceleration). In each mode the output is affine in the drive, with a slope from 0 to 1,
-/// and the rate of the state does not depend on it. In a loop it stands last: its drive holds everything else.
-template <class E>
-concept NeedsDrive = requires {
-  requires E::needs_drive;
-};
-
-/// Whether the drive of an element is what would hold the rate of its input (friction), or the input itself.
-template <class E>
-bool drive_is_of_rate(const E& element) {
-  if constexpr (requires { element.drive_is_of_rate(); })
-    return element.drive_is_of_rate();
-  else if constexpr (CanHold<E>)
-    return E::holds == Held::rate;
-  else
-    return NeedsDrive<E>;
-}
-
-/// Speed within which the output depends on the size of the drive, not only on its sign: 0 for nearly every element.
-/// One that has such a band offers `drive_band()`; under prescribed motion, where the drive has no size, it has no
-/// value within the band.
-template <class E>
-double drive_band(const E& element) {
-  if constexpr (requires { element.drive_band(); }) return element.drive_band();
-  return 0.0;
-}
-
-/// Whether the switch of guard `fired` first brings the rate of the input to zero, by an impulse of the element's
-/// output (a body that is stopped); `next` then sees that rate. An element that does so offers `arrests(mode, fired)`.
-template <class E>
-bool arrests(const E& element, Mode mode, int fired) {
-  if constexpr (requires { element.arrests(mode, fired); }) return element.arrests(mode, fired);
-  return false;
-}
-
-/// Optional: an output that depends on the input rate (so the rate must be known before the output).
-template <class E>
-concept NeedsRate = requires {
-  requires E::output_needs_rate;
-};
-
-/// Optional: in each mode the output and the guards are affine in (x, v, drive, z) and the rate of the state is
-/// constant, so that a loop of such elements only is integrated exactly, by matrix exponentials.
-template <class E>
-concept PiecewiseAffine = requires {
-  requires E::piecewise_affine;
-};
-
-/// Optional: a memoryless, single-valued, odd element whose output rises between two inputs x1 < x2 by at least
-/// alpha (x2 - x1) and at most beta (x2 - x1): the pair (alpha, beta), both finite. Rigorous error bounds of the
-/// describing function need it.
-template <class E>
-concept SlopeBounded = requires(const E e) {
-  { e.slope_bounds() } -> std::same_as<std::pair<double, double>>;
-};
-
-/// Optional: an element that tells its state after sliding at in.v for long. A steady drift, however slow, leads there;
-/// a state that nothing but sliding moves (a slider that sticks) would otherwise take the periods that the drift takes.
-template <class E>
-concept KnowsSliding = requires(const E e, const Input<double> in, std::span<double> z) {
-  { e.after_sliding(in, z) } -> std::same_as<Mode>;
-};
-
-/// Whether reflecting the motion leaves state i as it is (a lagged level, a time) instead of changing its sign. An
-/// element that has such states offers `even_state(i)`.
-template <class E>
-bool is_even_state(const E& element, int i) {
-  if constexpr (requires { element.even_state(i); }) return element.even_state(i);
-  return false;
-}
-
-/// Optional: closed-form describing function N(A, w) for the input bias + A sin wt (friction: bias t + A sin wt);
-/// empty where the closed form does not hold.
-template <class E>
-concept HasExactDescribingFunction = requires(const E e, double a) {
-  { e.exact_describing_function(a, a, a) } -> std::same_as<std::optional<std::complex<double>>>;
-};
-
-/// Optional: closed form of the mean output, `exact_mean(A, bias)`, for the same input; where only the history decides,
-/// the middle of what it may be.
-template <class E>
-concept HasExactMean = requires(const E e, double a) {
-  { e.exact_mean(a, a) } -> std::same_as<double>;
-};
-
-/// Optional: a storage function U(z) >= 0 of the internal state, J, with U = 0 for an element without history and no
-/// rise at a switch. A friction law is passive where v F >= dU/dt in every state and mode it can be in and for every v;
-/// what is left, v F - dU/dt, it dissipates. A law may have a U without being passive (LuGre). One that has a U for
-/// some of its parameters only offers `has_storage()`.
-template <class E, class S>
-concept HasStorage = requires(const E e, Mode mode, std::span<const S> z) {
-  { e.storage(mode, z) } -> std::same_as<S>;
-};
-
-/// Base of elements without internal state, modes or memory.
+/// Any friction law or element: it holds parameters only, so that one object serves many threads and methods. On double
+/// it is `Element`; on<Dual<N>>() returns the same element on dual numbers. Copies share their contents until one of
+/// them is changed. Cost of a call: a virtual call plus the law's own work.
 template <class S>
-struct Memoryless {
-  int states() const { return 0; }
-  void rate(const Input<S>&, Mode, std::span<const S>, std::span<S>) const {}
-  Mode mirror(Mode mode) const { return {-mode.value}; }
-  double state_scale(int) const { return 1.0; }
-  S storage(Mode, std::span<const S>) const { return S(0.0); }
+class ElementOn {
+ public:
+  explicit ElementOn(std::shared_ptr<ElementFace> face) : face_(std::move(face)) {
+    if constexpr (std::same_as<S, Dual<1>>) own_ = face_->on_dual_1();
+    if constexpr (std::same_as<S, Dual<2>>) own_ = face_->on_dual_2();
+    if constexpr (std::same_as<S, Dual<4>>) own_ = face_->on_dual_4();
+  }
+  template <class Law>
+  requires(LawOn<Law, double>&& std::same_as<S, double> && !std::same_as<Law, ElementOn>)
+      ElementOn(const Law& law)  // NOLINT(google-explicit-constructor): any law is an element
+      : ElementOn(face_of(law)) {}
+
+  /// The same element on another scalar: double, Dual<1>, Dual<2> or Dual<4>.
+  template <class To>
+  ElementOn<To> on() const {
+    return ElementOn<To>(face_);
+  }
+
+  const ElementFacts& facts() const { return face_->facts(); }
+  std::string_view kind() const { return facts().kind; }
+  bool is_friction() const { return facts().friction; }
+  bool has_modes() const { return facts().has_modes; }
+  bool needs_drive() const { return facts().needs_drive; }
+
+  int states() const { return face_->states(); }
+  void rate(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> dz) const {
+    equations().rate(in, mode, z, dz);
+  }
+  S output(const Input<S>& in, Mode mode, std::span<const S> z) const { return equations().output(in, mode, z); }
+  /// Output, and rates in `dz` unless that is empty.
+  S respond(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> dz) const {
+    return equations().respond(in, mode, z, dz);
+  }
+  int guards(Mode mode) const { return face_->guards(mode); }
+  void guard(const Input<S>& in, Mode mode, std::span<const S> z, std::span<S> g) const {
+    equations().guard(in, mode, z, g);
+  }
+  Mode next(const Input<S>& in, Mode mode, std::span<S> z, int fired) const {
+    return equations().next(in, mode, z, fired);
+  }
+  Mode start(const Input<double>& in, std::span<double> z) const { return face_->start(in, z); }
+  /// True if the element offers its mode and state after long sliding at in.v; without it, those of no history.
+  bool knows_sliding() const { return face_->knows_sliding(); }
+  Mode after_sliding(const Input<double>& in, std::span<double> z) const { return face_->after_sliding(in, z); }
+  bool odd() const { return face_->odd(); }
+  Mode mirror(Mode mode) const { return face_->mirror(mode); }
+  Scales scales() const { return face_->scales(); }
+  double state_scale(int i) const { return face_->state_scale(i); }
+  /// True if reflecting the motion leaves state i unchanged (a lagged level, a time) instead of changing its sign.
+  bool even_state(int i) const { return face_->even_state(i); }
+  /// Signal that the element keeps at zero in this mode.
+  Held held(Mode mode) const { return face_->held(mode); }
+  /// True if it has a mode in which it holds its body at rest, as set-valued friction has.
+  bool may_stick() const { return facts().holds == Held::rate; }
+  /// Element of Sgn(v) that this output of a set-valued law at rest stands for.
+  double selection(Mode mode, double output) const { return face_->selection(mode, output); }
+  bool drive_is_of_rate() const { return face_->drive_is_of_rate(); }
+  double drive_band() const { return face_->drive_band(); }
+  bool arrests(Mode mode, int fired) const { return face_->arrests(mode, fired); }
+  /// Stored energy (J), if the element offers it; 0 if it does not or has no state.
+  bool has_storage() const { return face_->has_storage(); }
+  S storage(Mode mode, std::span<const S> z) const { return equations().storage(mode, z); }
+  /// True if the output depends on the input itself, not only on its rate and the state.
+  bool follows_position() const { return face_->follows_position(); }
+
+  /// Closed forms, if available: see HasExactDescribingFunction, HasExactMean, SlopeBounded.
+  std::optional<std::complex<double>> exact_describing_function(double A, double w, double bias) const {
+    return face_->exact_describing_function(A, w, bias);
+  }
+  std::optional<double> exact_mean(double A, double bias) const { return face_->exact_mean(A, bias); }
+  std::optional<std::pair<double, double>> slope_bounds() const { return face_->slope_bounds(); }
+  /// Gain on the input and on its rate in the normal working range: inside a saturation, outside a dead zone; 0 for
+  /// elements without such a gain (friction, relay).
+  std::pair<double, double> working_gain() const { return face_->working_gain(); }
+  /// Input at which an element without scales changes its behaviour; 0 if there is none.
+  double switching_input() const { return face_->switching_input(); }
+  /// Power of |v| with which a set-valued law leaves its level at rest, if less than 1: its slope is infinite there. 1
+  /// for all others.
+  double steep_exponent() const { return face_->steep_exponent(); }
+  /// For an element with a restoring output, such as gravity, and a sinusoid of amplitude `swing` about `mean`: mean
+  /// output, and its derivative with respect to the mean.
+  std::optional<std::pair<double, double>> pull(double mean, double swing) const { return face_->pull(mean, swing); }
+  /// Least and largest value of each state, and largest |F| at speeds up to `speed` (m/s), if the equations prove them.
+  std::vector<std::pair<double, double>> state_bounds() const { return face_->state_bounds(); }
+  std::optional<double> force_bound(double speed) const { return face_->force_bound(speed); }
+  /// Speeds at which a piecewise curve may have a corner.
+  std::vector<double> knots() const { return face_->knots(); }
+
+  /// The table of parameters, empty for a user's own law, and their values in its order.
+  const std::vector<ParameterRow>& parameters() const { return face_->parameters(); }
+  std::vector<ParameterValue> values() const { return face_->values(); }
+  std::vector<ParameterValue> defaults() const { return face_->defaults(); }
+  /// Value of a scalar parameter; empty if no scalar parameter has that key.
+  std::optional<double> number(std::string_view key) const { return number_of(parameters(), values(), key); }
+  /// The same kind with other values, unchecked: see validate(). Throws std::invalid_argument for one of another type.
+  ElementOn with(const std::vector<ParameterValue>& values) const { return ElementOn(face_->with(values)); }
+  /// The same with one number replaced. Throws std::invalid_argument if no parameter has that key.
+  ElementOn with(std::string_view key, double value) const;
+  std::optional<BrokenRule> validate() const { return face_->validate(); }
+
+  /// The law itself if it is of that class, else null. A change through the pointer affects this element only; an
+  /// element on dual numbers that was made before stays unchanged.
+  template <class Law>
+  const Law* as() const {
+    return face_->type() == typeid(Law) ? static_cast<const Law*>(face_->law()) : nullptr;
+  }
+  template <class Law>
+  Law* as() {
+    if (face_->type() != typeid(Law)) return nullptr;
+    if (face_.use_count() > 1) face_ = face_->copy();
+    return static_cast<Law*>(face_->law());
+  }
+  bool is_of_kind_of(const ElementOn& other) const { return face_->type() == other.face_->type(); }
+
+ private:
+  const Equations<S>& equations() const {
+    if constexpr (std::same_as<S, double>)
+      return *face_;
+    else
+      return *own_;
+  }
+
+  std::shared_ptr<ElementFace> face_;
+  std::shared_ptr<const Equations<S>> own_;  ///< on double: null, since the face holds them
 };
+
+using Element = ElementOn<double>;
+
+template <class S>
+ElementOn<S> ElementOn<S>::with(std::string_view key, double value) const {
+  const auto& rows = parameters();
+  const auto row = std::ranges::find(rows, key, &ParameterRow::key);
+  if (row == rows.end())
+    throw std::invalid_argument(std::string(kind()) + " has no parameter called " + std::string(key));
+  auto changed = values();
+  changed[static_cast<std::size_t>(row - rows.begin())] = value;
+  return with(changed);
+}
+
+/// The law of an element whose class is known. Throws std::invalid_argument if it is of another class.
+template <class Law>
+const Law& law_of(const Element& element) {
+  if (const Law* law = element.as<Law>()) return *law;
+  throw std::invalid_argument("the element is no " + std::string(Law::kind) + " but a " + std::string(element.kind()));
+}
+template <class Law>
+Law& law_of(Element& element) {
+  if (Law* law = element.as<Law>()) return *law;
+  throw std::invalid_argument("the element is no " + std::string(Law::kind) + " but a " + std::string(element.kind()));
+}
 
 }  // namespace limcycle

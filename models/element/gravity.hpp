@@ -1,18 +1,9 @@
 #pragma once
 #include <cmath>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
-
-/// Optional: a memoryless element that pulls back at rest as a spring does, so that the loop has no rest point without
-/// it. `mean_output(b, A)` is the mean of its output under the input b + A sin wt (A = 0: the output itself),
-/// `mean_slope(b, A)` the derivative of that by b.
-template <class E>
-concept PullsBack = requires(const E e, double b) {
-  { e.mean_output(b, b) } -> std::same_as<double>;
-  { e.mean_slope(b, b) } -> std::same_as<double>;
-};
 
 /// Torque of the weight of a pendulum, N m, at the angle x (rad) from hanging: y = mass gravity arm sin(x).
 template <class S>

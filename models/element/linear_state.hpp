@@ -1,7 +1,7 @@
 #pragma once
 #include <concepts>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
@@ -11,15 +11,15 @@ struct LinearRate {
   S source{}, decay{};
 };
 
-/// Output made of that state: stiffness z + damping dz/dt + rest.
+/// Output as a function of that state: stiffness z + damping dz/dt + rest.
 template <class S>
 struct LinearOutput {
   S stiffness{}, damping{}, rest{};
 };
 
-/// Optional: an element with one state that is linear in it and with no modes, of which `linear_rate` and
-/// `linear_output` say the same as `rate` and `output`. Its periodic state under prescribed motion is found in one
-/// pass. `is_linear_in_state()`: whether the parameters are such; `has_constant_damping()`: whether `damping` and
+/// Optional: an element without modes and with one state in which it is linear; `linear_rate` and `linear_output` are
+/// equivalent to `rate` and `output`. Its periodic state under prescribed motion is found in one pass.
+/// `is_linear_in_state()`: true if the parameters make it so; `has_constant_damping()`: true if `damping` and
 /// `stiffness` are numbers, and `rest` a number times the input rate.
 template <class E, class S>
 concept LinearInState = requires(const E e, const Input<S> in) {

@@ -5,12 +5,13 @@
 namespace limcycle {
 
 /// Rate of the output of a dead zone or a saturation: y = slope(x) dx/dt, with the slope `inside` for |x| <= half_width
-/// and `outside` elsewhere. It stands beside the element itself where a controller differentiates that output.
+/// and `outside` elsewhere. It is added next to the element itself where a controller differentiates that output.
 template <class S>
 struct OutputRate : TwoBreaks<S> {
   S inside{0.0}, outside{0.0}, half_width{};
 
   static constexpr std::string_view kind = "output-rate";
+  static constexpr bool acts_on_rate = true;
   static constexpr bool output_needs_rate = true;
   static constexpr std::string_view equation =
       "y = inside dx/dt for |x| <= half_width, else outside dx/dt: rate of a dead zone's or a saturation's output";
@@ -43,6 +44,7 @@ struct OutputRate : TwoBreaks<S> {
     this->guard_at(half_width, in, mode, g);
   }
   Mode start(const Input<double>& in, std::span<double>) const { return this->start_at(value_of(half_width), in); }
+  std::pair<double, double> working_gain() const { return {0.0, value_of(inside > outside ? inside : outside)}; }
   bool odd() const { return true; }
   Scales scales() const { return {}; }
 

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
-/// What the memoryless elements with breaks at |x| = b share. Modes: 0 inside, +1 above, -1 below.
+/// Common part of the memoryless elements with breaks at |x| = b. Modes: 0 inside, +1 above, -1 below.
 template <class S>
 struct TwoBreaks : Memoryless<S> {
   static constexpr bool piecewise_affine = true;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
@@ -33,17 +33,19 @@ struct Quantizer : Memoryless<S> {
   Mode next(const Input<S>&, Mode mode, std::span<S>, int fired) const {
     return {fired == 0 ? mode.value + 1 : mode.value - 1};
   }
-  /// Levels beyond 2^53 cannot be told apart in a double: there the mode stays at the last that can.
+  /// Levels beyond 2^53 are not distinct in a double: there the mode stays at the last level that is.
   Mode start(const Input<double>& in, std::span<double>) const {
     constexpr double last = 9007199254740992.0;
     return {std::llround(std::clamp(in.x / value_of(step), -last, last))};
   }
+  std::pair<double, double> working_gain() const { return {1.0, 0.0}; }
+  double switching_input() const { return value_of(step); }
   bool odd() const { return true; }
   Scales scales() const { return {.output = value_of(step)}; }
 
   /// N = (2 step/(pi A)) sum over the thresholds t within A of the bias of sqrt(1 - ((t - bias)/A)^2); without bias
   /// (4 step/(pi A)) sum_i sqrt(1 - ((2 i - 1) step/(2 A))^2), 0 for A <= step/2. Gelb and Vander Velde (1968).
-  /// Cost: one root a threshold; empty beyond a million of them.
+  /// Cost: one square root a threshold; empty beyond a million of them.
   std::optional<std::complex<double>> exact_describing_function(double A, double,
                                                                 double bias) const requires std::same_as<S, double> {
     const double first = std::ceil((bias - A) / step - 0.5), last = std::floor((bias + A) / step - 0.5);

@@ -2,13 +2,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
 /// Relay: output +level, 0 or -level. It switches on at |x| = dead_zone + hysteresis and off at dead_zone - hysteresis
 /// (without dead zone: from +level to -level at x = -hysteresis). Without hysteresis it is set-valued at the switching
-/// input and may slide there: the output is then what holds the input, as long as it lies within the jump.
+/// input and may slide there: the output then holds the input, as long as it lies within the jump.
 /// Modes: +1, 0, -1 for the output; +2 and -2 for sliding at the upper or lower switching input.
 template <class S>
 struct Relay : Memoryless<S> {
@@ -71,13 +71,14 @@ struct Relay : Memoryless<S> {
     if (hysteresis == 0.0 && in.drive <= level && in.drive >= -level) return {2};
     return {in.x > 0.0 || (in.x == 0.0 && in.drive >= 0.0) ? 1 : -1};
   }
+  double switching_input() const { return value_of(hysteresis > dead_zone ? hysteresis : dead_zone); }
   bool odd() const { return true; }
   Scales scales() const { return {.output = value_of(level)}; }
 
   /// For the input b + A sin wt: the side of sign s = 1, -1 switches on where s x = d + h and off where s x = d - h.
   /// Each side that does both adds M/(pi A) (sqrt(1 - ((d-h-sb)/A)^2) + sqrt(1 - ((d+h-sb)/A)^2) - 2j h/A) to N: for b
   /// = 0 and A > d + h claims A1, A4 and A5; with a bias derived here. 0 where a biased input switches no side; empty
-  /// where an unbiased one does not and the history decides.
+  /// where an unbiased input switches no side and the output depends on the history.
   std::optional<std::complex<double>> exact_describing_function(double A, double,
                                                                 double bias) const requires std::same_as<S, double> {
     std::complex<double> N = 0.0;
@@ -111,7 +112,7 @@ struct Relay : Memoryless<S> {
 
  private:
   enum class Side { off, on, switches, undecided };
-  /// What the upper side does in the steady state; the history decides where it neither switches on nor off.
+  /// State of the upper side in the steady state; depends on the history if it neither switches on nor off.
   Side side_under(double A, double bias) const requires std::same_as<S, double> {
     const bool turns_on = A > dead_zone + hysteresis - bias, turns_off = A > bias - (dead_zone - hysteresis);
     if (turns_on && turns_off) return Side::switches;

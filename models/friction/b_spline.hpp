@@ -7,8 +7,8 @@
 
 namespace limcycle {
 
-/// Number of the span of ascending `knots` (2 or more) that holds x: i for knots[i] <= x < knots[i + 1]; the first span
-/// below the first knot and the last one from the last knot on. Cost O(log knots).
+/// Index of the span of ascending `knots` (2 or more) that contains x: i for knots[i] <= x < knots[i + 1]; the first
+/// span below the first knot and the last one from the last knot on. Cost O(log knots).
 template <class S>
 std::size_t span_of(std::span<const S> knots, const S& x) {
   const auto inner = knots.subspan(1, knots.size() - 2);
@@ -18,7 +18,7 @@ std::size_t span_of(std::span<const S> knots, const S& x) {
 
 /// Cubic B-spline curve sum_k c_k B_k(x) on clamped knots (the end knots four-fold), with one coefficient per basis
 /// function: knots + 2 of them. The curve begins at the first coefficient and ends at the last, lies between the least
-/// and the largest of any four that follow each other, and is C2; for x outside the knots it is constant.
+/// and the largest of any four consecutive ones, and is C2; for x outside the knots it is constant.
 /// de Boor's recursion, on any scalar, also with respect to knots and coefficients. De Boor (1972), J. Approx. Theory
 /// 6, 50-62.
 template <class S>

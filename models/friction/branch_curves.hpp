@@ -6,7 +6,7 @@
 namespace limcycle {
 
 /// @file
-/// Curves phi of a part xi of a way, phi(0) = 0 and phi(1) = 1, concave and rising, continued as odd functions.
+/// Branch curves phi(xi), xi a fraction of the path: phi(0) = 0, phi(1) = 1, concave, increasing, continued as odd.
 
 /// xi (1 - ln |xi|) (Koizumi and Shibazaki), 1 beyond 1. Its slope -ln xi is infinite at 0; here it is kept below
 /// 1 + ln 1e18 = 42.4, which changes the value by less than 1e-17.
@@ -35,8 +35,8 @@ S rational_curve(const S& xi, const S& shape) {
 }
 
 /// @name Energy under the curves
-/// int_0^xi eta phi'(eta) d eta for xi >= 0: what is stored in the springs of the stop elements that a curve stands
-/// for, loaded along it from rest, in units of level times way. Errors: those of roundings of 1.
+/// int_0^xi eta phi'(eta) d eta for xi >= 0: the energy stored in the springs of the equivalent stop elements, loaded
+/// from rest along the curve, in units of level times path. Error: rounding relative to 1.
 /// @{
 template <class S>
 S koizumi_shibazaki_energy(const S& xi) {

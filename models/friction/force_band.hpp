@@ -5,12 +5,12 @@
 
 namespace limcycle {
 
-/// What laws share that join the applied force at rest, within +-Fs, to a level of sliding over a band |v| <= dv:
+/// Common part of laws that blend the applied force at rest, within +-Fs, into a sliding level over a band |v| <= dv:
 ///   F = (1 - weight) sat(Fs; drive) + weight level sgn(v) + sigma2 v,   weight from 0 at v = 0 to 1 at |v| = dv;
 /// outside F = g(v) sgn(v) + sigma2 v. At v = 0 the force is balanced up to Fs, so that rest is an exact equilibrium.
 ///
-/// A mode says where the law is: outside the band (side +-1), or within it with the drive within +-Fs (load 0) or
-/// beyond (load +-1). Only while loaded the body crosses v = 0, and only then the sign of v, `sign`, is part of the
+/// A mode gives the place of the law: outside the band (side +-1), or within it with the drive within +-Fs (load 0) or
+/// beyond (load +-1). The body crosses v = 0 only while loaded, and only then the sign of v, `sign`, is part of the
 /// mode.
 template <class S>
 struct ForceBand : StribeckCurve<S>, Memoryless<S> {
@@ -35,6 +35,8 @@ struct ForceBand : StribeckCurve<S>, Memoryless<S> {
   };
 
   double drive_band() const { return value_of(dv); }
+  /// |F - sigma2 v| <= Fs: at rest, at g(v) in slip, and in between.
+  std::optional<double> force_bound(double speed) const { return this->bound_with_viscous(sigma2, speed); }
 
   int guards(Mode mode) const {
     const Place at = Place::of(mode);
@@ -83,7 +85,7 @@ struct ForceBand : StribeckCurve<S>, Memoryless<S> {
   }
 
  protected:
-  /// Whether the law is on the side of v >= 0.
+  /// True if the law is on the side of v >= 0.
   static bool is_forward(const Place& at, const S& v) {
     const int side = at.outside != 0 ? at.outside : at.sign;
     return side != 0 ? side > 0 : !(v < 0.0);
@@ -92,7 +94,7 @@ struct ForceBand : StribeckCurve<S>, Memoryless<S> {
     using std::abs;
     return at.outside > 0 ? this->level(abs(v), true) : -this->level(abs(v), false);
   }
-  /// sat(Fs; drive), as the mode says which part of it.
+  /// sat(Fs; drive), on the part that the mode gives.
   S balanced(const Place& at, const S& drive) const {
     return at.load > 0 ? this->Fs : at.load < 0 ? -this->Fs_minus : drive;
   }

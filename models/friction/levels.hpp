@@ -1,19 +1,27 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
-/// Break-away level Fs and sliding level Fc of dry friction, N, with their own values for motion in the negative
+/// Break-away level Fs and sliding level Fc of dry friction, N, with separate values for motion in the negative
 /// direction (`Fs_minus`, `Fc_minus`, by default the same).
 template <class S>
 struct Levels {
   S Fs{}, Fc{}, Fs_minus{}, Fc_minus{};
 
   bool symmetric() const { return Fs == Fs_minus && Fc == Fc_minus; }
+
+  double highest_level() const { return std::max(value_of(Fs), value_of(Fs_minus)); }
+  double lowest_level() const { return std::min(value_of(Fc), value_of(Fc_minus)); }
+  /// Bound of |F| for a law with |F - sigma2 v| <= Fs at speeds up to `speed`.
+  double bound_with_viscous(const S& sigma2, double speed) const {
+    return highest_level() + (sigma2 > 0.0 ? value_of(sigma2) * speed : 0.0);
+  }
 
   template <class Owner>
   static std::vector<Parameter<Owner, S>> levels_table(bool Fs_required) {
@@ -34,21 +42,27 @@ struct Levels {
 ///   exponential  g = Fc + (Fs - Fc) exp(-|v/vs|^delta)   (Bo and Pavelescu 1982; delta = 2 is the Gaussian form)
 ///   tustin       the same with delta = 1                  (Tustin 1947)
 ///   lorentzian   g = Fc + (Fs - Fc) / (1 + |v/vs|^delta)
-/// Fc <= g <= Fs for every v. The published forms of Tustin and Bo-Pavelescu are quoted from knowledge, not confirmed.
+/// Fc <= g <= Fs for every v. The published forms of Tustin and Bo-Pavelescu are quoted from memory, not confirmed.
 template <class S>
 struct StribeckCurve : Levels<S> {
   S vs{}, delta{2.0};
   Choice curve{};
   static constexpr std::string_view curves[] = {"exponential", "tustin", "lorentzian"};
 
-  /// g(v), N. For v = 0 the side is that of v >= 0.
+  /// g(v), N. v = 0 counts as v >= 0.
   S level(const S& v) const {
     using std::abs;
     return level_between(abs(v), select(v < 0.0, this->Fs_minus, this->Fs), select(v < 0.0, this->Fc_minus, this->Fc));
   }
-  /// g at a speed >= 0 in a direction that is known otherwise, at v = 0 too.
+  /// g at a speed >= 0 in a given direction, also for v = 0.
   S level(const S& speed, bool forward) const {
     return forward ? level_between(speed, this->Fs, this->Fc) : level_between(speed, this->Fs_minus, this->Fc_minus);
+  }
+
+  /// Power of |v| with which g leaves its value at v = 0, 1 at most.
+  double steep_exponent() const {
+    constexpr int tustin = 1;  // Tustin's curve has delta = 1, whatever the value of delta
+    return curve.index == tustin ? 1.0 : std::min(value_of(delta), 1.0);
   }
 
   template <class Owner>
@@ -62,16 +76,21 @@ struct StribeckCurve : Levels<S> {
 
  private:
   S level_between(const S& speed, const S& fs, const S& fc) const {
-    using std::exp;
     const S ratio = speed / vs;
     switch (curve.index) {
       case 1:
-        return fc + (fs - fc) * exp(-ratio);
+        return fallen(fs, fc, ratio);
       case 2:
         return fc + (fs - fc) / (S(1.0) + power(ratio, delta));
       default:
-        return fc + (fs - fc) * exp(-power(ratio, delta));
+        return fallen(fs, fc, power(ratio, delta));
     }
+  }
+  /// fc + (fs - fc) exp(-x), x >= 0. exp() is not called where it underflows to zero: it is slowest there.
+  static S fallen(const S& fs, const S& fc, const S& x) {
+    using std::exp;
+    constexpr double underflows = 746.0;
+    return x > underflows ? fc : fc + (fs - fc) * exp(-x);
   }
 };
 

@@ -3,26 +3,26 @@
 #include <random>
 #include <vector>
 
-#include "limcycle/models/friction/own_law_face.hpp"
+#include "limcycle/models/element/element_face.hpp"
 
 namespace limcycle {
 namespace {
 
-/// What a law says at one point: its force and the rates of its states.
+/// Results of a law at one point: its force and the rates of its states.
 struct SaidByLaw {
   std::vector<double> values;
-  SaidByLaw(const OwnLawFace& law, const Input<double>& in, Mode mode, const std::vector<double>& z)
+  SaidByLaw(const ElementFace& law, const Input<double>& in, Mode mode, const std::vector<double>& z)
       : values(1 + z.size()) {
     values[0] = law.output(in, mode, z);
     law.rate(in, mode, z, std::span(values).subspan(1));
   }
 };
 
-[[noreturn]] void refuse_law(const OwnLawFace& law, const std::string& why) {
-  throw std::invalid_argument(std::string(law.name()) + ": " + why);
+[[noreturn]] void refuse_law(const ElementFace& law, const std::string& why) {
+  throw std::invalid_argument(std::string(law.facts().kind) + ": " + why);
 }
 
-void check_sizes(const OwnLawFace& law) {
+void check_sizes(const ElementFace& law) {
   const Scales scales = law.scales();
   if (!(scales.displacement > 0.0 && scales.velocity > 0.0))
     refuse_law(law, "scales() must be positive (infinite: there is no such size)");
@@ -35,8 +35,8 @@ void check_sizes(const OwnLawFace& law) {
                           ") must be positive and finite; where it is left out, so must scales().displacement");
 }
 
-/// Whether what is said of the mirrored motion is the mirror image, but for rounding. NaN tells nothing.
-bool mirrors(const OwnLawFace& law, const SaidByLaw& here, const SaidByLaw& there) {
+/// True if the results for the mirrored motion are the mirror image, to rounding. NaN proves nothing.
+bool mirrors(const ElementFace& law, const SaidByLaw& here, const SaidByLaw& there) {
   double size = law.scales().output;
   for (std::size_t i = 0; i < here.values.size(); ++i) {
     const bool even = i > 0 && law.even_state(static_cast<int>(i) - 1);
@@ -49,11 +49,11 @@ bool mirrors(const OwnLawFace& law, const SaidByLaw& here, const SaidByLaw& ther
 
 }  // namespace
 
-TriedLaw try_own_law(const OwnLawFace& law) {
+bool tried_for_position(const ElementFace& law) {
   check_sizes(law);
-  TriedLaw tried;
+  bool depends_on_position = false;
   std::mt19937 random(1);
-  const auto between = [&random](double low, double high) {  // the same numbers with every library
+  const auto between = [&random](double low, double high) {  // the same numbers with every standard library
     return low + (high - low) * (static_cast<double>(random()) / 4294967295.0);
   };
   const Scales scales = law.scales();
@@ -71,7 +71,7 @@ TriedLaw try_own_law(const OwnLawFace& law) {
     for (const double moved : {0.37 * way, 51.3 * way}) {
       const SaidByLaw there(law, {moved, in.v, 0.0}, mode, z);
       for (std::size_t i = 0; i < here.values.size(); ++i)
-        tried.depends_on_position |= std::isfinite(here.values[i]) && there.values[i] != here.values[i];
+        depends_on_position |= std::isfinite(here.values[i]) && there.values[i] != here.values[i];
     }
     if (!law.odd()) continue;
     std::vector<double> mirrored(z);
@@ -81,7 +81,7 @@ TriedLaw try_own_law(const OwnLawFace& law) {
       refuse_law(law, "odd() returns true, but the force or a rate does not change its sign with v = " +
                           std::to_string(in.v) + " and the states");
   }
-  return tried;
+  return depends_on_position;
 }
 
 }  // namespace limcycle

@@ -4,59 +4,59 @@
 #include <cstdint>
 #include <span>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
 /// @file
-/// Hysteresis with memory of its return points (Madelung 1905), on a bounded stack, for any scalar that moves to and
-/// fro: from rest along a virgin curve, after each reversal along a branch of its own; a branch that comes back to
-/// where the branch before it began closes that loop, which is forgotten with its two return points.
+/// Hysteresis with memory of its return points (Madelung 1905), on a bounded stack, for any scalar that moves back and
+/// forth: from rest along a virgin curve, after each reversal along a new branch. A branch that returns to the point
+/// where the previous branch began closes that loop, which is forgotten with its two return points.
 ///
-/// What is kept are ways along branches, never positions: how far the present branch has gone, and how far each branch
-/// before it had gone when it was turned back. So a long slide loses no digits, closed loops return to the same
-/// numbers, and reflecting the motion leaves all of it as it is; the direction is part of the mode.
+/// The stack holds paths along branches, never positions: the path along the present branch, and the path of each
+/// earlier branch up to its reversal. So a long slide loses no digits, closed loops return to the same numbers, and
+/// reflecting the motion leaves the stack unchanged; the direction is part of the mode.
 ///
 /// A branch is given by a Shape, with
-///  - `masing`: true, the virgin curve doubled, f = f_r + d 2 f_v(way/2) (Masing 1926), the branch after the first
+///  - `masing`: true, the virgin curve doubled, f = f_r + d 2 f_v(path/2) (Masing 1926), the branch after the first
 ///    reversal leading to the mirror point and from there on along the virgin curve; false ("two-point"), the
 ///    curve `phi` stretched between the return point and its target, the first target being saturation on the other
 ///    side;
-///  - `end`: way along the virgin curve at which it saturates, infinite if it never does;
-///  - `virgin(way, direction)` >= 0: force there; `level(direction)` > 0: force of saturation in that direction;
+///  - `end`: path along the virgin curve at which it saturates, infinite if it never does;
+///  - `virgin(path, direction)` >= 0: force there; `level(direction)` > 0: force of saturation in that direction;
 ///  - `phi(xi)`, phi(0) = 0, phi(1) = 1: only where `masing` may be false;
-///  - `virgin_energy(way)` = int_0^way u f_v'(u) du: only where the energy is asked for, see ReturnPoints::energy.
+///  - `virgin_energy(path)` = int_0^path u f_v'(u) du: only where the energy is needed, see ReturnPoints::energy.
 
-/// What a mode holds of the stack, in its lowest six bits. Mode{} is the virgin state, about to move forwards.
+/// Contents of a mode for the stack, in its lowest six bits. Mode{} is the virgin state, about to move forwards.
 struct ReturnMode {
   int depth = 0;           ///< return points kept
   int direction = 1;       ///< of the present branch: +1 or -1
-  bool saturated = false;  ///< the scalar stands until it turns back
+  bool saturated = false;  ///< the scalar stays constant until it reverses
 
   static constexpr int bits = 6;
   static ReturnMode of(Mode mode) {
     return {static_cast<int>(mode.value & 15), (mode.value & 16) != 0 ? -1 : 1, (mode.value & 32) != 0};
   }
-  /// The mode with these, its other bits unchanged.
+  /// The mode with these bits, its other bits unchanged.
   Mode in(Mode mode) const {
     return {(mode.value & ~std::int64_t{63}) | depth | (direction < 0 ? 16 : 0) | (saturated ? 32 : 0)};
   }
-  /// Direction of the virgin curve, from which branches turn to and fro.
+  /// Direction of the virgin curve, from which the branches alternate.
   int outermost() const { return depth % 2 == 0 ? direction : -direction; }
 };
 
-/// Stack of return points over `states` continuous states: the way along the present branch (m), the ways of the
+/// Stack of return points over `states` continuous states: the path along the present branch (m), the paths of the
 /// branches before it, outermost first (m; 0 beyond the depth), and a force (N) that only a full stack uses.
 ///
-/// A stack that is full forgets its innermost loop at the next reversal: force and position stay what they are, and so
-/// does all that follows as long as the motion stays within the branch just left. Beyond that the force is off by what
-/// was forgotten (it may then exceed `level` by as much) until the innermost loop that is kept closes, where it jumps
-/// back to the exact value.
+/// A full stack forgets its innermost loop at the next reversal: force and position stay unchanged, and all results
+/// stay exact as long as the motion stays within the branch just left. Beyond that the force is off by the forgotten
+/// part (it may then exceed `level` by as much) until the innermost loop that is kept closes, where it jumps back to
+/// the exact value.
 ///
-/// Equality up to rounding: a way within `slack` (a share) of its target is there; within as much of its own beginning
-/// it was none. In periodic motion every closing coincides with a reversal, and whichever is met first, mode and states
-/// must come out the same. The first branch of a Masing hysteresis meets the virgin curve with the slope of both, so
-/// that its slack may be wider, `mirror_slack`, at an error of its square.
+/// Equality up to rounding: a path within `slack` (a share) of its target has arrived; one within as much of its own
+/// beginning has not begun. In periodic motion every closing coincides with a reversal, and whichever is met first,
+/// mode and states must come out the same. The first branch of a Masing hysteresis meets the virgin curve with the same
+/// slope, so that its slack may be wider, `mirror_slack`, with an error of the order of its square.
 template <class S, class Shape>
 struct ReturnPoints {
   static constexpr int capacity = 12, states = capacity + 2;
@@ -64,7 +64,7 @@ struct ReturnPoints {
 
   const Shape& shape;
 
-  /// Size of a state where the scalar moves by `displacement` (m) and the force by `level` (N).
+  /// Size of a state for motions of size `displacement` (m) and forces of size `level` (N).
   static double state_scale(int state, double displacement, double level) {
     return state <= capacity ? displacement : level;
   }
@@ -77,12 +77,12 @@ struct ReturnPoints {
     return at.outermost() * ((shape.masing ? masing(at, z) : two_point(at, z)) + z[offset]);
   }
 
-  /// Energy (J) in the springs of the stop elements whose hysteresis this is, for `masing` and a concave virgin curve.
-  /// Stop elements of yield y and stiffness k(y) dy make the virgin curve f_v(x) = int k min(x, y) dy; loading them to
-  /// x stores int k min(x, y)^2/2 dy = int_0^x u f_v'(u) du. Along a branch of length L from the force F_r to F the
-  /// work is F_r L + 4 Phi(L/2) and what the elements lose 4 Phi(L/2) - L f_v(L/2), Phi being the integral of f_v, so
-  /// that the energy changes by exactly L (F_r + F)/2, the trapezium under the ends of the branch. Derived. Closing a
-  /// loop leaves it as it was; a full stack that forgets a loop forgets its energy, too.
+  /// Energy (J) in the springs of the equivalent stop elements, for `masing` and a concave virgin curve. Stop elements
+  /// of yield y and stiffness k(y) dy make the virgin curve f_v(x) = int k min(x, y) dy; loading them to x stores
+  /// int k min(x, y)^2/2 dy = int_0^x u f_v'(u) du. Along a branch of length L from the force F_r to F the work is
+  /// F_r L + 4 Phi(L/2) and the dissipation 4 Phi(L/2) - L f_v(L/2), Phi being the integral of f_v, so that the energy
+  /// changes by exactly L (F_r + F)/2, the trapezium under the ends of the branch. Derived. Closing a loop leaves it
+  /// unchanged; a full stack that forgets a loop forgets its energy, too.
   S energy(ReturnMode at, std::span<const S> z) const {
     if (at.saturated) return shape.virgin_energy(shape.end);
     const double d0 = at.outermost();
@@ -97,13 +97,13 @@ struct ReturnPoints {
     return sum;
   }
 
-  /// >= 0 until the present branch has arrived where it leads to.
+  /// Path left to the target of the present branch, >= 0 until it is reached.
   S way_left(ReturnMode at, std::span<const S> z) const {
     if (at.saturated || (at.depth == 0 && value_of(shape.end) == infinite)) return S(infinite);
     return target(at, z) * (1.0 - slack_of(at)) - z[0];
   }
 
-  /// The present branch has arrived: it saturates, or goes on along the virgin curve or the branch before the last.
+  /// End of the present branch: it saturates, or continues along the virgin curve or the branch before the last.
   ReturnMode arrive(ReturnMode at, std::span<S> z) const {
     if (at.depth == 0) {
       at.saturated = true;
@@ -125,7 +125,7 @@ struct ReturnPoints {
     return at;
   }
 
-  /// The motion turns back.
+  /// The motion reverses.
   ReturnMode reverse(ReturnMode at, std::span<S> z) const {
     while (!at.saturated && has_arrived(at, z)) at = arrive(at, z);
     if (at.saturated) {
@@ -140,7 +140,7 @@ struct ReturnPoints {
     return {at.depth + 1, -at.direction, false};
   }
 
-  /// The virgin state, about to move in the direction of v, at rest in that of the drive.
+  /// The virgin state, about to move in the direction of v, or at rest in that of the drive.
   static ReturnMode start(const Input<double>& in, std::span<double> z) {
     std::fill_n(z.begin(), states, 0.0);
     return {0, in.v < 0.0 || (in.v == 0.0 && in.drive < 0.0) ? -1 : 1, false};
@@ -159,7 +159,7 @@ struct ReturnPoints {
     return branch == depth ? z[0] : z[length(branch)];
   }
 
-  /// Forces are those of the outermost direction.
+  /// Masing force; the virgin curve is that of the outermost direction.
   S masing(ReturnMode at, std::span<const S> z) const {
     const double d0 = at.outermost();
     S sum = shape.virgin(z[length(0)], d0);
@@ -198,15 +198,15 @@ struct ReturnPoints {
   }
   bool at_end(const S& gone) const { return gone >= shape.end * (1.0 - 10.0 * slack); }
 
-  /// Within the slack before the target, or within rounding behind it; not farther behind: then derivatives are being
-  /// taken by differences, and the stack must change in the same way.
+  /// True within the slack before the target, or within rounding beyond it. Not farther beyond: then differences are
+  /// being taken for derivatives, and the stack must change in the same way.
   bool has_arrived(ReturnMode at, std::span<const S> z) const {
     if (at.depth == 0 && value_of(shape.end) == infinite) return false;
     const double goal = value_of(target(at, z)), missing = goal - value_of(z[0]);
     return missing <= (slack_of(at) + 0.1 * slack) * goal && missing >= -10.0 * slack * goal;
   }
 
-  /// Turned back where it had just been turned: the branch before goes on.
+  /// Reversed where it had just reversed: the previous branch continues.
   ReturnMode cancel(ReturnMode at, std::span<S> z) const {
     at.direction = -at.direction;
     if (at.depth == 0) {
@@ -222,7 +222,7 @@ struct ReturnPoints {
     return at;
   }
 
-  /// Puts the last two branches and the present one together into one that ends here.
+  /// Merges the last two branches and the present one into one that ends here.
   ReturnMode forget_innermost(ReturnMode at, std::span<S> z) const {
     const double d0 = at.outermost();
     const S before = force(at, z);

@@ -3,8 +3,8 @@
 
 namespace limcycle {
 
-/// What set-valued friction laws share: at v = 0 the body sticks as long as the drive (the force that would hold it) is
-/// within the break-away level, and F equals the drive. `Base` brings the levels.
+/// Common part of set-valued friction laws: at v = 0 the body sticks as long as the drive (the force that would hold
+/// it) is within the break-away level, and F equals the drive. `Base` provides the levels.
 /// Modes: 0 stuck, +1 and -1 sliding forwards and backwards.
 template <class S, class Base>
 struct StickSlip : Base, Memoryless<S> {
@@ -15,7 +15,7 @@ struct StickSlip : Base, Memoryless<S> {
   Held held(Mode mode) const { return mode == stuck ? Held::rate : Held::nothing; }
   int guards(Mode mode) const { return mode == stuck ? 2 : 1; }
 
-  /// The element of Sgn(v) that an output stands for: the sign of v while sliding, F/Fs at rest.
+  /// Element of Sgn(v) that an output stands for: the sign of v while sliding, F/Fs at rest.
   S selection(Mode mode, const S& output) const {
     if (mode != stuck) return S(static_cast<double>(mode.value));
     return output / select(output < 0.0, this->Fs_minus, this->Fs);

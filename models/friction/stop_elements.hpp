@@ -7,21 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle {
 
 /// @file
-/// Parallel elements of a spring and a slider in series, which stick or slip: two bits of the mode each.
+/// Parallel elements, each a spring and a slider in series, which stick or slip; two bits of the mode each.
 
 enum class Slider : std::int64_t { sticks = 0, slips_forward = 1, slips_backward = 2 };
 
-/// As many as one mode holds, with a bit to spare for the law.
+/// Largest number that fits into one mode, with a bit to spare for the law.
 inline constexpr int most_sliders = 31;
 
-/// What is left before a guard turns negative, `left`, is 0 where it is negative by less than this share of its size.
-/// When motion turns back every slipping element stands on its limit, and a rounding there must not let it slip on the
-/// wrong way; one that moves on outwards slips at once, its guard being 0 already.
+/// A guard value `left` that is negative by less than this share of its size counts as 0. When the motion reverses
+/// every slipping element stands on its limit, and rounding there must not let it slip in the wrong direction; an
+/// element that moves on outwards slips at once, since its guard is 0 already.
 inline constexpr double slider_slack = 1e-12;
 
 template <class S>
@@ -30,7 +30,7 @@ S without_roundings(const S& left, double size) {
   return value < 0.0 && value >= -slider_slack * size ? left - S(value) : left;
 }
 
-/// Whether the motion at `in` is forwards or about to be, for an element whose output is `output`.
+/// True if the motion at `in` is forwards or about to be, for an element whose output is `output`.
 template <class S>
 bool moves_forward(const Input<S>& in, const S& output) {
   return in.v > 0.0 || (in.v == 0.0 && in.drive > output);
@@ -47,7 +47,7 @@ inline Mode with_slider(Mode mode, int i, Slider slider) {
   return {cleared | static_cast<std::int64_t>(slider) << (2 * i)};
 }
 
-/// Every slider sticks; what else the mode holds stays.
+/// All sliders stick; the other bits of the mode are unchanged.
 inline Mode all_sticking(Mode mode) { return {mode.value & ~slider_bits::all}; }
 
 inline Mode mirrored_sliders(Mode mode) {
@@ -55,19 +55,19 @@ inline Mode mirrored_sliders(Mode mode) {
   return {(mode.value & ~slider_bits::all) | forward << 1 | backward >> 1};
 }
 
-/// `count` elements, all of which slip.
+/// Mode of `count` elements that all slip.
 inline Mode all_slipping(int count, bool forward) {
   Mode mode;
   for (int i = 0; i < count; ++i) mode = with_slider(mode, i, forward ? Slider::slips_forward : Slider::slips_backward);
   return mode;
 }
 
-/// Common direction of all that slip, being driven by the same motion: +1 or -1; 0 if none slips.
+/// Common direction of all slipping elements, which are driven by the same motion: +1 or -1; 0 if none slips.
 inline int slip_direction(Mode mode) {
   return (mode.value & slider_bits::forward) != 0 ? 1 : (mode.value & slider_bits::backward) != 0 ? -1 : 0;
 }
 
-/// A rule broken by two lists of properties of the elements, `key` and `other`: of one length, 1 to most_sliders.
+/// Rule broken by two lists of properties of the elements, `key` and `other`: equal length, 1 to most_sliders.
 template <class S>
 std::optional<BrokenRule> validate_sliders(const std::string& key, const std::vector<S>& list,
                                            const std::string& other_key, const std::vector<S>& other) {
@@ -83,7 +83,7 @@ std::optional<BrokenRule> validate_sliders(const std::string& key, const std::ve
 
 /// Describing function of one element of stiffness k and limit W, h = W/k (claim A8):
 ///   N = (k/2)(1 - f(1 - 2h/A)) + j (4 W/(pi A))(1 - h/A),  k for A <= h.
-/// With sin^2(psi/4) = h/A the real part is (k/2 pi)(psi - sin psi), which loses no digits where A is many h.
+/// With sin^2(psi/4) = h/A the real part is (k/2 pi)(psi - sin psi), which loses no digits where A >> h.
 inline std::complex<double> stop_gain(double k, double W, double A) {
   const double h = W / k;
   if (A <= h) return k;
@@ -99,7 +99,7 @@ inline std::complex<double> stop_gain(double k, double W, double A) {
 }
 
 /// Parallel stop operators: element i is a spring k_i (N/m) that slips at W_i (N); its state is the stretch s_i (m) of
-/// the spring, kept as such so that a long slide loses no digits. What the elements are driven by is the law's choice.
+/// the spring, so that a long slide loses no digits. The law chooses the motion that drives the elements.
 template <class S>
 struct StopElements {
   std::vector<S> k, W;
@@ -133,8 +133,8 @@ struct StopElements {
       g[at(2 * i + 1)] = sticks ? k[at(i)] * without_roundings(limit + s[at(i)], value_of(limit)) : W[at(i)];
     }
   }
-  /// The element of limit guard `fired` stands on its limit to the last bit, and slips if it is driven outwards (it is
-  /// not where a guess of the state lay beyond the limit).
+  /// Sets the element of limit guard `fired` exactly on its limit; it slips if driven outwards (it is not where a trial
+  /// state lay beyond the limit).
   Mode slip(Mode mode, std::span<S> s, int fired, bool driven_forward) const {
     const std::size_t i = at(fired / 2);
     const bool forward = fired % 2 == 0;
@@ -144,6 +144,12 @@ struct StopElements {
   }
 
   std::optional<BrokenRule> validate_elements() const { return validate_sliders("k", k, "W", W); }
+  std::vector<std::pair<double, double>> state_bounds() const {
+    std::vector<std::pair<double, double>> bounds;
+    bounds.reserve(k.size());
+    for (int i = 0; i < states(); ++i) bounds.emplace_back(-state_scale(i), state_scale(i));
+    return bounds;
+  }
   double sum_of_limits() const {
     double sum = 0.0;
     for (const S& limit : W) sum += value_of(limit);

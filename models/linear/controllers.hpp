@@ -14,7 +14,7 @@ struct ControllerModel {
   std::vector<std::string> state_names;
 };
 
-/// What may stand between any controller and the plant, in this order; 0 or infinity: absent.
+/// Optional parts between any controller and the plant, in this order; 0 or infinity: absent.
 struct Actuator {
   double friction_compensation{0.0};  ///< its size times sgn(v) is added to the command, N
   double saturation{infinite};        ///< the command is limited to +-saturation

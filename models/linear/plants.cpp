@@ -8,7 +8,7 @@
 namespace limcycle {
 namespace {
 
-/// Ports of a plant that is known by its input-output behaviour only: friction acts where u does, rubbing at y.
+/// Ports of a plant given by its input-output behaviour only: friction acts where u does, rubbing at y.
 PlantModel from_input_output(const StateSpace& g, double delay) {
   PlantModel plant;
   plant.A = g.A;
@@ -109,7 +109,7 @@ PlantModel TransferFunction::model() const { return from_input_output(realise(nu
 std::optional<BrokenRule> ZeroPoleGain::validate() const {
   if (poles.empty()) return BrokenRule{"poles", "must not be empty"};
   if (gain == 0.0) return BrokenRule{"gain", "must not be zero"};
-  // Poles without a partner are their own fault, not that of the zeros.
+  // Poles without a partner are an error of the poles, not of the zeros.
   try {
     realise_zpk({}, poles, gain);
   } catch (const std::invalid_argument& error) {

@@ -75,12 +75,13 @@ struct Belt {
 
 /// Froude pendulum: a pendulum hung by a sleeve on a shaft that turns at `shaft_speed`. y is the angle from hanging,
 /// rad; u and a load are torques about the axis, N m. The friction law is the force F(v), N, at the surface of the
+/// rad; u and a load are torques about the axis, N m. The friction law is the force F(v), N, at the surface of the
 /// shaft for the velocity v = shaft_radius (dy/dt - shaft_speed) of the sleeve over it, and opposes v:
 ///   inertia d2y/dt2 = u - damping dy/dt - mass gravity arm sin y - shaft_radius F(v).
-/// For a law that is odd, - shaft_radius F(v) = + shaft_radius F(shaft_radius (shaft_speed - dy/dt)): the shaft drives.
-/// `inertia` is all of it, about the axis of the shaft (that of the centre of mass is inertia - mass arm^2).
+/// For an odd law, - shaft_radius F(v) = + shaft_radius F(shaft_radius (shaft_speed - dy/dt)): the shaft drives.
+/// `inertia` is the total about the axis of the shaft (that about the centre of mass is inertia - mass arm^2).
 /// A standard form (friction-driven pendulum, after W. Froude); Piatkowski and Wolski (2018), Mechanism and Machine
-/// Theory 119, 37-50, use it with a fitted friction curve. Their own equations of motion were not seen.
+/// Theory 119, 37-50, use it with a fitted friction curve. Their own equations of motion were not available.
 struct FroudePendulum {
   double mass{}, arm{}, inertia{}, damping{0.0}, shaft_radius{}, shaft_speed{}, gravity{9.81}, clearance{0.0};
   static constexpr std::string_view kind = "froude-pendulum";

@@ -10,12 +10,12 @@ namespace {
 using Eigen::Index;
 using Row = Eigen::RowVectorXd;
 
-/// Entries that are sums of terms of these sizes are equal, but for a part `accuracy` of them.
+/// True if entries that are sums of terms of these sizes are equal to within `accuracy` of them.
 bool equal(const Row& a, const Row& b, const Row& sizes, double accuracy) {
   return ((a - b).array().abs() <= accuracy * sizes.array()).all();
 }
 
-/// One over the size of a row, so that equations and unknowns come in one unit; 1 for a row of zeros.
+/// Reciprocal of the norm of a row, so that equations and unknowns have similar sizes; 1 for a zero row.
 double scale_of(const Row& row) {
   const double size = row.norm();
   return size > 0.0 ? 1.0 / size : 1.0;
@@ -47,7 +47,7 @@ Row integral_of(const Row& velocity, const Eigen::MatrixXd& A, const Eigen::Matr
     wanted(i) *= scale;
   }
   Eigen::VectorXd in_units = least_squares(equations, wanted, 1e-12);
-  // What is zero but for rounding would look like a displacement that a force moves at once.
+  // An entry of rounding size would look like a displacement that a force moves at once.
   const double rounding = 1e-12 * in_units.norm();
   in_units = (in_units.array().abs() > rounding).select(in_units, 0.0);
   const Row found = unit.cwiseProduct(in_units).transpose();

@@ -1,6 +1,6 @@
 #include "limcycle/models/linear/state_space.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -89,7 +89,7 @@ StateSpace realise(std::span<const double> numerator, std::span<const double> de
   for (auto& value : a) value /= den.front();
   if (n == 0) return gain_only(b[0]);
 
-  // Controllable form in the scaled time p = s / scale, so that states of a fast or slow plant are of one size.
+  // Controllable form in the scaled time p = s / scale, so that the states of a fast or slow plant are of similar size.
   const double scale = time_scale(a);
   const auto order = static_cast<Eigen::Index>(n);
   StateSpace g{Eigen::MatrixXd::Zero(order, order), Eigen::MatrixXd::Zero(order, 1), Eigen::MatrixXd(1, order),
@@ -110,7 +110,7 @@ StateSpace realise_zpk(std::vector<std::complex<double>> zeros, std::vector<std:
   if (zeros.size() > poles.size()) throw std::invalid_argument("there are more zeros than poles");
   auto numerators = factors(std::move(zeros), "zeros");
   auto denominators = factors(std::move(poles), "poles");
-  // A pair of zeros needs a second-order section: join two real poles where no pair is left for it.
+  // A pair of zeros needs a second-order section: join two real poles if no pair is left for it.
   const auto pairs = [](const auto& list) { return std::ranges::count(list, 3U, &Polynomial::size); };
   while (pairs(numerators) > pairs(denominators)) {
     const Polynomial joined = product(denominators[0], denominators[1]);

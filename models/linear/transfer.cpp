@@ -1,6 +1,6 @@
 #include "limcycle/models/linear/transfer.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 
 constexpr double negligible_part = 1e-13;
 
-/// u such that I - 2 u u'/(u' u) takes v to a multiple of e1; zero if v is along e1 already. Not normalised: where only
-/// the order of the states changes the reflection is exact.
+/// u such that I - 2 u u'/(u' u) maps v to a multiple of e1; zero if v is already along e1. Not normalised, so that the
+/// reflection is exact if only the order of the states changes.
 VectorXd reflection(const VectorXd& v) {
   const double largest = v.size() == 0 ? 0.0 : v.cwiseAbs().maxCoeff();
   if (largest == 0.0 || v.tail(v.size() - 1).isZero(0.0)) return VectorXd::Zero(v.size());
@@ -27,7 +27,7 @@ VectorXd reflection(const VectorXd& v) {
   return u;
 }
 
-/// Coordinates of the states from `first` on reflected by I - 2 u u'/(u' u).
+/// Reflects the coordinates of the states from `first` on by I - 2 u u'/(u' u).
 void reflect(StateSpace& H, Index first, const VectorXd& u) {
   const Index m = u.size();
   const double square = u.squaredNorm();
@@ -45,7 +45,7 @@ StateSpace block(const StateSpace& H, Index first, Index size) {
 
 StateSpace transposed(const StateSpace& H) { return {H.A.transpose(), H.C.transpose(), H.B.transpose(), H.D}; }
 
-/// Powers of two that make what comes into each state as large as what goes out of it (Parlett and Reinsch 1969).
+/// Scales the states by powers of two so that their rows and columns are of equal size (Parlett and Reinsch 1969).
 void balance(StateSpace& H) {
   const Index n = H.states();
   for (int sweep = 0; sweep < 20; ++sweep) {
@@ -67,7 +67,7 @@ void balance(StateSpace& H) {
   }
 }
 
-/// The states that the input reaches come first; returns their number.
+/// Moves the states that the input reaches to the front; returns their number.
 Index staircase(StateSpace& H, double A_size) {
   const Index n = H.states();
   const double size = std::max(H.A.norm(), A_size);
@@ -79,16 +79,16 @@ Index staircase(StateSpace& H, double A_size) {
   return n;
 }
 
-/// q with A q = 0 to rounding of `size`, |q| = 1; empty where A is regular.
+/// q with A q = 0 to rounding of `size`, |q| = 1; empty if A is regular.
 VectorXd null_direction(const MatrixXd& A, double size) {
   const Index n = A.rows();
   if (n == 0) return VectorXd(0);
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
-  if (std::abs(qr.matrixR()(n - 1, n - 1)) > negligible_part * size) return VectorXd(0);
-  return qr.householderQ() * VectorXd::Unit(n, n - 1);
+  const PivotedQr qr = pivoted_qr(A.transpose());
+  if (std::abs(qr.R(n - 1, n - 1)) > negligible_part * size) return VectorXd(0);
+  return qr.Q.col(n - 1);
 }
 
-/// The part that the input reaches; what is left out is appended to `hidden`.
+/// The part that the input reaches; the eigenvalues left out are appended to `hidden`.
 StateSpace reached(StateSpace H, double A_size, Eigen::VectorXcd& hidden) {
   const Index n = H.states(), kept = staircase(H, A_size);
   if (kept == n) return H;
@@ -111,7 +111,7 @@ std::optional<Eigen::VectorXcd> zeros(const StateSpace& of) {
   StateSpace H = of;
   balance(H);
   const double C_size = H.C.norm(), B_size = H.B.norm(), A_size = H.A.norm();
-  double size = C_size;  // of what the output row was made of
+  double size = C_size;  // size of the terms that form the output row
   if (H.D(0, 0) != 0.0 && H.states() == 0) return Eigen::VectorXcd(0);
   if (H.D(0, 0) != 0.0) return eigenvalues(H.A - H.B * H.C / H.D(0, 0));
   while (H.states() > 0) {
@@ -140,7 +140,7 @@ std::optional<Inverse> inverse(const StateSpace& of) {
   reflect(H, 0, reflection(H.C.transpose()));
   const double c = H.C(0, 0), b = H.B(0, 0);
   if (std::abs(b) <= negligible_part * H.B.norm()) return std::nullopt;
-  // y = c x1; x1' = a11 x1 + A12 x2 + b u gives u; x2 - (b2/b) x1 has no y' in its rate.
+  // y = c x1; x1' = a11 x1 + A12 x2 + b u gives u; the rate of x2 - (b2/b) x1 contains no y'.
   const double a11 = H.A(0, 0);
   const MatrixXd A12 = H.A.topRightCorner(1, n - 1), A21 = H.A.bottomLeftCorner(n - 1, 1);
   const MatrixXd ratio = H.B.bottomRows(n - 1) / b;
@@ -191,9 +191,9 @@ ZeroModes zero_modes(const MatrixXd& A, double A_size) {
     H = block(H, 1, H.states() - 1);
   }
   if (A.rows() == 0) return result;
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+  const PivotedQr qr = pivoted_qr(A);
   for (Index i = 0; i < A.rows(); ++i)
-    if (std::abs(qr.matrixR()(i, i)) <= negligible_part * size) ++result.directions;
+    if (std::abs(qr.R(i, i)) <= negligible_part * size) ++result.directions;
   return result;
 }
 

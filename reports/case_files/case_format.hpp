@@ -4,7 +4,7 @@
 
 namespace limcycle {
 
-/// One key of a case file that no parameter table of a model tells.
+/// One key of a case file that is not in a parameter table of a model.
 struct CaseKey {
   std::string_view key;
   std::string_view value;    ///< as an example, in TOML
@@ -13,15 +13,15 @@ struct CaseKey {
   bool required = false;
 };
 
-/// One section of a case file beside those of the loop's parts.
+/// One section of a case file other than those of the loop's parts.
 struct CaseSection {
   std::string_view name;  ///< "search"; "" for the keys before any section
   std::string_view meaning;
   std::vector<CaseKey> keys;
 };
 
-/// The sections of a case file, but for [loop.plant] and the like, whose keys are in catalogue(). The manual page of
-/// the format and `limcycle new` are made of this list.
+/// The sections of a case file, except [loop.plant] and the like, whose keys are in catalogue(). The manual page of the
+/// format and `limcycle new` are made from this list.
 const std::vector<CaseSection>& case_sections();
 
 }  // namespace limcycle

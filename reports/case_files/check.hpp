@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/frequency/root_search.hpp"
+#include "limcycle/analysis/frequency/roots/root_search.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace limcycle {
 
-/// What `limcycle check` tells about a valid case.
+/// Facts about a valid case for `limcycle check`.
 struct CheckSummary {
   struct Part {
     std::string path, kind;
@@ -19,10 +19,10 @@ struct CheckSummary {
   int order = 0;                                 ///< of the linear part
   double delay = 0.0;                            ///< s
   std::optional<double> slowest_pole;  ///< largest real part of the poles without the elements, 1/s; empty with delay
-  std::optional<bool> stable;          ///< is the linear part stable without the elements
+  std::optional<bool> stable;          ///< true if the linear part is stable without the elements
   std::optional<SearchBox> search;
   bool search_from_case = false;
-  std::vector<std::string> sections;  ///< what the case has for which command, in words
+  std::vector<std::string> sections;  ///< sections of the case and their commands, in words
 };
 
 std::string check_text(const Provenance& provenance, const CheckSummary& summary);
@@ -32,7 +32,7 @@ std::string check_text(const Provenance& provenance, const CheckSummary& summary
 std::string check_json(const Provenance& provenance, const CheckSummary& summary);
 
 /// The same in one row: title,plant,controller,elements,states,order,delay,slowest_pole,stable,amplitude_from,
-/// amplitude_to,frequency_from,frequency_to; lists joined by blanks.
+/// amplitude_to,frequency_from,frequency_to; lists separated by spaces.
 std::string check_csv(const Provenance& provenance, const CheckSummary& summary);
 
 }  // namespace limcycle

@@ -59,7 +59,7 @@ std::string states_sentence(const CatalogueEntry& entry) {
                      states_text(entry));
 }
 
-/// What is known of a friction law beside its equation, one item a line.
+/// Properties of a friction law beyond its equation, one item a line.
 std::string features_text(const Features& features) {
   std::string text;
   for (const auto& [label, what] : {std::pair{"drift", features.drift},

@@ -6,14 +6,14 @@
 namespace limcycle {
 namespace {
 
-/// Text for a cell of a table: a bar would end it.
+/// Text for a cell of a table, which a bar would end.
 std::string cell(std::string_view text) {
   std::string out;
   for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
   return out.empty() ? "-" : out;
 }
 
-/// Text outside of code: what Markdown would read as a mark is escaped.
+/// Text outside code, with the marks of Markdown escaped.
 std::string prose(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -23,7 +23,7 @@ std::string prose(std::string_view text) {
   return out;
 }
 
-/// First clause of a sentence, for the table; the section of the law has all of it.
+/// First clause of a sentence, for the table; the section of the law has the whole text.
 std::string clause(std::string_view text) { return cell(prose(text.substr(0, text.find_first_of(":;")))); }
 
 std::string row(const std::vector<std::string>& cells) {
@@ -38,7 +38,7 @@ std::string table(const std::vector<std::string>& heading, const std::vector<std
   return text;
 }
 
-/// `marks`: those of its heading.
+/// Section of one law; `marks`: those of its heading.
 std::string section(const CatalogueEntry& entry, const char* marks) {
   std::string text = fmt::format("\n{} {}\n\n```\n{}```\n", marks, entry.kind, wrapped(entry.equation, 100));
   if (entry.features || !entry.source.empty()) text += '\n';
@@ -60,7 +60,7 @@ std::string section(const CatalogueEntry& entry, const char* marks) {
   return rows.empty() ? text : text + '\n' + table({"key", "unit", "default", "valid", "meaning"}, rows);
 }
 
-/// What may stand in a loop beside friction, group by group.
+/// Elements other than friction that are allowed in a loop, group by group.
 std::string other_groups(const std::vector<CatalogueEntry>& entries) {
   struct Group {
     const char *name, *heading, *words;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t case_width = 80, comment_column = 26;
 
-/// As comment lines.
+/// Turns a text into comment lines.
 std::string commented(const std::string& text) {
   std::string out;
   std::istringstream lines(wrapped(text, case_width - 2));
@@ -27,7 +27,7 @@ std::string commented(const std::string& text) {
   return out;
 }
 
-/// A comment behind a label, indented under itself, so that no line of it looks like a key.
+/// A comment after a label, indented under itself, so that none of its lines looks like a key.
 std::string labelled(const std::string& label, const std::string& text) {
   constexpr std::size_t indent = 10;
   const std::string body = wrapped(text, case_width - 2, indent);
@@ -37,7 +37,7 @@ std::string labelled(const std::string& label, const std::string& text) {
   return out;
 }
 
-/// "key = value   # what it is", the comment wrapped beside the value, or above a value that is too long.
+/// "key = value   # meaning", the comment wrapped next to the value, or above a value that is too long.
 std::string assignment(const std::string& line, const std::string& comment) {
   const std::size_t own = display_width(line);
   if (own + 2 > comment_column) {
@@ -61,7 +61,7 @@ const CatalogueEntry& entry_of(const std::vector<CatalogueEntry>& all, std::init
   throw std::invalid_argument("no " + std::string(*groups.begin()) + " '" + kind + "'");
 }
 
-/// A value for an optional key, as a case would write it: its default, or where that is none something to try.
+/// A value for an optional key, as written in a case: its default or, without one, a value to try.
 std::string default_in_toml(const ParameterEntry& parameter, const CatalogueEntry& entry, const std::string& group) {
   if (!parameter.default_name.empty()) return '"' + parameter.default_name + '"';
   if (!parameter.default_from.empty())
@@ -89,7 +89,7 @@ std::string parameter_line(const ParameterEntry& parameter, const CatalogueEntry
   return assignment(fmt::format("{}{} = {}", active ? "" : "# ", parameter.key, value), comment_of(parameter, typical));
 }
 
-/// A section of the loop. `typical_group`: where its values are found; `others`: comment on the other kinds.
+/// A section of the loop. `typical_group`: group of its typical values; `others`: comment on the other kinds.
 std::string section_of(const std::string& section, const CatalogueEntry& entry, const std::string& typical_group,
                        const std::string& others) {
   std::string text = "\n[" + section + "]\n" + labelled("equation", entry.equation);
@@ -99,7 +99,7 @@ std::string section_of(const std::string& section, const CatalogueEntry& entry, 
   return text;
 }
 
-/// An optional section, as it is or as a comment.
+/// An optional section, active or as a comment.
 std::string optional_section(const CaseSection& section, bool active, const std::string& parameters) {
   const std::string mark = active ? "" : "# ";
   std::string text = "\n" + commented(std::string(section.meaning)) + mark + fmt::format("[{}]\n", section.name);
@@ -112,14 +112,14 @@ std::string optional_section(const CaseSection& section, bool active, const std:
   return text;
 }
 
-/// The parts of the wanted loop, in the order in which a case tells them.
+/// The parts of the wanted loop, in their order in a case.
 struct NewPart {
   std::string section, typical_group;
   const CatalogueEntry* entry;
 };
 
 std::vector<NewPart> parts_of(const NewCase& wanted, const std::vector<CatalogueEntry>& all) {
-  // What stands before or behind a controller may need the rate of its signal: then it must have one.
+  // An element before or after a controller may need the rate of its input, which must then exist.
   const bool guarded = !wanted.element.empty() || !wanted.error.empty();
   std::vector<NewPart> parts{
       {"loop.plant", wanted.friction.empty() ? "lone plant" : "plant", &entry_of(all, {"plant"}, wanted.plant)},
@@ -136,7 +136,7 @@ std::vector<NewPart> parts_of(const NewCase& wanted, const std::vector<Catalogue
   return parts;
 }
 
-/// The number that a first look at the spread is about: of the law or element rather than of the plant.
+/// The number for a first study of the spread: one of the law or element rather than of the plant.
 std::string first_number(const std::vector<NewPart>& parts) {
   std::string last;
   for (const auto& part : parts) {
@@ -150,7 +150,7 @@ std::string first_number(const std::vector<NewPart>& parts) {
 std::string other_kinds(const NewPart& part) {
   auto kinds = kinds_for(part.section);
   std::erase(kinds, part.entry->kind);
-  if (part.section == "loop.element") {  // one line of words in place of twenty laws
+  if (part.section == "loop.element") {  // one line of words instead of twenty laws
     const auto laws = kinds_for("loop.friction");
     std::erase_if(kinds, [&](const auto& kind) { return std::ranges::find(laws, kind) != laws.end(); });
     kinds.emplace_back("or a friction law that does not need the applied force");

@@ -6,7 +6,7 @@ namespace limcycle {
 namespace {
 
 struct TypicalRow {
-  std::string_view group, kind, key;  // an empty group or kind: of any
+  std::string_view group, kind, key;  // an empty group or kind matches any
   TypicalValue typical;
 };
 
@@ -14,7 +14,7 @@ constexpr auto stops_k = "[1000.0, 1800.0, 2600.0, 3400.0, 4200.0, 5000.0, 5800.
 constexpr auto stops_w = "[0.18, 0.182, 0.184, 0.186, 0.188, 0.19, 0.192, 0.198]";
 constexpr auto shares = "[0.12, 0.122, 0.124, 0.125, 0.125, 0.126, 0.128, 0.13]";
 
-// The first row that fits counts: those of one kind stand before those of any.
+// The first row that matches counts: rows of one kind precede those of any.
 constexpr std::array typical_rows{
     TypicalRow{"friction", "bouc-wen", "alpha", {"", "0 to 0.1: the share of a spring"}},
     TypicalRow{"friction", "bouc-wen", "k", {"1e5", "1e4 to 1e8"}},

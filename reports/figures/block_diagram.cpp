@@ -8,14 +8,14 @@
 
 #include "limcycle/models/assemble.hpp"
 #include "limcycle/reports/figures/block_words.hpp"
-#include "limcycle/reports/html_parts.hpp"
+#include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 namespace {
 
 constexpr double line_height = 17.0, block_gap = 40.0, sum_radius = 10.0, side_margin = 12.0;
-constexpr double column_width = 7.0;  // of a letter, wide rather than narrow: fonts differ
+constexpr double column_width = 7.0;  // of a letter, a wide estimate, as fonts differ
 
 constexpr std::string_view diagram_style =
     ".diagram-line,.diagram-box,.diagram-sum{fill:none;stroke:currentColor;stroke-width:1.4}"
@@ -24,7 +24,7 @@ constexpr std::string_view diagram_style =
     ".diagram-name{font-weight:600}.diagram-centred{text-anchor:middle}.diagram-end{text-anchor:end}"
     "@media print{.diagram{min-width:0!important}}";
 
-/// A block where it stands: its left upper corner and its size.
+/// A block at its place: its upper left corner and its size.
 struct PlacedBlock {
   BlockWords words;
   double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
@@ -97,8 +97,8 @@ std::string circle_at(Spot spot) {
                      sum_radius);
 }
 
-/// Lays the loop out from left to right, and draws it: the command's way to the plant in a row, what adds to the
-/// command above it, the friction below the plant, the way back at the bottom.
+/// Lays out and draws the loop from left to right: the path of the command to the plant in a row, additions to the
+/// command above it, the friction below the plant, the feedback path at the bottom.
 class DiagramOfLoop {
  public:
   DiagramOfLoop(const LoopParts& parts, const Units& units)
@@ -136,7 +136,7 @@ class DiagramOfLoop {
       compensation_ = sized(compensation_words(actuator_.friction_compensation, units_));
   }
 
-  /// Places along the row, from left to right; heights are settled later.
+  /// Places the blocks along the row, from left to right; heights follow later.
   void place_row() {
     double x = side_margin;
     const auto sum = [&](std::optional<Spot>& where) {
@@ -202,7 +202,7 @@ class DiagramOfLoop {
   /// The row of blocks with the arrows between them, from the reference to y.
   std::string row() const {
     std::string out;
-    double from = side_margin;  // where the next arrow begins
+    double from = side_margin;  // begin of the next arrow
     const auto lead = [&](double to) { out += arrow({{from, middle_}, {to, middle_}}); };
     const auto through = [&](const PlacedBlock& block) {
       lead(block.x);
@@ -267,7 +267,7 @@ class DiagramOfLoop {
   const LoopParts& parts_;
   const Units& units_;
   const Actuator& actuator_;
-  const bool compared_;                      // r - y is made and used
+  const bool compared_;                      // r - y is formed and used
   std::vector<PlacedBlock> before_, after_;  // the place where the compensation is added
   PlacedBlock plant_;
   std::optional<PlacedBlock> friction_, compensation_;

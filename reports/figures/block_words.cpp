@@ -17,7 +17,7 @@ constexpr std::size_t sum_lines = 3;       // of a polynomial
 
 constexpr std::string_view true_minus = "\xE2\x88\x92", ellipsis = "\xE2\x80\xA6";
 
-/// A value of a parameter table: as it is shown, and exactly.
+/// A value of a parameter table: as displayed, and exactly.
 struct ShownValue {
   std::string key, shown, exact, unit;
 };
@@ -59,7 +59,7 @@ std::string matrix_rows(const Eigen::MatrixXd& matrix) {
   return matrix.rows() > 1 ? "[" + out + "]" : out;
 }
 
-/// A value of any kind in words: to six digits, and exactly.
+/// A value of any type in words: to six digits, and exactly.
 template <class Value>
 std::pair<std::string, std::string> both_ways(const Value& value, std::span<const std::string_view> choices) {
   if constexpr (std::is_same_v<Value, double>) {
@@ -77,51 +77,34 @@ std::pair<std::string, std::string> both_ways(const Value& value, std::span<cons
   }
 }
 
-template <class Value>
-bool same_value(const Value& a, const Value& b) {
-  if constexpr (std::is_same_v<Value, Eigen::MatrixXd>)
-    return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
-  else
-    return a == b;
+/// True if an optional parameter has its default: its own value, or that of another key.
+bool stands_by_default(const std::vector<ParameterRow>& rows, const std::vector<ParameterValue>& values,
+                       const std::vector<ParameterValue>& defaults, std::size_t i) {
+  if (rows[i].required) return false;
+  if (rows[i].default_from.empty()) return values[i] == defaults[i];
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (rows[k].key == rows[i].default_from) return values[i] == values[k];
+  return false;
 }
 
-/// Whether an optional parameter stands where it does by default: on its own value, or on that of another key.
-template <class Owner>
-bool stands_by_default(const Owner& owner, const Parameter<Owner, double>& row) {
-  if (row.required) return false;
-  if constexpr (!std::is_default_constructible_v<Owner>)
-    return false;  // a law of the user's own: it has no table
-  else
-    return std::visit(
-        [&](auto member) {
-          if (row.default_from.empty()) return same_value(owner.*member, Owner{}.*member);
-          for (const auto& other : Owner::parameters())
-            if (other.key == row.default_from)
-              if (const auto* same = std::get_if<decltype(member)>(&other.member))
-                return same_value(owner.*member, owner.*(*same));
-          return false;
-        },
-        row.member);
-}
-
-/// Units of force and length are those of a servo; a loop that is none has times only.
+/// Units of force and length are those of a servo; any other loop has units of time only.
 std::string unit_of_value(std::string_view unit, const Units& units) {
   const bool of_time = unit == "s" || unit == "1/s" || unit == "rad/s";
   return unit == "1" || (units.force.empty() && !of_time) ? std::string() : std::string(unit);
 }
 
-template <class Owner>
-std::vector<ShownValue> shown_values(const Owner& owner, const Units& units) {
-  constexpr std::array<std::string_view, 3> of_actuator{"friction_compensation", "saturation", "lag"};
+/// Parts with a block of their own, for any controller.
+constexpr std::array<std::string_view, 3> of_actuator{"friction_compensation", "saturation", "lag"};
+
+std::vector<ShownValue> shown_values(const std::vector<ParameterRow>& rows, const std::vector<ParameterValue>& values,
+                                     const std::vector<ParameterValue>& defaults, const Units& units) {
   std::vector<ShownValue> out;
-  for (const auto& row : Owner::parameters()) {
-    if (stands_by_default(owner, row)) continue;
-    if constexpr (std::is_base_of_v<Actuator, Owner>)
-      if (std::ranges::find(of_actuator, row.key) != of_actuator.end()) continue;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (stands_by_default(rows, values, defaults, i)) continue;
     const auto [shown, exact] =
-        std::visit([&](auto member) { return both_ways(owner.*member, row.choices); }, row.member);
-    const std::string unit = shown == "none" ? "" : unit_of_value(row.unit, units);
-    out.push_back({std::string(row.key), shown, exact, unit});
+        std::visit([&](const auto& value) { return both_ways(value, rows[i].choices); }, values[i]);
+    const std::string unit = shown == "none" ? "" : unit_of_value(rows[i].unit, units);
+    out.push_back({std::string(rows[i].key), shown, exact, unit});
   }
   return out;
 }
@@ -133,26 +116,34 @@ std::string in_full(std::string_view kind, const std::vector<ShownValue>& values
   return values.empty() ? out : out + ")";
 }
 
-/// Long polynomials take several lines on either side of the bar.
+/// Adds a fraction; long polynomials take several lines on either side of the bar.
 void add_fraction(std::vector<BlockLine>& lines, const std::vector<double>& over, const std::vector<double>& under) {
   for (auto& line : broken_sum(polynomial_in_s(over), block_columns, sum_lines)) lines.push_back({line, true, false});
   lines.push_back({"", true, true});
   for (auto& line : broken_sum(polynomial_in_s(under), block_columns, sum_lines)) lines.push_back({line, true, false});
 }
 
-template <class Owner>
-BlockWords words_of_part(const std::string& role, const Owner& owner, const Units& units) {
-  const auto values = shown_values(owner, units);
-  BlockWords words{
-      role + ": " + std::string(Owner::kind), {}, in_full(Owner::kind, values), std::string(Owner::equation)};
-  const bool fraction = requires { owner.denominator; };
-  if constexpr (requires { owner.denominator; }) add_fraction(words.lines, owner.numerator, owner.denominator);
+BlockWords words_of(const std::string& role, std::string_view kind, std::string_view equation,
+                    const std::vector<ShownValue>& values, std::vector<BlockLine> fraction) {
+  const bool drawn = !fraction.empty();
+  BlockWords words{role + ": " + std::string(kind), std::move(fraction), in_full(kind, values), std::string(equation)};
   for (const auto& value : values) {
-    if (fraction && (value.key == "numerator" || value.key == "denominator")) continue;
+    if (drawn && (value.key == "numerator" || value.key == "denominator")) continue;
     words.lines.push_back(
         {cut_to(value.key + " = " + Units::attach(value.shown, value.unit), block_columns), false, false});
   }
   return words;
+}
+
+/// Words of a plant or controller.
+template <class Owner>
+BlockWords words_of_part(const std::string& role, const Owner& owner, const Units& units) {
+  auto values = shown_values(rows_of<Owner>(), values_of(owner), values_of(Owner{}), units);
+  if constexpr (std::is_base_of_v<Actuator, Owner>)
+    std::erase_if(values, [](const auto& one) { return std::ranges::find(of_actuator, one.key) != of_actuator.end(); });
+  std::vector<BlockLine> fraction;
+  if constexpr (requires { owner.denominator; }) add_fraction(fraction, owner.numerator, owner.denominator);
+  return words_of(role, Owner::kind, Owner::equation, values, std::move(fraction));
 }
 
 }  // namespace
@@ -214,8 +205,9 @@ std::optional<BlockWords> controller_words(const Controller& controller, const U
   return std::visit([&](const auto& c) { return words_of_part("controller", c, units); }, controller);
 }
 
-BlockWords element_words(const std::string& role, const Element<double>& element, const Units& units) {
-  return std::visit([&](const auto& e) { return words_of_part(role, e, units); }, element);
+BlockWords element_words(const std::string& role, const Element& element, const Units& units) {
+  return words_of(role, element.kind(), element.facts().equation,
+                  shown_values(element.parameters(), element.values(), element.defaults(), units), {});
 }
 
 BlockWords compensation_words(double level, const Units& units) {

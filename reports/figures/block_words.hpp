@@ -15,26 +15,25 @@ struct BlockLine {
   bool bar = false;
 };
 
-/// What stands in a block of the diagram of a loop.
+/// Texts of a block in the diagram of a loop.
 struct BlockWords {
-  std::string title;             ///< "controller: pid", as the case file names it
-  std::vector<BlockLine> lines;  ///< numbers to six digits; what is long is shortened by an ellipsis
+  std::string title;             ///< "controller: pid", as in the case file
+  std::vector<BlockLine> lines;  ///< numbers to six digits; long ones are shortened by an ellipsis
   std::string whole;             ///< kind and all numbers in full: "pid (kp = 3 N/m, kd = 6 N s/m)"
-  std::string equation;          ///< as the list of laws has it
+  std::string equation;          ///< as in the list of laws
 };
 
-/// Numbers that are what they are by default are left out. Units stand where the loop has any; times and rates always
-/// have theirs.
+/// Default values are left out. Units are shown if the loop has any; times and rates always have theirs.
 BlockWords plant_words(const Plant& plant, const Units& units);
-/// The controller without what stands between it and the plant; empty for `none`.
+/// The controller without the parts between it and the plant; empty for `none`.
 std::optional<BlockWords> controller_words(const Controller& controller, const Units& units);
 /// `role`: "friction", "element", "on the error".
-BlockWords element_words(const std::string& role, const Element<double>& element, const Units& units);
+BlockWords element_words(const std::string& role, const Element& element, const Units& units);
 BlockWords compensation_words(double level, const Units& units);
 BlockWords limit_words(double limit, const Units& units);
 BlockWords lag_words(double time_constant);
 
-/// Signals from outside and between the blocks: "r = 0 m", "load = 2 N", "v = dy/dt − 0.1" (what the law rubs at).
+/// External signals and those between the blocks: "r = 0 m", "load = 2 N", "v = dy/dt − 0.1" (rubbing velocity).
 std::string reference_words(const LoopParts& parts, const Units& units);
 std::string load_words(const LoopParts& parts, const Units& units);
 std::string rubbing_velocity(const Plant& plant);
@@ -45,7 +44,7 @@ std::string diagram_number(double value);
 /// Coefficients, highest power first: "s³ + 2 s² - 0.5".
 std::string polynomial_in_s(const std::vector<double>& coefficients);
 
-/// The terms of a sum put on lines of at most `columns`; of more than `most` lines the last one ends in an ellipsis.
+/// The terms of a sum on lines of at most `columns`; with more than `most` lines the last one ends in an ellipsis.
 std::vector<std::string> broken_sum(const std::string& sum, std::size_t columns, std::size_t most);
 
 }  // namespace limcycle

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "limcycle/reports/figures/figures.hpp"
-#include "limcycle/reports/html_parts.hpp"
+#include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {
 namespace {

@@ -54,8 +54,7 @@ std::string between(const std::vector<double>& values, const std::string& unit) 
                      Units::attach(with_digits(range.greatest, 3), unit));
 }
 
-/// What is drawn in the time domain: a cycle if there is one (a stable one first), else the first run that can be
-/// drawn.
+/// Motion drawn in the time domain: a cycle if there is one (a stable one first), else the first run that can be drawn.
 struct Shown {
   const Trace* trace = nullptr;
   const Cycle* cycle = nullptr;
@@ -87,8 +86,8 @@ Json labels(const Trace& trace, const Units& units) {
           {"output", with_unit(units.force.empty() ? "element's output" : "force", units.force)}};
 }
 
-/// One curve with the samples that are stuck marked. Of a run too long to draw only the first part; a `period` is never
-/// cut, lest its second copy begin where the first was cut.
+/// One curve with its stuck samples marked. Of a run too long to draw, only the first part; a `period` is never cut, as
+/// its second copy would begin at the cut.
 Json curve(const Trace& trace, std::size_t most, double sticking, bool period, bool& whole) {
   const auto stuck = stuck_samples(trace, sticking);
   Thinned kept = thin(trace, most, stuck);

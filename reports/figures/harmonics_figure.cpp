@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/analysis/orbit/spectrum.hpp"
+#include "limcycle/analysis/orbit/cycle/spectrum.hpp"
 #include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
 
@@ -27,7 +27,7 @@ std::optional<std::size_t> cycle_for_harmonics(const PredictReport& report) {
   return std::nullopt;
 }
 
-/// y of a body that turns on and on has no harmonics.
+/// False for a body that keeps turning: its y has no harmonics.
 bool comes_back(const std::vector<double>& y) {
   const auto [low, high] = std::minmax_element(y.begin(), y.end());
   return std::abs(y.back() - y.front()) <= 1e-3 * (*high - *low);

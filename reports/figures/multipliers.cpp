@@ -10,7 +10,7 @@
 namespace limcycle {
 namespace {
 
-constexpr std::size_t widest = 48;  // columns of the ones shown
+constexpr std::size_t widest = 48;  // columns of the multipliers shown
 constexpr double negligible = 1e-6;
 constexpr int shown_digits = 3;
 
@@ -60,7 +60,7 @@ std::optional<Figure> multiplier_figure(const PredictReport& report) {
     if (cycle.multipliers.empty()) continue;
     Json re = Json::array(), im = Json::array();
     for (const auto& value : cycle.multipliers) {
-      re.push_back(value.real());  // what is not finite becomes null
+      re.push_back(value.real());  // non-finite values become null
       im.push_back(value.imag());
     }
     cycles.push_back({{"name", fmt::format("limit cycle {}", i)}, {"re", re}, {"im", im}});

@@ -9,7 +9,7 @@
 
 namespace limcycle {
 
-/// As many of the multipliers, which come sorted, largest first, as fit into about 60 columns: "0.950 ± 0.0100j,
+/// As many of the multipliers (sorted, largest first) as fit into about 60 columns: "0.950 ± 0.0100j,
 /// -0.200, 3 below 1e-06". A conjugate pair counts as one.
 std::string multipliers_in_words(const std::vector<std::complex<double>>& multipliers);
 

@@ -15,7 +15,7 @@ constexpr std::size_t most_of_response = 2000;
 constexpr std::size_t drawn_members = 7;
 constexpr double on_the_curve = 0.03;  ///< relative distance of a root from G that its sampling explains
 
-/// The error discs of all predictions, and what is said of them.
+/// The error discs of all predictions, and the text about them.
 Json error_discs(const PredictReport& report, std::string& words) {
   Json discs = Json::array();
   std::string proved, guessed;
@@ -59,7 +59,7 @@ Json response_curve(const NyquistPicture& picture) {
 
 bool near(double a, double b) { return std::abs(a - b) <= 1e-9 * std::abs(b); }
 
-/// A few members evenly, and those at the frequency of a root.
+/// True for a few evenly spaced members, and those at the frequency of a root.
 bool is_member_drawn(std::size_t member, const PredictReport& report) {
   const auto& frequencies = report.nyquist.family_frequency;
   const std::size_t stride = std::max<std::size_t>(1, (frequencies.size() - 1) / (drawn_members - 1));
@@ -69,7 +69,7 @@ bool is_member_drawn(std::size_t member, const PredictReport& report) {
   });
 }
 
-/// Frequencies are null where N does not depend on them.
+/// Curves of the family; frequencies are null if N does not depend on them.
 Json family_curves(const PredictReport& report, const std::string& unit) {
   const auto& picture = report.nyquist;
   Json A = Json::array(), members = Json::array();
@@ -90,7 +90,7 @@ Json family_curves(const PredictReport& report, const std::string& unit) {
   return {{"A", A}, {"unit", unit}, {"members", members}};
 }
 
-/// -1/N of a root: the point of the family that was computed there; nothing where the family ends before it.
+/// -1/N of a root: the point of the family that was computed there; empty if the family ends before it.
 std::optional<std::complex<double>> place_of(const NyquistPicture& picture, const Prediction& root) {
   const auto amplitude =
       std::ranges::find_if(picture.family_amplitude, [&](double A) { return near(A, root.input_amplitude); });
@@ -108,7 +108,7 @@ std::optional<std::complex<double>> place_of(const NyquistPicture& picture, cons
 struct Crossings {
   Json roots = Json::array();
   std::vector<std::complex<double>> places;
-  std::string words;     ///< where they are
+  std::string words;     ///< their places
   bool on_curve = true;  ///< all of them lie on G
 };
 

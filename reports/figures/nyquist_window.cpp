@@ -17,7 +17,7 @@ void each_of_family(const NyquistPicture& picture, Visit&& visit) {
       if (finite(point)) visit(point);
 }
 
-/// |G| where the curve comes closest to the family, relative to |G|.
+/// |G| at the point of the curve with the least distance to the family, relative to |G|.
 double size_at_closest(const NyquistPicture& picture) {
   double least = INFINITY, size = 0.0;
   for (const auto& G : picture.G) {
@@ -39,7 +39,7 @@ double radius(const NyquistPicture& picture, const std::vector<Complex>& roots) 
   for (const auto& root : roots) wanted = std::max(wanted, 2.5 * std::abs(root));
   if (wanted == 0.0 && where > 0) wanted = 1.1 * greatest;
   if (wanted == 0.0) wanted = 4.0 * size_at_closest(picture);
-  // Much larger than the curve would show a dot.
+  // In a much larger window the curve would be a dot.
   if (greatest > 0.0 && (wanted == 0.0 || wanted > 1.1 * greatest)) wanted = 1.1 * greatest;
   return wanted > 0.0 && std::isfinite(wanted) ? wanted : 1.0;
 }
@@ -61,7 +61,7 @@ NyquistWindow nyquist_window(const NyquistPicture& picture, const std::vector<Co
   const double R = radius(picture, roots);
   NyquistWindow box{0.0, 0.0, 0.0, 0.0};
   const auto include = [&](Complex z) {
-    // A point outside pulls the border to where its curve leaves the circle.
+    // A point outside extends the border to where its curve leaves the circle.
     if (std::abs(z) > R) z *= R / std::abs(z);
     box.re_from = std::min(box.re_from, z.real());
     box.re_to = std::max(box.re_to, z.real());

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/answer.hpp"
 #include "limcycle/reports/figures/thin.hpp"
-#include "limcycle/reports/html_parts.hpp"
 #include "limcycle/reports/number.hpp"
+#include "limcycle/reports/page/html_parts.hpp"
+#include "limcycle/reports/predict/answer.hpp"
 
 namespace limcycle {
 namespace {
@@ -42,7 +42,7 @@ struct Panel {
   }
 };
 
-/// The samples of a curve that `keep` says, joined where they are neighbours.
+/// The samples of a curve that `keep` selects, joined if they are adjacent.
 std::string path(const Panel& panel, const std::string& kind, const std::vector<double>& x,
                  const std::vector<double>& y, const std::vector<bool>& keep = {}) {
   std::string d;
@@ -88,7 +88,7 @@ const Cycle* drawable(const PredictReport& report) {
 
 std::string panels(const Cycle& cycle, const Units& units) {
   const auto stuck = stuck_samples(cycle.trace, cycle.sticking_fraction);
-  // A cycle that rings is drawn coarsely rather than cut: what is left of a cut one is no period.
+  // A cycle with fast oscillations is drawn coarsely rather than cut: a part of it would be no period.
   Thinned kept = thin(cycle.trace, 500, stuck);
   if (!kept.whole) kept = thin(cycle.trace, 1000, stuck, INFINITY);
   const auto& index = kept.index;

@@ -1,14 +1,14 @@
 #pragma once
 #include <string>
 
-#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/reports/units.hpp"
 
 namespace limcycle {
 
 /// The answer as one small SVG, for a README: two periods of y and of the element's output, and the orbit in the phase
-/// plane with what sticks marked. Readable on a light and on a dark ground. Coordinates are rounded to 0.1 px. Without
-/// a cycle or a run that can be drawn it holds the answer in words only.
+/// plane with stuck parts marked. Readable on light and dark backgrounds. Coordinates are rounded to 0.1 px. Without
+/// a cycle or a run that can be drawn it contains the answer in words only.
 std::string predict_picture(const PredictReport& report, const Units& units);
 
 }  // namespace limcycle

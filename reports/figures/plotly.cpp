@@ -4,7 +4,7 @@
 #include <cstdint>
 
 // The assembler copies the file (1.4 MB): as an array in C++ it would take the compiler seconds. Its length is stored
-// beside it, since the difference of two unrelated symbols is not defined in C++.
+// too, since the difference of two unrelated symbols is not defined in C++.
 asm(R"(
     .pushsection .rodata
     .hidden limcycle_plotly_text

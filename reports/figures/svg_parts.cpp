@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/html_parts.hpp"
+#include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {
 

@@ -6,10 +6,10 @@
 
 namespace limcycle {
 
-/// Which samples of a trace a picture needs.
+/// Samples of a trace that a picture needs.
 struct Thinned {
   std::vector<std::size_t> index;  ///< increasing
-  bool whole = true;               ///< false: only the first part, the rest would have been a scribble
+  bool whole = true;               ///< false: only the first part, as the rest would be illegible
 };
 
 /// At most about `most` samples (and each change of `keep_changes`, if given), evenly spaced along the curve
@@ -17,10 +17,10 @@ struct Thinned {
 /// little. A trace so long that neighbours would be more than `coarsest` of the picture apart is cut. Cost: O(samples).
 Thinned thin(const Trace& trace, std::size_t most, const std::vector<bool>& keep_changes = {}, double coarsest = 0.03);
 
-/// Which samples are stuck: those with the least |velocity| that together last `fraction` of the time of the trace.
+/// Stuck samples: those with the least |velocity| that together last `fraction` of the time of the trace.
 std::vector<bool> stuck_samples(const Trace& trace, double fraction);
 
-/// What the y of a trace is called in a picture: "y", or "y - 0.3" where it is measured from there.
+/// Name of y of a trace in a picture: "y", or "y - 0.3" if it is measured from there.
 std::string name_of_y(const Trace& trace);
 
 }  // namespace limcycle

@@ -8,7 +8,7 @@ namespace limcycle {
 
 /// One mark of a figure whose axes are logarithmic.
 struct WorkMark {
-  double x = 0.0, y = 0.0;  ///< y not finite: nothing to measure, drawn as a cross at the upper edge
+  double x = 0.0, y = 0.0;  ///< y not finite: not measured, drawn as a cross at the upper edge
   bool good = true;         ///< else a cross
   std::string label;        ///< shown at the pointer
 };
@@ -19,7 +19,7 @@ struct WorkSeries {
   std::vector<WorkMark> marks;
   bool joined = true;
   int dash = 0;     ///< 0: solid, 1: dashed, 2: dotted
-  int colour = -1;  ///< -1: of its own; else that of series number `colour`, and no entry in the legend
+  int colour = -1;  ///< -1: its own; else that of series number `colour`, and no entry in the legend
 };
 
 /// A figure with both axes logarithmic. `id` is "work-..." (see reports/page/script.cpp).

@@ -3,7 +3,7 @@
 
 namespace limcycle {
 
-/// Style and script of every page, as they may stand in its style and script elements.
+/// Style and script of every page, ready for its style and script elements.
 std::string_view page_style();
 std::string_view page_script();
 

@@ -7,7 +7,7 @@ namespace limcycle {
 
 std::string_view page_script() {
   static const std::string joined = [] {
-    std::string all = "\"use strict\";\n(() => {\n";  // a page's script elements share their names
+    std::string all = "\"use strict\";\n(() => {\n";  // script elements of a page share their names
     for (const auto part :
          {script_ground(), script_figures(), script_nyquist(), script_tables(), script_saving(), script_page()})
       all += part;

@@ -5,7 +5,7 @@
 namespace limcycle {
 namespace {
 
-/// Readers and the writer only meet for moments, when the log is begun anew or recovered after a crash.
+/// Readers and the writer only meet for moments, when the log is restarted or recovered after a crash.
 constexpr int patience_ms = 5000;
 
 DatabaseError database_error(sqlite3* handle, int code) {
@@ -79,7 +79,7 @@ bool Statement::step() {
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) {
     const DatabaseError error = database_error(database_, code);
-    sqlite3_reset(handle_.get());  // says the same error once more
+    sqlite3_reset(handle_.get());  // returns the same error again
     throw error;
   }
   return false;
@@ -97,7 +97,7 @@ std::string Statement::text(int column) const {
 }
 
 std::span<const unsigned char> Statement::bytes(int column) const {
-  // In this order: the second call tells the length of what the first one returned.
+  // In this order: the second call returns the length of the result of the first.
   const void* data = sqlite3_column_blob(handle_.get(), column);
   const int size = sqlite3_column_bytes(handle_.get(), column);
   return {static_cast<const unsigned char*>(data), static_cast<std::size_t>(size)};
@@ -108,8 +108,8 @@ Transaction::Transaction(Database& database, Kind kind) : database_(database) {
 }
 
 Transaction::~Transaction() {
-  // Some errors (a full disk) have undone it already. Undoing cannot fail in a way that matters: what is not committed
-  // is ignored by whoever opens the file next.
+  // Some errors (a full disk) have rolled it back already. A failure here is harmless: whoever opens the file next
+  // ignores what is not committed.
   if (sqlite3_get_autocommit(database_.handle()) == 0)
     sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }

@@ -1,5 +1,5 @@
 /// @file
-/// SQLite as the store of a sweep uses it: every result code is checked, nothing is left open.
+/// SQLite for the store of a sweep: every result code is checked, and all handles are closed.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,21 +9,21 @@
 #include <string>
 #include <string_view>
 
-// Of sqlite3.h, which stands in no header.
+// From sqlite3.h, which no header includes.
 struct sqlite3;
 struct sqlite3_stmt;
 
 namespace limcycle {
 
-/// SQLite refused: its extended result code and its words.
+/// An error of SQLite: its extended result code and its message.
 class DatabaseError : public std::runtime_error {
  public:
   DatabaseError(int code, const std::string& words) : std::runtime_error(words), code_(code) {}
 
-  bool not_a_database() const;  ///< the file is something else
+  bool not_a_database() const;  ///< the file is of another kind
   bool damaged() const;         ///< the file contradicts itself
   bool cannot_open() const;     ///< no such file, no permission
-  bool may_not_write() const;   ///< of a reader: a crash left work that must be undone first
+  bool may_not_write() const;   ///< for a reader: a crash left changes that must be rolled back first
 
  private:
   int code_;
@@ -34,8 +34,8 @@ class Database {
  public:
   enum class Access { read, recover, write };
 
-  /// `recover` may write, `write` makes the file where there is none. Throws DatabaseError; a file that is no database
-  /// is noticed by the first statement only.
+  /// `recover` may write, `write` creates the file if there is none. Throws DatabaseError; for a file that is no
+  /// database only the first statement does.
   Database(const std::string& path, Access access);
 
   /// Runs statements without parameters and results.
@@ -58,7 +58,7 @@ class Statement {
  public:
   Statement(Database& database, const std::string& sql);
 
-  /// What is bound must live until reset().
+  /// Bound data must live until reset().
   void bind(int parameter, std::int64_t value);
   void bind(int parameter, double value);
   void bind(int parameter, std::string_view text);
@@ -86,7 +86,7 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
-/// All or nothing: what is not committed is undone.
+/// All or nothing: what is not committed is rolled back.
 class Transaction {
  public:
   enum class Kind { read, write };

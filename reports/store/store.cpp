@@ -47,7 +47,7 @@ const StoreOptions& checked_options(const StoreOptions& options) {
   return options;
 }
 
-/// Rows on their way to the disk.
+/// Rows waiting to be written.
 struct WaitingRows {
   std::vector<std::size_t> points;
   std::vector<double> rows;
@@ -121,8 +121,8 @@ struct SweepStore::Impl {
     session = database->number("SELECT max(id) FROM sessions");
   }
 
-  /// Without its log the store is one file, which can be read where nothing can be written. A reader or a full disk may
-  /// be in the way: the store is as good with its log.
+  /// Leaves WAL mode: without its log the store is one file, readable on read-only media. A reader or a full disk may
+  /// prevent it; the store is valid with its log too.
   void rest() {
     try {
       database->run("PRAGMA busy_timeout = 100; PRAGMA journal_mode = DELETE");
@@ -131,7 +131,7 @@ struct SweepStore::Impl {
     }
   }
 
-  /// What could not be begun leaves nothing behind.
+  /// Removes a store that could not be created.
   void forget() {
     database.reset();
     remove_store(path);
@@ -149,21 +149,21 @@ struct SweepStore::Impl {
   const SweepIdentity identity;
   const StoreOptions options;
   const StoreLock lock;
-  std::optional<Database> database;  ///< of the constructor, then of the writer
+  std::optional<Database> database;  ///< used by the constructor, then by the writer
   std::int64_t session = 0;
 
-  mutable std::mutex guard;  ///< of what follows
+  mutable std::mutex guard;  ///< protects the members below
   std::condition_variable_any changed;
   std::vector<bool> known;
   WaitingRows waiting;
   std::size_t flushing = 0;  ///< calls of flush() that wait
-  bool storing = false;      ///< a transaction is under way
+  bool storing = false;      ///< a transaction is in progress
   std::optional<StoreError> failure;
 
-  std::jthread writer;  ///< ends before all else goes
+  std::jthread writer;  ///< ends before the other members
 };
 
-/// The thread that alone talks to the disk: whoever computes does not wait for it unless too many rows wait already.
+/// The only thread that writes to the disk: other threads wait for it only if too many rows are waiting already.
 void SweepStore::Impl::write_out(const std::stop_token& stop) {
   const auto interval =
       std::chrono::duration_cast<StoreClock::duration>(std::chrono::duration<double>(options.interval));
@@ -171,7 +171,7 @@ void SweepStore::Impl::write_out(const std::stop_token& stop) {
   std::unique_lock held(guard);
   while (!failure) {
     changed.wait(held, stop, [this] { return !waiting.points.empty(); });
-    if (waiting.points.empty()) return;  // told to end, and nothing is left
+    if (waiting.points.empty()) return;  // asked to end, and nothing is left
     changed.wait_until(held, stop, next, [this] { return flushing > 0 || waiting.points.size() >= options.waiting; });
     const WaitingRows batch = std::exchange(waiting, {});
     storing = true;
@@ -209,7 +209,7 @@ void SweepStore::Impl::store(const WaitingRows& batch) {
   transaction.commit();
 }
 
-/// Rows of a transaction that failed are lost, as are those that wait: they are computed again after --resume.
+/// Rows of a failed transaction are lost, as are those waiting: they are computed again after --resume.
 void SweepStore::Impl::fail(const std::string& words, std::size_t lost) {
   failure.emplace(
       StoreError::Kind::failed,

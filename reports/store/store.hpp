@@ -1,13 +1,13 @@
 /// @file
-/// The store of a sweep: one file that takes rows as they are finished and from which an interrupted sweep goes on.
+/// The store of a sweep: one file that receives rows as they are finished and from which an interrupted sweep resumes.
 ///
 /// An SQLite database in WAL mode with synchronous = FULL: each transaction is on the disk, not only handed to the
-/// system, before the next one begins, so that what was once stored survives kill -9 and a loss of power; SQLite's
-/// NORMAL would save one fsync a transaction and could lose the last ones. Rows are gathered for a moment first
-/// (StoreOptions), which is what may have to be computed again. While a sweep runs there are STORE-wal, STORE-shm
-/// (SQLite's) and STORE-lock beside the file; they go when it ends. After a kill they stay, and STORE-wal then belongs
-/// to the store: it holds what was stored last, until the next session takes it up. Not for a network file system
-/// shared by several machines: SQLite's WAL needs one kernel.
+/// system, before the next one begins, so that stored rows survive kill -9 and a loss of power; SQLite's NORMAL would
+/// save one fsync a transaction and could lose the last ones. Rows are gathered for a moment first (StoreOptions);
+/// these may have to be computed again. While a sweep runs, the files STORE-wal, STORE-shm (SQLite's) and STORE-lock
+/// exist next to it; they are removed when it ends. After a kill they remain, and STORE-wal then belongs to the store:
+/// it holds the latest rows, until the next session takes them over. Not for a network file system shared by several
+/// machines: SQLite's WAL needs one kernel.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,8 @@
 
 namespace limcycle {
 
-/// What makes rows comparable: a store takes rows of one identity only. All is compared but title and case_file.
+/// Identity of rows that can be compared: a store takes rows of one identity only. All is compared except title and
+/// case_file.
 struct SweepIdentity {
   std::string command;                 ///< "map", "sensitivity", ...
   std::string title, case_file;        ///< for the reader
@@ -32,11 +33,11 @@ struct SweepIdentity {
   std::string version, commit, isa;  ///< of the program: another one may round differently
 };
 
-/// A store that cannot be used or written. The message names the file, what is wrong and what to do.
+/// A store that cannot be used or written. The message names the file, the error and the remedy.
 class StoreError : public std::runtime_error {
  public:
   enum class Kind {
-    refused,  ///< the request does not fit the file: another sweep, not a store, in use, there already
+    refused,  ///< the request does not fit the file: another sweep, not a store, in use, already existing
     failed    ///< the disk: full, unreadable, damaged
   };
   StoreError(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
@@ -47,16 +48,16 @@ class StoreError : public std::runtime_error {
 };
 
 struct StoreOptions {
-  double interval = 0.2;          ///< s between transactions at least: fsync shall not be what a fast sweep waits for
-  std::size_t waiting = 1 << 16;  ///< rows that wait for the next one at most; write() waits for room
+  double interval = 0.2;          ///< least time between transactions, s, so that fsync does not slow down a fast sweep
+  std::size_t waiting = 1 << 16;  ///< most rows that wait for the next one; write() waits for room
 };
 
-/// How far a sweep got, and how fast. Times are seconds since 1970.
+/// Progress and rate of a sweep. Times are seconds since 1970.
 struct StoreActivity {
   std::size_t known = 0;         ///< points stored
-  std::size_t sessions = 0;      ///< times that a sweep was begun or resumed
+  std::size_t sessions = 0;      ///< number of times that the sweep was begun or resumed
   std::size_t session_rows = 0;  ///< stored by the last of them
-  double began = 0.0;            ///< the last of them
+  double began = 0.0;            ///< begin of the last of them
   double written = 0.0;          ///< last transaction; equal to `began` before the first
   bool running = false;          ///< a process has it open for writing now
   long pid = 0;                  ///< that process, or 0
@@ -65,7 +66,7 @@ struct StoreActivity {
   double rate() const { return written > began ? static_cast<double>(session_rows) / (written - began) : 0.0; }
 };
 
-/// Everything in a store at one moment.
+/// Contents of a store at one moment.
 struct StoredSweep {
   SweepIdentity identity;
   std::vector<bool> known;  ///< one flag a point
@@ -75,18 +76,17 @@ struct StoredSweep {
 };
 
 /// Reads a store without changing it, also while a sweep writes to it. Throws StoreError if there is no such file, if
-/// it is not a store, of a newer program, or damaged (a row that is not what was written is found by its checksum).
+/// it is not a store, of a newer program, or damaged (a checksum detects a changed row).
 StoredSweep read_store(const std::string& path);
 
-/// The writer. One process at a time; the file is locked until the object goes. Safe from several threads.
+/// The writer. One process at a time; the file is locked for the life of the object. Safe from several threads.
 class SweepStore {
  public:
-  /// Makes the store, or with `resume` opens one that was begun with the same identity (and makes it where there is
-  /// none, so that one command line can be repeated until it is done). Throws StoreError, and leaves the file as it
-  /// was, if it exists and `resume` is false, is of another identity, is no store, is damaged, or another process
-  /// writes to it.
+  /// Creates the store, or with `resume` opens one with the same identity (and creates it if there is none, so that one
+  /// command line can be repeated until it is done). Throws StoreError, and leaves the file unchanged, if it exists and
+  /// `resume` is false, is of another identity, is no store, is damaged, or another process writes to it.
   SweepStore(const std::string& path, const SweepIdentity& identity, bool resume, const StoreOptions& options = {});
-  ~SweepStore();  ///< stores what waits, in silence: call flush() to hear of errors
+  ~SweepStore();  ///< stores waiting rows without reporting errors: flush() reports them
   SweepStore(const SweepStore&) = delete;
   SweepStore& operator=(const SweepStore&) = delete;
 
@@ -94,15 +94,15 @@ class SweepStore {
   std::vector<bool> known() const;
 
   /// Hands over finished rows, `columns` numbers for each point; they are on the disk one interval later. Throws
-  /// std::invalid_argument for a point that does not exist or is known, or another number of numbers (nothing is taken
-  /// then); StoreError if an earlier row could not be stored (disk full): then the store takes no more, but all that
-  /// was stored stays, and the sweep can be resumed.
+  /// std::invalid_argument for a point that does not exist or is known, or a wrong number of numbers (no row is taken
+  /// then); StoreError if an earlier row could not be stored (disk full): then the store takes no more rows, but all
+  /// stored ones remain, and the sweep can be resumed.
   void write(std::span<const std::size_t> points, std::span<const double> rows);
 
-  /// Returns when everything handed over is on the disk. Throws StoreError if it cannot be.
+  /// Returns when all rows handed over are on the disk. Throws StoreError if that fails.
   void flush();
 
-  /// All that is stored, after flush().
+  /// Everything stored, after flush().
   StoredSweep read_all();
 
  private:

@@ -52,7 +52,7 @@ namespace {
 StoredSweep read_store(const std::string& path, Database::Access access) {
   StoredSweep stored;
   Database database(path, access);
-  // One moment of it, however much is written meanwhile.
+  // A snapshot, consistent during concurrent writes.
   Transaction transaction(database, Transaction::Kind::read);
   require_sweep(path, content_of(database));
   stored.identity = read_identity(database, path);
@@ -73,7 +73,7 @@ StoredSweep read_store(const std::string& path) {
     try {
       return read_store(file, Database::Access::read);
     } catch (const DatabaseError& error) {
-      // A process was killed while it opened or closed the store: what it had begun is undone by whoever comes next.
+      // A process was killed while it opened or closed the store: the next one to open it rolls its changes back.
       if (!error.may_not_write()) throw;
       return read_store(file, Database::Access::recover);
     }

@@ -7,17 +7,17 @@
 
 namespace limcycle {
 
-/// What reading and writing of a store say alike about its file.
+/// Errors and checks of the file of a store, common to reading and writing.
 
 StoreError refused_store(const std::string& message);
 
-/// What SQLite said, with the file and what to do about it.
+/// An error of SQLite, with the file and the remedy.
 StoreError from_database(const std::string& path, const DatabaseError& error);
 
-/// Links are followed, so that the lock of a store has one name.
+/// Path with links resolved, so that the lock of a store has one name.
 std::string true_path(const std::string& path);
 
-/// Is there anything in that file? An empty one is as good as none. Throws StoreError (refused) for a folder or a
+/// True if the file has any content; an empty file counts as missing. Throws StoreError (refused) for a folder or a
 /// device.
 bool holds_bytes(const std::string& path);
 

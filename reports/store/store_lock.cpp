@@ -15,8 +15,8 @@ namespace {
 
 std::string lock_file(const std::string& path) { return path + "-lock"; }
 
-/// A lock on a whole file, as this kind of lock is asked for. It belongs to the open file, not to the process, so that
-/// two stores of one process exclude each other too, and closing another descriptor does not drop it.
+/// A lock on a whole file, as an argument of fcntl. It belongs to the open file, not to the process, so that two stores
+/// of one process exclude each other too, and closing another descriptor does not release it.
 struct flock whole_file() {
   struct flock lock {};
   lock.l_type = F_WRLCK;
@@ -31,7 +31,7 @@ long written_pid(int descriptor) {
   return pid > 0 ? pid : -1;
 }
 
-/// Is that descriptor still the file of that name? Its last owner may have removed it between our opening and locking.
+/// True if the descriptor is still the file of that name; its last owner may have removed it before it was locked.
 bool is_still(int descriptor, const std::string& file) {
   struct stat ours {
   }, named{};
@@ -63,13 +63,13 @@ StoreLock::StoreLock(const std::string& path) : file_(lock_file(path)) {
     if (is_still(descriptor_, file_)) break;
     close(descriptor_);
   }
-  // Only for messages: a disk too full for it will be noticed soon enough.
+  // Only for messages: a disk too full for it is detected soon enough.
   const std::string pid = std::to_string(getpid()) + "\n";
   if (ftruncate(descriptor_, 0) == 0 && pwrite(descriptor_, pid.data(), pid.size(), 0) < 0) errno = 0;
 }
 
 StoreLock::~StoreLock() {
-  unlink(file_.c_str());  // while it is locked, so that nobody else can have it yet
+  unlink(file_.c_str());  // while it is locked, so that no other process has it
   close(descriptor_);
 }
 

@@ -3,21 +3,21 @@
 
 namespace limcycle {
 
-/// That this process alone writes to a store: a lock on the file PATH-lock, which the kernel takes back however the
-/// process ends. Beside the store, not on it: closing a second descriptor of the database would drop SQLite's own
-/// locks. The file holds the number of the process; it is removed with the object and may stay after kill -9, which
-/// hurts nobody.
+/// Exclusive right of this process to write to a store: a lock on the file PATH-lock, which the kernel releases however
+/// the process ends. A separate file, since closing a second descriptor of the database would release SQLite's own
+/// locks. The file contains the process id; it is removed with the object and may remain after kill -9, which does no
+/// harm.
 class StoreLock {
  public:
-  /// Throws StoreError (refused) if another process, or another object of this one, has it, or if the file cannot be
-  /// made.
+  /// Throws StoreError (refused) if another process, or another object of this one, holds it, or if the file cannot be
+  /// created.
   explicit StoreLock(const std::string& path);
   ~StoreLock();
   StoreLock(const StoreLock&) = delete;
   StoreLock& operator=(const StoreLock&) = delete;
 
-  /// Who has the lock of that store now: the number of the process, -1 if it is not known, 0: nobody. Takes no lock
-  /// itself.
+  /// Process id of the present holder of the lock of that store, -1 if it is not known, 0 if there is none. Takes no
+  /// lock itself.
   static long holder(const std::string& path);
 
  private:

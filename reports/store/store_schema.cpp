@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "limcycle/reports/json_values.hpp"
+#include "limcycle/reports/memory.hpp"
 
 namespace limcycle {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::int64_t store_schema = 1;
 constexpr std::int64_t store_application = 0x4C435357;  // "LCSW"
 static_assert(std::numeric_limits<double>::is_iec559, "rows are stored as IEEE doubles");
 
-/// A list as one text, of which a reader of the database can make something.
+/// A list as one JSON text, readable in the database by other programs.
 std::string list_text(const std::vector<std::string>& list) { return json_text(Json(list)); }
 
 struct IdentityField {
@@ -60,7 +61,7 @@ std::uint64_t unsigned_number(const std::string& text, const std::string& path) 
     const std::uint64_t value = std::stoull(text, &read);
     if (read == text.size()) return value;
   } catch (const std::logic_error&) {
-    // falls through to the refusal
+    // falls through to the error
   }
   throw damaged_store(path, "'" + text + "' stands where a number should");
 }
@@ -71,6 +72,14 @@ std::vector<std::string> text_list(const std::string& text, const std::string& p
   } catch (const Json::exception&) {
     throw damaged_store(path, "'" + text + "' stands where a list should");
   }
+}
+
+/// A sweep keeps all rows in memory; a number that is too large may also be damage.
+void require_memory(std::size_t points, std::size_t columns, const std::string& path) {
+  const double bytes = static_cast<double>(points) * (8.0 * static_cast<double>(columns) + 0.125);
+  if (const std::string lack = lack_of_memory(bytes); !lack.empty())
+    throw StoreError(StoreError::Kind::failed,
+                     fmt::format("{} is of {} points, each with {} numbers, and {}", path, points, columns, lack));
 }
 
 void numbers_of(std::span<const unsigned char> bytes, std::span<double> numbers) {
@@ -147,6 +156,7 @@ std::string identity_difference(const SweepIdentity& stored, const SweepIdentity
 
 void read_rows(Database& database, const std::string& path, StoredSweep& into) {
   const std::size_t points = into.identity.points, columns = into.identity.columns.size();
+  require_memory(points, columns, path);
   into.known.assign(points, false);
   into.rows.assign(points * columns, std::numeric_limits<double>::quiet_NaN());
   Statement select(database, "SELECT point, numbers, checksum FROM rows");
@@ -184,7 +194,7 @@ std::vector<unsigned char> bytes_of(std::span<const double> numbers) {
   return bytes;
 }
 
-/// FNV-1a of 64 bits, over the point as eight bytes and the bytes of its row: finds what a failing disk changes.
+/// FNV-1a of 64 bits, over the point as eight bytes and the bytes of its row: detects changes by a failing disk.
 std::int64_t checksum(std::size_t point, std::span<const unsigned char> bytes) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   const auto mix = [&](std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3U; };

@@ -9,9 +9,9 @@
 
 namespace limcycle {
 
-/// What stands in the database of a store: `identity` (key, value), `sessions` (one row each time that a sweep was
-/// begun or resumed: began, written, rows) and `rows` (point, numbers: doubles with the least byte first, checksum of
-/// both).
+/// Tables in the database of a store: `identity` (key, value), `sessions` (one row each time that a sweep was begun or
+/// resumed: began, written, rows) and `rows` (point, numbers: doubles with the least significant byte first, checksum
+/// of both).
 
 enum class StoreContent {
   nothing,  ///< no tables: a store that was never begun
@@ -23,17 +23,17 @@ enum class StoreContent {
 
 StoreContent content_of(Database& database);
 
-/// Makes tables and identity in an empty database, in one transaction of the caller.
+/// Creates tables and identity in an empty database, within a transaction of the caller.
 void make_tables(Database& database, const SweepIdentity& identity);
 
-/// Throws DatabaseError, or StoreError (failed) where a value does not make sense.
+/// Throws DatabaseError, or StoreError (failed) if a value is invalid.
 SweepIdentity read_identity(Database& database, const std::string& path);
 
-/// What differs between two identities, in words for a message; empty if they are the same.
+/// Differences between two identities, in words for a message; empty if they are the same.
 std::string identity_difference(const SweepIdentity& stored, const SweepIdentity& wanted);
 
-/// The points that are stored, in `known`, and their rows, in `rows`. Throws StoreError (failed) for a row that is not
-/// what was written.
+/// Reads the stored points into `known` and their rows into `rows`. Throws StoreError (failed) for a row that differs
+/// from what was written.
 void read_rows(Database& database, const std::string& path, StoredSweep& into);
 
 StoreActivity read_activity(Database& database, const std::string& path);

@@ -1,16 +1,25 @@
-#include "limcycle/analysis/dual.hpp"
+#include "limcycle/models/dual.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/models/elements.hpp"
+#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/friction/bristle/dahl.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/dry/coulomb.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
 
 using namespace limcycle;
 
 namespace {
 
 template <class E, class S>
-constexpr bool usable = ElementOn<E, S>;
+constexpr bool usable = LawOn<E, S>;
 using D3 = Dual<3>;
 static_assert(usable<Coulomb<D3>, D3> && usable<Stribeck<D3>, D3> && usable<Dahl<D3>, D3> && usable<LuGre<D3>, D3>);
 static_assert(usable<Relay<D3>, D3> && usable<Saturation<D3>, D3> && usable<DeadZone<D3>, D3>);

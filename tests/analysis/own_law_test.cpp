@@ -3,14 +3,18 @@
 #include <limits>
 #include <numbers>
 
-#include "limcycle/analysis/dual.hpp"
-#include "limcycle/analysis/energy/passivity.hpp"
-#include "limcycle/analysis/frequency/describing_function.hpp"
-#include "limcycle/analysis/orbit/settle.hpp"
-#include "limcycle/analysis/orbit/shooting.hpp"
-#include "limcycle/analysis/orbit/simulate.hpp"
-#include "limcycle/analysis/study/follow.hpp"
-#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/analysis/energy/passivity/passivity.hpp"
+#include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
+#include "limcycle/analysis/orbit/cycle/shooting.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
+#include "limcycle/analysis/study/continuation/follow.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/models/dual.hpp"
+#include "limcycle/models/friction/bristle/dahl.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/own_law.hpp"
+#include "limcycle/models/friction/sliders/jenkins.hpp"
 #include "limcycle/tests/loops.hpp"
 #include "limcycle/tests/own_laws.hpp"
 
@@ -58,7 +62,7 @@ struct NotANumber {
   static double force() { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
-/// The cycle that a displaced loop comes to.
+/// The cycle that a displaced loop reaches.
 Cycle settled_cycle(const Loop& loop, double displacement) {
   const auto settled = settle(loop, displaced(loop, displacement), SettleOptions{});
   REQUIRE(settled.outcome == Outcome::cycle);
@@ -105,7 +109,7 @@ bool says_differences(const auto& report, std::string_view law) {
   });
 }
 
-void check_same_gains(const Element<double>& own, const Element<double>& built_in, double amplitude_of_turn) {
+void check_same_gains(const Element& own, const Element& built_in, double amplitude_of_turn) {
   for (const double amplitude : {0.3, 1.0, 7.0, 300.0})
     for (const double frequency : {0.2, 20.0})
       for (const double bias : {0.0, 0.4}) {
@@ -154,7 +158,7 @@ TEST_CASE("derivatives of an own law by several variables at a time, against exa
   for (const double v : {-0.3, -2e-3, -4e-4, 1e-5, 1e-3, 0.02, 5.0})
     for (const double share : {-0.9, 0.0, 0.4}) {
       CAPTURE(v, share);
-      // A direction in which both vary, as in the chain rule, beside the variables themselves.
+      // A direction in which both vary, as in the chain rule, in addition to the variables themselves.
       Input<D> in{D(0.7), D::variable(v, 0), D(infinite)};
       std::vector<D> z{D::variable(share * 1.5e-5, 1)};
       in.v.d[2] = 3.0, z[0].d[2] = -2e-3;
@@ -232,6 +236,39 @@ TEST_CASE("the servo with Dahl's law as an own law: predicted as with the librar
   check_same(predict(servo(own_law(OwnDahl{})), options), predict(servo(dahl(1.0, 1e4)), options));
 }
 
+TEST_CASE("an own law holds its body at rest: the servo hunts as with the library's dry friction") {
+  const auto mine = predict(servo(own_law(OwnStiction{}))), theirs = predict(servo(coulomb(1.5, 1.0, 0.4)));
+  REQUIRE(theirs.cycles.size() == 1);
+  CHECK(theirs.cycles[0].sticking_fraction > 0.1);
+  REQUIRE(mine.cycles.size() == 1);
+  CHECK(mine.cycles[0].period == Approx(theirs.cycles[0].period).epsilon(1e-9));
+  CHECK(mine.cycles[0].amplitude == Approx(theirs.cycles[0].amplitude).epsilon(1e-9));
+  CHECK(mine.cycles[0].stable == theirs.cycles[0].stable);
+  REQUIRE(mine.cycles[0].multipliers.size() == theirs.cycles[0].multipliers.size());
+  const auto largest = std::abs(theirs.cycles[0].multipliers.at(0));
+  CHECK(std::abs(mine.cycles[0].multipliers.at(0) - theirs.cycles[0].multipliers.at(0)) < 1e-6 * (1.0 + largest));
+  CHECK(says_differences(mine, "my-stiction"));
+}
+
+TEST_CASE("derivatives of an own law that is templated on its scalar are exact, and no note says otherwise") {
+  using D = Dual<2>;
+  const auto law = own_law(TemplatedDahl<double>{});
+  for (const Element& one : {law, own_law(RemadeDahl<double>{})}) {
+    CHECK_FALSE(one.facts().by_differences);
+    std::vector<D> z{D::variable(3e-5, 1)}, dz(1);
+    one.on<D>().rate({D(0.0), D::variable(0.02, 0), D(0.0)}, {}, z, dz);
+    CHECK(dz[0].d[0] == 1.0 - 1e4 * 3e-5);
+    CHECK(dz[0].d[1] == -1e4 * 0.02);
+  }
+  CHECK(law.with("Fc", 2.0).number("Fc") == 2.0);
+  CHECK_THROWS_WITH(law.with("fc", 2.0), Contains("templated-dahl") && Contains("fc"));
+  PredictOptions options;
+  options.search = SearchBox{1e-6, 1.0, 0.01, 1000.0};
+  const auto mine = predict(servo(law), options);
+  check_same(mine, predict(servo(dahl(1.0, 1e4)), options));
+  CHECK_FALSE(says_differences(mine, "templated-dahl"));
+}
+
 TEST_CASE("an own law that claims no symmetry has the same cycle, over the whole period") {
   const Cycle whole = settled_cycle(servo(own_law(PlainLuGre{})), 1.0), built_in = settled_cycle(servo(lugre()), 1.0);
   CHECK_FALSE(whole.half_wave_symmetric);
@@ -247,7 +284,7 @@ TEST_CASE("a branch of cycles with an own law: followed as with the library's, d
   options.own = 6.0;
   options.predict.starts = 1;
   options.predict.methods = {.describing_function = false, .composite = false, .harmonic_balance = false};
-  const auto over_kd = [&](const Element<double>& law) {
+  const auto over_kd = [&](const Element& law) {
     return follow(
         [&](double kd) -> std::optional<Loop> {
           LoopParts parts = servo_parts(law);
@@ -271,7 +308,7 @@ TEST_CASE("a branch of cycles with an own law: followed as with the library's, d
 TEST_CASE("an own law in series with the plant, in place of an element") {
   PredictOptions options;
   options.methods.composite = false;
-  const auto in_series = [&](const Element<double>& law) {
+  const auto in_series = [&](const Element& law) {
     return predict(forward(law, {8.0}, {1.0, 3.0, 3.0, 1.0}), options);
   };
   const auto own = in_series(own_law(OwnDahl{1.0, 4.0})), built_in = in_series(dahl(1.0, 4.0));

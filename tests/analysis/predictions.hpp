@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
 
 /// Predictions by one method out of several.
 namespace limcycle::test {
@@ -34,7 +34,7 @@ inline std::vector<Prediction> predictions_of(const PredictReport& report, std::
   return own;
 }
 
-/// Does the report say that the method saw nothing where this cycle is?
+/// True if the report states that the method misses this cycle.
 inline bool misses(const PredictReport& report, std::string_view method, std::size_t cycle) {
   return std::ranges::any_of(report.missed,
                              [&](const Missed& one) { return one.method == method && one.cycle == cycle; });

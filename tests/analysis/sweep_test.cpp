@@ -31,7 +31,7 @@ SweepTask sweep_of(std::size_t points, std::size_t block) {
           }};
 }
 
-/// Bits of all rows and how often each point came.
+/// Bits of all rows, and the number of times each point came.
 struct Kept {
   explicit Kept(std::size_t points) : bits(points * three), times(points) {}
   void take(std::span<const std::size_t> points, std::span<const double> rows) {
@@ -103,7 +103,7 @@ TEST_CASE("a sweep does not ask again for points that are known, and hands out t
     CHECK(kept.times[i] == (known[i] ? 0 : 1));
     CHECK((known[i] || kept.bits[3 * i + 2] == expected.bits[3 * i + 2]));
   }
-  // Nothing to do is done, without a call.
+  // An empty task is done without a call.
   SweepTask never = sweep_of(50, 4);
   never.compute = [](auto, auto) -> std::size_t { throw std::runtime_error("asked"); };
   CHECK(run_sweep(never, std::vector<bool>(50, true), kept.sink()) == Status::converged);
@@ -208,7 +208,7 @@ TEST_CASE("an exception of a computation ends the sweep after all threads, and w
     CHECK_THROWS_WITH(run_sweep(task, {}, kept.sink(), with_threads(threads)), "point 100");
     CHECK(inside == 0);
     CHECK(kept.times[100] == 0);
-    // Blocks are begun in order, and those that were being computed elsewhere are finished.
+    // Blocks are begun in order, and those already begun on other threads are finished.
     CHECK(std::all_of(kept.times.begin(), kept.times.begin() + 100, [](int count) { return count == 1; }));
     if (threads == 1) CHECK(kept.known() == 100);
   }

@@ -3,8 +3,9 @@
 #include <numbers>
 
 #include "limcycle/analysis/study/claims/run_claims.hpp"
-#include "limcycle/cases/case_numbers.hpp"
-#include "limcycle/cases/formula.hpp"
+#include "limcycle/cases/loader/case_numbers.hpp"
+#include "limcycle/cases/loader/formula.hpp"
+#include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;
@@ -34,7 +35,7 @@ frequency = [0.1, 1000.0]
 
 const std::string coulomb = "[loop.friction]\nkind = \"coulomb\"\nFc = 2.0\n";
 
-/// What becomes of one claim; `random_points` are those of the claim itself.
+/// Result of one claim; `random_points` are those of the claim itself.
 TestedClaim tested(const std::string& loop, const std::string& body) {
   const Case from = read_case(loop + "[[claim]]\nid = \"a\"\n" + body, "a.toml");
   const auto result = run_claims(claims_of(from), {});
@@ -159,7 +160,7 @@ TEST_CASE("user claims: a cycle known in closed form, at random parameters too")
   CHECK(verdict(relay, "quantity = \"amplitude\"\nformula = \"0.09\"\ncomparison = \"<=\"\n") == ClaimVerdict::fails);
   CHECK(verdict(relay, "quantity = \"hunts\"\nformula = 1\n") == ClaimVerdict::holds);
   CHECK(verdict(relay, "quantity = \"hunts\"\ncomparison = \"<\"\nformula = 1\n") == ClaimVerdict::fails);
-  // The root of the describing function lies where N begins: its search may have missed others, so that nobody counts.
+  // The root is at the least amplitude for which N exists: the search may have missed others, so the count is open.
   CHECK(verdict(relay, "quantity = \"cycles\"\nformula = 1\n") == ClaimVerdict::undecided);
   const std::string lags =
       "[loop.plant]\nkind = \"zpk\"\nzeros = []\npoles = [-1, -1, -1]\ngain = 1\n[loop.element]\n"
@@ -187,7 +188,7 @@ TEST_CASE("user claims: where there is no cycle, claims of one fail, without a N
   CHECK(period.result.checks[0].quantity == "there is a stable limit cycle");
   CHECK(verdict(rests, "quantity = \"hunts\"\nformula = 0\n") == ClaimVerdict::holds);
   CHECK(verdict(rests, "quantity = \"cycles\"\nformula = 0\n") == ClaimVerdict::holds);
-  // A formula without a value refutes nothing.
+  // A formula without a value disproves nothing.
   CHECK(verdict(rests, "quantity = \"hunts\"\nformula = \"0/0\"\n") == ClaimVerdict::undecided);
 }
 
@@ -226,5 +227,5 @@ TEST_CASE("the numbers of a case that holds a lone law") {
   CHECK(numbers[0].path == "loop.friction.Fc");
   const std::pair<std::string, double> change("loop.friction.Fc", 3.0);
   REQUIRE(case_with(read_case(coulomb, "a.toml"), std::span(&change, 1)));
-  CHECK(std::get<Coulomb<double>>(*case_with(read_case(coulomb, "a.toml"), std::span(&change, 1))->element).Fc == 3.0);
+  CHECK(law_of<Coulomb<double>>(*case_with(read_case(coulomb, "a.toml"), std::span(&change, 1))->element).Fc == 3.0);
 }

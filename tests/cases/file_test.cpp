@@ -3,6 +3,7 @@
 #include <fstream>
 #include <random>
 
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;
@@ -45,7 +46,7 @@ TEST_CASE("every shipped case file is valid, has a title, and says in a comment 
 
 TEST_CASE("the default case holds the published numbers") {
   const Case from = load_case(std::string(LIMCYCLE_SOURCE_DIR) + "/cases/pid-lugre.toml");
-  const auto& lugre = std::get<LuGre<double>>(*from.loop->friction);
+  const auto& lugre = law_of<LuGre<double>>(*from.loop->friction);
   CHECK(std::get<Mass>(from.loop->plant).mass == 1.0);
   const auto& pid = std::get<Pid>(from.loop->controller);
   CHECK((pid.kp == 3.0 && pid.ki == 4.0 && pid.kd == 6.0 && pid.tf == 0.0));
@@ -88,7 +89,7 @@ TEST_CASE("files that are no case files") {
   CHECK(put("a = 1\nb = \"\xC3\x28\"\n") == file + ":2: not a text file in UTF-8: a case file is TOML");
   CHECK(put("\xFF\xFE[\n") == file + ":1: not a text file in UTF-8: a case file is TOML");
   CHECK(put(std::string(largest_case_file + 1, '#')) == file + ": is larger than 1 MiB, the limit for a case file");
-  CHECK(put("\xEF\xBB\xBF" + law) == "");  // a byte-order mark is no mistake
+  CHECK(put("\xEF\xBB\xBF" + law) == "");  // a byte-order mark is no error
   CHECK(put("# \xC3\xA9\r\n" + law) == "");
   std::filesystem::remove_all(folder);
 }

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "limcycle/cases/parameters.hpp"
+#include "limcycle/cases/loader/parameters.hpp"
+#include "limcycle/models/catalogue.hpp"
+#include "limcycle/models/laws.hpp"
 #include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;
@@ -20,7 +22,7 @@ TEST_CASE("a loop is read with all its parts") {
   CHECK(kind_of(from.loop->plant) == "mass");
   CHECK(std::get<Pid>(from.loop->controller).kd == 6.0);
   REQUIRE(from.loop->friction);
-  const auto& lugre = std::get<LuGre<double>>(*from.loop->friction);
+  const auto& lugre = law_of<LuGre<double>>(*from.loop->friction);
   CHECK(lugre.Fs == 1.5);
   CHECK(lugre.sigma0 == 1e5);
   CHECK_FALSE(from.loop->element);
@@ -55,10 +57,10 @@ TEST_CASE("a lone law or element needs no plant") {
   CHECK_FALSE(law.loop);
   REQUIRE(law.element);
   CHECK(law.element_path == "loop.friction");
-  CHECK(std::get<Coulomb<double>>(df_element(law)).Fs == 2.0);
+  CHECK(law_of<Coulomb<double>>(df_element(law)).Fs == 2.0);
   const Case relay = read_case("[loop.element]\nkind = \"relay\"\nlevel = 3\n", "a.toml");
   CHECK(relay.element_path == "loop.element");
-  CHECK(kind_of(df_element(relay)) == "relay");
+  CHECK(df_element(relay).kind() == "relay");
   CHECK_THROWS_WITH(need_loop(relay), "a.toml: loop.plant: is required by this command: the case holds a lone element");
   CHECK_THROWS_WITH(need_df(relay), "a.toml: df: is required by this command: add [df] with amplitude and frequency");
   CHECK_THROWS_WITH(need_simulate(relay),
@@ -70,8 +72,8 @@ TEST_CASE("a friction law may stand in series, and beside friction") {
       read_case(with(servo, "[loop.friction]", "[loop.element]\nkind = \"dahl\"\nFc = 1\nsigma0 = 10\n[loop.friction]"),
                 "a.toml", {"loop.controller.tf=0.01"});
   REQUIRE(from.loop->element);
-  CHECK(kind_of(*from.loop->element) == "dahl");
-  CHECK(kind_of(df_element(from)) == "lugre");
+  CHECK(from.loop->element->kind() == "dahl");
+  CHECK(df_element(from).kind() == "lugre");
 }
 
 TEST_CASE("what is missing from a loop") {
@@ -89,7 +91,7 @@ TEST_CASE("what is missing from a loop") {
 TEST_CASE("a kind that is misspelt is answered with the nearest name, one that is not there with all") {
   CHECK(message(with(servo, "\"lugre\"", "\"hysteresis\"")) ==
         "a.toml:10: loop.friction.kind = \"hysteresis\": unknown friction law; known: " +
-            case_file::joined(case_file::kinds_of<FrictionLaws::On<double>>()));
+            case_file::joined(kinds_of(catalogue_of_elements().friction_laws)));
   CHECK(message(with(servo, "\"lugre\"", "\"lugr\"")) ==
         "a.toml:10: loop.friction.kind = \"lugr\": unknown friction law; did you mean \"lugre\"?");
   CHECK(message(with(servo, "\"lugre\"", "\"max-well-slip\"")) ==
@@ -134,8 +136,8 @@ TEST_CASE("an element on the error, alone and beside the others") {
   const std::string error = "[loop.error]\nkind = \"dead-zone\"\nhalf_width = 0.01\n";
   const Case from = read_case(std::string(servo) + error, "a.toml");
   REQUIRE(from.loop->error);
-  CHECK(std::get<DeadZone<double>>(*from.loop->error).half_width == 0.01);
-  CHECK(kind_of(df_element(from)) == "lugre");
+  CHECK(law_of<DeadZone<double>>(*from.loop->error).half_width == 0.01);
+  CHECK(df_element(from).kind() == "lugre");
   CHECK(from.element_path == "loop.friction");
   const Case all =
       read_case(std::string(servo) + error + "[loop.element]\nkind = \"saturation\"\nlimit = 3\n", "a.toml");
@@ -144,7 +146,7 @@ TEST_CASE("an element on the error, alone and beside the others") {
       "[loop.plant]\nkind = \"mass\"\nmass = 1\n[loop.controller]\nkind = \"pid\"\nkp = 1\nkd = 1\ntf = 0.1\n"
       "[loop.error]\nkind = \"quantizer\"\nstep = 0.5\n",
       "a.toml");
-  CHECK(std::get<Quantizer<double>>(df_element(alone)).step == 0.5);
+  CHECK(law_of<Quantizer<double>>(df_element(alone)).step == 0.5);
   CHECK(alone.element_path == "loop.error");
 }
 

@@ -3,11 +3,11 @@
 #include <string_view>
 #include <vector>
 
-#include "limcycle/cases/case.hpp"
+#include "limcycle/cases/loader/case.hpp"
 
 namespace limcycle::test {
 
-/// What the loader says about a text; empty if it accepts it.
+/// Message of the loader about a text; empty if it accepts it.
 inline std::string message(std::string_view text, const std::vector<std::string>& overrides = {}) {
   try {
     read_case(text, "a.toml", overrides);

@@ -1,8 +1,9 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "limcycle/analysis/study/experiments/laws.hpp"
-#include "limcycle/cases/case.hpp"
+#include "limcycle/analysis/study/experiments/runs/laws.hpp"
+#include "limcycle/cases/loader/case.hpp"
+#include "limcycle/models/laws.hpp"
 
 using namespace limcycle;
 
@@ -10,28 +11,15 @@ namespace {
 
 const std::string folder = std::string(LIMCYCLE_SOURCE_DIR) + "/cases/presets/";
 
-/// Same kind, same value of every parameter.
-bool same(const Element<double>& a, const Element<double>& b) {
-  if (a.index() != b.index()) return false;
-  return std::visit(
-      [&]<class Law>(const Law& one) {
-        const Law& other = std::get<Law>(b);
-        bool equal = true;
-        for (const auto& parameter : Law::parameters())
-          std::visit(
-              [&](auto member) {
-                const auto& x = one.*member;
-                const auto& y = other.*member;
-                if constexpr (requires { x == y; })
-                  if (!(x == y)) {
-                    UNSCOPED_INFO("differs in " << parameter.key);
-                    equal = false;
-                  }
-              },
-              parameter.member);
-        return equal;
-      },
-      a);
+/// True if kind and values of all parameters are the same.
+bool same(const Element& a, const Element& b) {
+  if (!a.is_of_kind_of(b)) return false;
+  for (std::size_t i = 0; i < a.parameters().size(); ++i)
+    if (a.values()[i] != b.values()[i]) {
+      UNSCOPED_INFO("differs in " << a.parameters()[i].key);
+      return false;
+    }
+  return true;
 }
 
 }  // namespace

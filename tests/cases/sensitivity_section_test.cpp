@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "limcycle/cases/case_numbers.hpp"
+#include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;

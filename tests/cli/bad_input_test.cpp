@@ -2,8 +2,8 @@
 
 #include "limcycle/tests/cli/program.hpp"
 
-// Bad input, seen from outside: exit code 2, one line on stderr that names file, line, key, value and rule, and nothing
-// on stdout.
+// Bad input, as seen by the user: exit code 2, one line on stderr that names file, line, key, value and rule, and
+// nothing on stdout.
 
 using limcycle::test::Ran;
 using limcycle::test::run;
@@ -159,7 +159,7 @@ TEST_CASE("a file that may not be read") {
   const Scratch scratch;
   const std::string file = scratch.put("a.toml", servo);
   std::filesystem::permissions(file, std::filesystem::perms::none);
-  if (std::ifstream(file)) {  // the superuser reads everything: a broken link is then what cannot be read
+  if (std::ifstream(file)) {  // the superuser can read everything: a broken link then serves as the unreadable file
     std::filesystem::create_symlink(scratch.file("gone"), scratch.file("link"));
     check_refused(run({"check", scratch.file("link")}), scratch.file("link") + ": no such file");
   } else {
@@ -239,4 +239,23 @@ TEST_CASE("a refused case leaves no empty result file behind, and an old one as 
   scratch.put("old", "before");
   CHECK(run({"check", shipped("pid-lugre.toml"), "--json", scratch.file("old"), "--csv", "/nonexistent/x"}).code == 2);
   CHECK(scratch.get("old") == "before");
+}
+
+TEST_CASE("a case that check accepts is no wrong input to predict, whatever its numbers: what failed is a note") {
+  const Scratch scratch;
+  const std::string stages = scratch.file("quantized.toml");
+  run({"new", "--plant", "two-mass", "--controller", "state-space", "--error", "quantizer", "-o", stages});
+  const std::vector<std::vector<std::string>> cases{
+      {shipped("two-mass-drive.toml"), "--set", "loop.friction.Fs=1.7e308"},
+      {stages, "--set", "loop.plant.load_mass=292.6", "--set", "loop.controller.lag=0.005"}};
+  for (auto words : cases) {
+    INFO(words[0] << ' ' << words[2]);
+    words.insert(words.begin(), "check");
+    REQUIRE(run(words).code == 0);
+    words.front() = "predict";
+    words.insert(words.end(), {"--time-limit", "3", "--json", "-"});
+    const Ran ran = run(words);
+    CHECK((ran.code == 0 || ran.code == 3));
+    CHECK(ran.out.starts_with("{\n  \"schema\": \"limcycle/1\""));
+  }
 }

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "limcycle/cases/case.hpp"
+#include "limcycle/cases/loader/case.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/tests/cli/program.hpp"
 

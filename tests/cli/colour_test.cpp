@@ -14,7 +14,7 @@ constexpr auto* red = "\x1b[31m";
 constexpr auto* green = "\x1b[32m";
 constexpr auto* yellow = "\x1b[33m";
 
-/// What the program writes on a terminal, where `before` ("NO_COLOR=1") stands before the command.
+/// Output of the program on a terminal; `before` ("NO_COLOR=1") precedes the command.
 std::string on_terminal(const std::string& arguments, const std::string& before = "TERM=xterm") {
   const Scratch scratch;
   const std::string inner = "env -u NO_COLOR " + before + " " + quoted(LIMCYCLE_PROGRAM) + " " + arguments;
@@ -53,7 +53,7 @@ TEST_CASE("colour: on a terminal, and nowhere else") {
   const std::string quick = "predict " + quoted(shipped("relay-integrator.toml")) + " --quiet";
   CHECK(holds(on_terminal(quick), green));
   CHECK_FALSE(holds(on_terminal(quick, "TERM=xterm NO_COLOR=1"), "\x1b"));
-  CHECK(holds(on_terminal(quick, "TERM=xterm NO_COLOR="), green));  // empty is not set
+  CHECK(holds(on_terminal(quick, "TERM=xterm NO_COLOR="), green));  // empty counts as not set
   CHECK_FALSE(holds(on_terminal(quick, "TERM=dumb"), "\x1b"));
   CHECK_FALSE(holds(on_terminal(quick, "-u TERM"), "\x1b"));
   CHECK_FALSE(holds(on_terminal(quick + " --color never"), "\x1b"));

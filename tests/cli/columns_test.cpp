@@ -12,7 +12,7 @@ using limcycle::test::shipped;
 
 namespace {
 
-/// Every line of what a command writes: at most 80 columns, no space at its end, no tab; a complaint is one line.
+/// Checks every line of a command's output: at most 80 columns, no space at its end, no tab; an error is one line.
 void check_page(const std::vector<std::string>& arguments) {
   const Ran ran = run(arguments);
   CAPTURE(arguments, ran.err);

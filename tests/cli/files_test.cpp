@@ -1,8 +1,10 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 
 #include "limcycle/tests/cli/program.hpp"
 
-// What the flags say of files and numbers: nothing that is read is overwritten, nothing is lost, nothing is guessed.
+// Flags for files and numbers: no input is overwritten, no result is lost, no value is guessed.
 
 using Catch::Matchers::Contains;
 using limcycle::test::Ran;
@@ -66,6 +68,99 @@ TEST_CASE("flags: a number is finite, a whole number is decimal and fits") {
              Contains("\"seed\":18446744073709551615,"));
 }
 
+TEST_CASE("flags: what is out of range is told with short numbers") {
+  const std::string servo = shipped("pid-lugre.toml");
+  check_refused(run({"dissipativity", servo, "--speed", "-1"}), "--speed: must be > 0, got '-1'");
+  check_refused(run({"adequate", servo, "--tolerance", "2"}), "--tolerance: must lie in 1e-06 to 1, got '2'");
+  check_refused(run({"check", servo, "--threads", "2000"}), "--threads: must lie in 0 to 1024, got '2000'");
+  check_refused(run({"check", servo, "--time-limit", "1e300"}), "must lie in 0 to 1e+09, got '1e300'");
+  check_refused(run({"check", servo, "--seed", "-1"}), "--seed: must be >= 0, got '-1'");
+  check_refused(run({"check", servo, "--threads", std::string(5000, '9')}), "99999...'");
+  for (const char* flag : {"--speed", "--top-speed"}) CHECK(run({"dissipativity", servo, flag, "0"}).err.size() < 120);
+}
+
+TEST_CASE("files: what could not be kept is refused before anything is computed") {
+  if (geteuid() == 0) return;  // the superuser may write everywhere
+  const Scratch scratch;
+  const std::string folder = scratch.file("locked");
+  std::filesystem::create_directory(folder);
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  for (const char* flag : {"--json", "--csv", "-o", "--html", "--svg"})
+    check_refused(run({"predict", shipped("pid-lugre.toml"), flag, folder + "/a"}), "cannot be written");
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+}
+
+TEST_CASE("files: a name in a folder that does not exist, and a folder, are refused before anything is computed") {
+  const Scratch scratch;
+  for (const char* flag : {"--json", "--csv", "-o", "--html", "--svg"}) {
+    check_refused(run({"predict", shipped("pid-lugre.toml"), flag, scratch.file("none/a")}), "cannot be written");
+    check_refused(run({"predict", shipped("pid-lugre.toml"), flag, scratch.file("")}), "cannot be written");
+  }
+}
+
+TEST_CASE("files: a document keeps link and permissions of the file in whose place it comes, and leaves no draft") {
+  const Scratch scratch;
+  const std::string file = scratch.put("a.json", "old"), link = scratch.file("link.json");
+  std::filesystem::permissions(file, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  std::filesystem::create_symlink("a.json", link);
+  CHECK(run({"check", shipped("pid-lugre.toml"), "--json", link}).code == 0);
+  CHECK(std::filesystem::is_symlink(link));
+  CHECK_THAT(scratch.get("a.json"), Contains("\"command\": \"check\""));
+  CHECK(std::filesystem::status(file).permissions() ==
+        (std::filesystem::perms::owner_read | std::filesystem::perms::owner_write));
+  CHECK(std::distance(std::filesystem::directory_iterator(std::filesystem::path(file).parent_path()), {}) == 2);
+}
+
+TEST_CASE("files: help and version that cannot be written are a failed write") {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--help"}, {"predict", "--help"}, {"--version"}}) {
+    const Ran ran = run(words, "> /dev/full");
+    CHECK(ran.code == 3);
+    CHECK_THAT(ran.err, Contains("cannot write to stdout: No space left on device"));
+  }
+}
+
+TEST_CASE("files: a title that a spreadsheet would compute is kept a text in CSV, numbers stay numbers") {
+  const Scratch scratch;
+  for (const std::string title : {"=1+1", "+cmd", "-2 x", "@SUM(A1)"}) {
+    const Ran ran = run({"check", shipped("pid-lugre.toml"), "--set", "title='" + title + "'", "--csv", "-"});
+    CHECK_THAT(ran.out, Contains("\n'" + title + ",mass,pid"));
+  }
+  CHECK_THAT(run({"check", shipped("pid-lugre.toml"), "--set", "title='-2'", "--csv", "-"}).out, Contains("\n-2,mass"));
+}
+
+// AddressSanitizer itself takes more address space than this machine of 2 GB has.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define LIMCYCLE_ADDRESS_SANITIZER
+#endif
+#endif
+#ifndef LIMCYCLE_ADDRESS_SANITIZER
+TEST_CASE("memory: what does not fit is refused with the number, before anything is computed") {
+  // As on a machine with 2 GB of memory.
+  const auto refused = [](std::vector<std::string> words, const std::string& part) {
+    std::string line = "ulimit -v 2000000; exec";
+    for (const auto& word : words) line += " " + limcycle::test::quoted(word);
+    const Scratch scratch;
+    const int status = std::system(
+        ("sh -c " + limcycle::test::quoted(line) + " > " + scratch.file("out") + " 2> " + scratch.file("err")).c_str());
+    INFO(scratch.get("err"));
+    CHECK(WEXITSTATUS(status) == 2);
+    CHECK_THAT(scratch.get("err"), Contains(part) && Contains(" GB of memory; 2.05 GB are there; fewer "));
+  };
+  const std::string program = LIMCYCLE_PROGRAM, servo = shipped("pid-lugre.toml");
+  refused({program, "df", shipped("df-lugre.toml"), "--set", "df.amplitude={from = 1e-6, to = 1.0, points = 1000000}",
+           "--set", "df.frequency=[1.0, 2.0, 3.0]", "--set", "df.bias=[0.0]", "--set", "df.harmonics=1000"},
+          "df: needs ");
+  refused({program, "map", servo, "--x", "loop.controller.kp=1:5:10000", "--y", "loop.controller.kd=1:9:10000"},
+          "--x, --y: needs ");
+  refused({program, "sensitivity", servo, "--samples", "16777216"}, "--samples: needs ");
+  refused({program, "simulate", shipped("tutorial-servo.toml"), "--set", "simulate.sample=1e-5", "--set",
+           "simulate.duration=40.0", "--json", "-"},
+          "simulate.sample: needs ");
+}
+#endif
+
 TEST_CASE("terminal: nothing that a case or a file name holds is obeyed by it") {
   const Scratch scratch;
   const std::string odd =
@@ -87,4 +182,16 @@ TEST_CASE("terminal: nothing that a case or a file name holds is obeyed by it") 
   CHECK(wrong.code == 2);
   harmless(wrong.err);
   harmless(run({"check", scratch.file("none" + odd)}).err);
+  for (const char* command : {"predict", "margin", "dissipativity", "precision"}) {
+    const Ran ran = run({command, file, "--time-limit", "0.05", "--json", scratch.file(odd + ".json")});
+    harmless(ran.out + ran.err);
+  }
+  harmless(run({"map", file, "--x", "loop.controller.kp=1:5:2", "--y", "loop.controller.kd=1:9:2", "--time-limit",
+                "0.05", "--store", scratch.file(odd + ".store")})
+               .err);
+  harmless(run({"status", scratch.file(odd + ".store")}).out);
+  harmless(run({"predict", file, "--json", scratch.file("none/" + odd)}).err);
+  harmless(run({"new", "-o", scratch.file(odd + ".new")}).err);
+  harmless(run({"new", "--plant", odd}).err);
+  harmless(run({odd}).err);
 }

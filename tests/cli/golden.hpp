@@ -12,7 +12,7 @@
 
 namespace limcycle::test {
 
-/// How near numbers under a key must be: |a - b| <= relative |b| + absolute.
+/// Tolerance for numbers under a key: |a - b| <= relative |b| + absolute.
 struct Nearness {
   double relative = 1e-6, absolute = 1e-12;
 };
@@ -34,13 +34,13 @@ inline bool free_text(const std::string& key) {
   return keys.contains(key);
 }
 
-/// An estimate of an error may come out differently, but not worse by orders.
+/// True for error estimates, which may differ, but not be worse by orders of magnitude.
 inline bool estimate(const std::string& key) {
   return key == "error" || key == "residual" || key == "phase_drift" || key.ends_with("_difference");
 }
 
 /// First difference of a document from its golden one, with its path; empty: none. Keys must be the same, in the same
-/// order; numbers near, other values the same.
+/// order; numbers must agree within tolerance, other values exactly.
 inline std::string difference(const nlohmann::ordered_json& golden, const nlohmann::ordered_json& actual,
                               const std::string& path = "", const std::string& key = "") {
   const auto differ = [&](const std::string& what) {
@@ -94,7 +94,7 @@ inline std::vector<Golden> goldens_of(const std::string& command) {
   return out;
 }
 
-/// Runs the commands again, and holds what they print against their golden documents.
+/// Runs the commands again, and compares their output with their golden documents.
 inline void check_goldens(const std::string& command) {
   for (const auto& golden : goldens_of(command)) {
     auto arguments = golden.arguments;

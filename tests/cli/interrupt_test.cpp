@@ -13,7 +13,7 @@ TEST_CASE("interrupt: signals at once are one wish to stop, a later one ends eve
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   const int reader = open(pipe.c_str(), O_RDWR | O_CLOEXEC);
   REQUIRE(reader >= 0);
-  // A table that is computed at once and longer than what a pipe holds.
+  // A table that is computed at once and exceeds the capacity of a pipe.
   Started program(scratch, {"sh", "-c", "exec \"$@\" > " + quoted(pipe), "sh", LIMCYCLE_PROGRAM, "df",
                             shipped("relay-third-order.toml"), "--csv", "-", "--set",
                             "df.amplitude={from=0.1, to=10.0, points=100}", "--set",
@@ -30,7 +30,7 @@ TEST_CASE("interrupt: signals at once are one wish to stop, a later one ends eve
     pause(5);
   }
   pause(1100);
-  CHECK(program.works_and_catches(SIGINT, 0.0));  // it lives
+  CHECK(program.works_and_catches(SIGINT, 0.0));  // it is running
   kill(program.pid(), SIGINT);
   CHECK(program.wait().code == 1000 + SIGINT);
   close(reader);

@@ -12,7 +12,7 @@
 
 namespace limcycle::test {
 
-/// A folder of its own for one test, removed at the end.
+/// A temporary folder for one test, removed at the end.
 class Scratch {
  public:
   Scratch()
@@ -40,7 +40,7 @@ class Scratch {
   std::filesystem::path path_;
 };
 
-/// How the program ended and what it said.
+/// Exit code and output of the program.
 struct Ran {
   int code = -1;  ///< exit code; 1000 + signal if it was killed
   std::string out, err;
@@ -52,7 +52,7 @@ inline std::string quoted(const std::string& argument) {
   return text + "'";
 }
 
-/// Runs the real program. `redirect`: what to put in place of capturing stdout, such as "> /dev/full".
+/// Runs the real program. `redirect`: replaces the capture of stdout, such as "> /dev/full".
 inline Ran run(const std::vector<std::string>& arguments, const std::string& redirect = {}) {
   const Scratch scratch;
   std::string command = quoted(LIMCYCLE_PROGRAM);
@@ -63,7 +63,7 @@ inline Ran run(const std::vector<std::string>& arguments, const std::string& red
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), scratch.get("out"), scratch.get("err")};
 }
 
-/// One space for any run of white space, as wrapped cells and lines read.
+/// One space for any run of white space, so that wrapped cells and lines can be compared.
 inline std::string squeezed(const std::string& text) {
   std::string out;
   for (const char c : text)

@@ -11,7 +11,7 @@
 
 namespace limcycle::test {
 
-/// A command in the background, its output in files of the scratch folder; killed if nobody waits for it.
+/// A command in the background, its output in files of the scratch folder; killed in the destructor if still running.
 class Started {
  public:
   Started(const Scratch& scratch, const std::vector<std::string>& words) : scratch_(scratch) {
@@ -35,8 +35,8 @@ class Started {
 
   pid_t pid() const { return pid_; }
 
-  /// Until it catches the signal and has computed for so many seconds since, on whatever machine. False: not within
-  /// five minutes, or it ended before.
+  /// Waits until it catches the signal and has computed for `seconds` since, on any machine. False: not within five
+  /// minutes, or it ended before.
   bool works_and_catches(int signal, double seconds) const {
     double since = -1.0;
     for (int tries = 0; tries < 30'000; ++tries) {
@@ -69,7 +69,7 @@ class Started {
   /// CPU time of the process, s.
   double computed() const {
     const std::string text = proc("stat");
-    std::istringstream fields(text.substr(text.rfind(')') + 1));  // the name may hold anything
+    std::istringstream fields(text.substr(text.rfind(')') + 1));  // the name may contain anything
     std::string skipped;
     for (int i = 3; i < 14; ++i) fields >> skipped;
     double user = 0.0, system = 0.0;
@@ -81,7 +81,7 @@ class Started {
   pid_t pid_ = -1;
 };
 
-/// Ctrl-C for the program, once it has computed for so many seconds; twice at once, as `timeout` and `mpirun` do.
+/// Sends Ctrl-C to the program after `seconds` of computing; twice at once, as `timeout` and `mpirun` do.
 inline Ran run_interrupted(const std::vector<std::string>& arguments, double seconds) {
   const Scratch scratch;
   std::vector<std::string> words{LIMCYCLE_PROGRAM};

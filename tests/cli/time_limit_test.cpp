@@ -4,7 +4,7 @@
 
 #include "limcycle/tests/cli/started.hpp"
 
-// The time limit, and what an interrupted command leaves. Times are asserted loosely: the machine may be busy.
+// The time limit, and the results of an interrupted command. Times are checked loosely: the machine may be busy.
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
@@ -13,7 +13,7 @@ using namespace limcycle::test;
 
 namespace {
 
-/// Runs with a limit of two seconds, and ends in time.
+/// Runs with a limit of two seconds, and checks that it ends in time.
 Ran limited(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--time-limit", "2"});
   const auto begin = std::chrono::steady_clock::now();
@@ -84,7 +84,7 @@ TEST_CASE("interrupted: exit code 3 and a status in the document, whatever the c
 }
 
 TEST_CASE("predict: exit code 3 where no start was decided") {
-  // One step is not enough for any of them, and there is no cycle known.
+  // One step is not enough for any of them, and no cycle is known.
   const Ran ran =
       limited({"predict", shipped("dead-zone.toml"), "--set", "loop.plant.numerator=[1e28]", "--json", "-"});
   const auto document = Json::parse(ran.out);

@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/delayed_relay.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -27,7 +29,7 @@ Complex denominator(int m, Complex x) {
 
 Complex pade(int m, Complex x) { return denominator(m, -x) / denominator(m, x); }
 
-LoopParts delayed_servo(double delay, Element<double> friction) {
+LoopParts delayed_servo(double delay, Element friction) {
   LoopParts parts;
   parts.plant = TransferFunction{{1.0}, {2.0, 0.3, 5.0}, delay};
   Pid controller = pid(3.0, 4.0, 6.0);
@@ -40,8 +42,8 @@ LoopParts delayed_servo(double delay, Element<double> friction) {
 void check_rates(const Loop& loop) {
   const Complex s(0.3, 2.0);
   const Index n = loop.states();
-  const Eigen::MatrixXcd X =
-      solve_columns(s * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<Complex>(), loop.B.cast<Complex>());
+  const Eigen::MatrixXcd resolvent = s * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<Complex>(),
+                         X = solve_columns(resolvent, loop.B.cast<Complex>());
   for (const auto& port : loop.ports) {
     if (!port.D.isZero(0.0)) continue;
     const Eigen::RowVectorXcd input = port.C.cast<Complex>() * X,
@@ -193,7 +195,7 @@ TEST_CASE("a relay takes over the delay of the plant: exact") {
   CHECK(t.delay_states == 0);
   CHECK(t.loop.delay == 0.0);
   CHECK(t.loop.states() == exact.states());
-  const auto& delayed = std::get<DelayedRelay<double>>(t.loop.elements[0]);
+  const auto& delayed = law_of<DelayedRelay<double>>(t.loop.elements[0]);
   CHECK(delayed.level == 1.5);
   CHECK(delayed.hysteresis == 0.1);
   CHECK(delayed.dead_zone == 0.2);
@@ -213,7 +215,7 @@ TEST_CASE("a relay between saturation and friction takes over the delay too, not
   parts.element = relay(4.0);
   const Loop exact = build_loop(parts);
   const TimeDomainLoop t = in_time_domain(exact, 0);
-  REQUIRE(std::holds_alternative<DelayedRelay<double>>(t.loop.elements[1]));
+  REQUIRE((t.loop.elements[1].as<DelayedRelay<double>>() != nullptr));
   const Complex s(0.0, 2.5), G = 1.0 / (2.0 * s * s + 0.3 * s + 5.0), C = 3.0 + 4.0 / s;
   Eigen::Matrix3cd H;  // saturation, relay (whose output is late), friction
   H << 0.0, -C * G, C * G, 1.0, 0.0, 0.0, 0.0, G, -G;

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "limcycle/models/element/gravity.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/plants.hpp"
 #include "limcycle/tests/loops.hpp"
@@ -27,7 +28,7 @@ TEST_CASE("Froude pendulum: gravity and friction are its two elements, friction 
   CHECK(loop.ports[1].C == Eigen::RowVector2d(0.02, 0.0));
   CHECK(loop.ports[1].C_v == Eigen::RowVector2d(0.0, 0.02));
   CHECK(loop.ports[1].c_v(constant_one) == Approx(-0.08));
-  const auto& gravity = std::get<Gravity<double>>(loop.elements[0]);
+  const auto& gravity = law_of<Gravity<double>>(loop.elements[0]);
   CHECK(gravity.output({0.3, 0.0, 0.0}, {}, {}) == Approx(weight * std::sin(0.3)));
 }
 

@@ -1,6 +1,12 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/friction/bristle/dahl.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/laws.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -165,7 +171,7 @@ TEST_CASE("backlash remembers the output at which it was left") {
 }
 
 TEST_CASE("parameter tables: keys are unique, members differ, recast keeps values") {
-  Elements::for_each([]<template <class> class Kind>() {
+  const auto check = []<template <class> class Kind>() {
     const auto table = Kind<double>::parameters();
     for (std::size_t i = 0; i < table.size(); ++i) {
       CHECK_FALSE(table[i].meaning.empty());
@@ -177,7 +183,11 @@ TEST_CASE("parameter tables: keys are unique, members differ, recast keeps value
     }
     CHECK_FALSE(Kind<double>::equation.empty());
     CHECK_FALSE(Kind<double>::source.empty());
-  });
+  };
+  FrictionLaws::for_each(check);
+  ForwardElements::for_each(check);
+  ErrorElements::for_each(check);
+  MadeElements::for_each(check);
   const auto copy = recast<LuGre, double>(lugre());
   CHECK(copy.sigma1 == lugre().sigma1);
   CHECK(copy.Fs_minus == 1.5);

@@ -2,6 +2,12 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/models/assemble.hpp"
+#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/compensation.hpp"
+#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/output_rate.hpp"
+#include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -29,7 +35,7 @@ Quantizer<double> quantizer(double step) {
   return element;
 }
 
-LoopParts compensated(Element<double> friction, double level) {
+LoopParts compensated(Element friction, double level) {
   auto parts = servo_parts(std::move(friction));
   Pid controller = pid(3.0, 4.0, 6.0);
   controller.friction_compensation = level;
@@ -37,7 +43,7 @@ LoopParts compensated(Element<double> friction, double level) {
   return parts;
 }
 
-/// Evaluated in order, no element may read its own output or a later one.
+/// Checks that the elements can be evaluated in order: none reads its own output or a later one.
 void check_order(const Loop& loop) {
   for (std::size_t i = 0; i < loop.ports.size(); ++i)
     CHECK(loop.ports[i].D.tail(loop.ports[i].D.size() - static_cast<Index>(i)).isZero(0.0));
@@ -53,7 +59,7 @@ std::string rule(const LoopParts& parts) {
 TEST_CASE("friction compensation: added to the command, reads what rubs, shares the selection of a law that sticks") {
   const Loop loop = build_loop(compensated(coulomb(1.5, 1.0), 1.2));
   REQUIRE(paths(loop) == std::vector<std::string>{"loop.controller.friction_compensation", "loop.friction"});
-  CHECK(std::get<Compensation<double>>(loop.elements[0]).level == 1.2);
+  CHECK(law_of<Compensation<double>>(loop.elements[0]).level == 1.2);
   CHECK(loop.ports[0].selection_of == 1U);
   CHECK_FALSE(loop.ports[1].selection_of);
   CHECK(loop.ports[0].rubs);
@@ -136,7 +142,7 @@ TEST_CASE("element on the error: the unfiltered derivative takes the rate of its
     Eigen::Matrix3cd H;
     H << -G * C, -G * 6.0, G, -G * C, -G * 6.0, G, G * C, G * 6.0, -G;
     CHECK((loop.element_response(3.0) - H).norm() < 1e-13 * H.norm());
-    const auto& rate = std::get<OutputRate<double>>(loop.elements[1]);
+    const auto& rate = law_of<OutputRate<double>>(loop.elements[1]);
     CHECK(rate.half_width == (limited ? 0.3 : 0.02));
     CHECK(rate.inside == (limited ? 1.0 : 0.0));
     CHECK(rate.outside == (limited ? 0.0 : 1.0));
@@ -194,7 +200,7 @@ TEST_CASE("rules of compensation and of the element on the error") {
   CHECK(rule(parts).empty());
   parts.error = quantizer(0.1);
   CHECK(rule(parts) == "loop.controller.tf: must be > 0: kd differentiates the output of the quantizer, which jumps");
-  parts.error = Element<double>(Cubic<double>{});
+  parts.error = Element(Cubic<double>{});
   CHECK(rule(parts).starts_with("loop.controller.tf: must be > 0: kd differentiates the output of the cubic on"));
   CHECK_THROWS_AS(build_loop(parts), std::invalid_argument);
   parts.error = quantizer(0.1);
@@ -243,13 +249,13 @@ TEST_CASE("a ramp reference: an element on the error stands still while the loop
   parts.controller = controller;
   const Loop loop = build_loop(parts);
   CHECK(loop.ramp_output_rate == Approx(0.02));
-  // At the moving point: v = rate, e = 0, the integrator carries nothing yet; states are measured from that motion.
+  // At the moving point: v = rate, e = 0, the integrator is at zero; states are measured from that motion.
   const Eigen::VectorXd X = Eigen::VectorXd::Zero(3);
   CHECK(in_the_case(loop, X)(1) == Approx(0.02));
   CHECK((loop.A * X + loop.E * loop.external).norm() < 1e-14);
   CHECK((loop.ports[1].C_v * X + loop.ports[1].c_v * loop.external).value() == Approx(0.0).margin(1e-15));
   CHECK((loop.ports[2].C_v * X + loop.ports[2].c_v * loop.external).value() == Approx(0.02));
-  parts.plant = Mass{1.0, 0.0, 5.0};  // the integrator can carry the spring that pulls harder and harder...
+  parts.plant = Mass{1.0, 0.0, 5.0};  // the integrator can balance the growing force of the spring...
   CHECK(rule(parts).empty());
   CHECK(build_loop(parts).ramp_output_rate == Approx(0.02));
   parts.controller = pid(3.0, 0.0, 6.0);  // ...nothing else can
@@ -263,6 +269,6 @@ TEST_CASE("a ramp reference: a relay that drives an integrator can follow") {
   parts.reference_rate = 0.25;
   const Loop loop = build_loop(parts);
   CHECK(loop.ramp_output_rate == Approx(0.25));
-  // A constant output of the rate of the ramp over the plant's gain keeps the state where it is.
+  // A constant output of the rate of the ramp over the plant's gain keeps the state constant.
   CHECK(std::abs(loop.B(0, 0) * 0.25 + (loop.E * loop.external)(0)) < 1e-15);
 }

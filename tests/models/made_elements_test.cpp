@@ -1,6 +1,14 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "limcycle/models/element/compensation.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/delayed_relay.hpp"
+#include "limcycle/models/element/output_rate.hpp"
+#include "limcycle/models/element/quantizer.hpp"
+#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -220,7 +228,7 @@ TEST_CASE("delayed relay: decisions with dead zone and hysteresis are those of t
   slow.guard({0.55, 0.0, 0.0}, mode, z, g);
   CHECK(g[0] == Approx(0.15));  // off at 0.4
   CHECK(g[1] == 0.5);
-  mode = slow.next({0.4, 0.0, 0.0}, mode, z, 0);  // off again, before the first came out
+  mode = slow.next({0.4, 0.0, 0.0}, mode, z, 0);  // off again, before the first decision came out
   CHECK(slow.guards(mode) == 3);
   z[0] = 0.0;
   mode = slow.next({0.0, 0.0, 0.0}, mode, z, 2);

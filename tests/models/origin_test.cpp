@@ -3,13 +3,14 @@
 #include <random>
 
 #include "limcycle/models/assemble.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
 #include "limcycle/tests/gantry.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
 using namespace limcycle::test;
 
-/// A loop is measured from where it rests: the same equations, with digits left for a small motion far away.
+/// A loop is measured from its rest point: the same equations, with digits left for a small motion far away.
 
 namespace {
 
@@ -75,7 +76,7 @@ TEST_CASE("origin: a loop measured from its rest point obeys the equations of th
       const Port &a = raw.ports[i], &b = loop.ports[i];
       CHECK((a.C_v * own + a.c_v * outside).value() ==
             Approx((b.C_v * X + b.c_v * loop.external).value()).margin(1e-12));
-      const double moved = b.rubs ? (b.C * moving).value() * t : 0.0;  // what rubs moves along with a ramp
+      const double moved = b.rubs ? (b.C * moving).value() * t : 0.0;  // a rubbing displacement moves along with a ramp
       CHECK((a.C * own + a.c * outside).value() ==
             Approx((b.C * X + b.c * loop.external).value() + moved).margin(1e-11));
     }

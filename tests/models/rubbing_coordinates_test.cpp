@@ -67,7 +67,7 @@ TEST_CASE("rubbing coordinates: the states of the case are found again") {
   const StateSpacePlant plant = mixed_valve();
   const Loop loop = valve_loop(plant);
   REQUIRE(loop.own_states.rows() == loop.states());
-  // What the case calls the velocity, of its own states.
+  // The velocity as defined in the case, in terms of its own states.
   const Eigen::RowVectorXd velocity = plant.C_velocity * loop.own_states.topLeftCorner(3, 3);
   CHECK((velocity - loop.ports.back().C_v.head(3)).norm() < 1e-12);
 }

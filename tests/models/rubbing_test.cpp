@@ -103,7 +103,7 @@ TEST_CASE("state space: a velocity that is the rate of y keeps y, and one in oth
 }
 
 TEST_CASE("state space: where no state holds the rubbing displacement, the frequency domain takes v/(jw)") {
-  // A motor that drives a load on a spring through a fluid coupling: its angle is felt by nobody.
+  // A motor that drives a load on a spring through a fluid coupling: its angle affects nothing.
   const double d = 0.7, k = 3.0;
   StateSpacePlant without, with;
   without.A.resize(3, 3);

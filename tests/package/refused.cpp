@@ -1,4 +1,4 @@
-// Laws that own_law() cannot carry: tools/package checks that the compiler says why, in words, with each -D.
+// Laws that own_law() rejects: tools/package checks with each -D that the compiler gives the reason in words.
 #include "limcycle/models/friction/own_law.hpp"
 
 struct Law {
@@ -18,4 +18,4 @@ struct Law {
 #endif
 };
 
-limcycle::OwnLaw<double> law() { return limcycle::own_law(Law{}); }
+limcycle::Element law() { return limcycle::own_law(Law{}); }

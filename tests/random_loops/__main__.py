@@ -10,7 +10,7 @@ import pathlib
 import sys
 import time
 
-from . import case_text, compare, families, report, reproducers, rewritings, self_test
+from . import case_text, commands, compare, families, report, reproducers, rewritings, self_test
 from .program import Program
 
 FULL = {"loops": 500, "rewritings": 2000}
@@ -28,6 +28,9 @@ def _arguments():
     parser.add_argument("--limit", type=float, default=60.0, help="seconds for one call of the program (60)")
     parser.add_argument("--decided", type=float, default=0.97, help="share of starts that have to be decided (0.97)")
     parser.add_argument("--reproducers", action="store_true", help="only tests/reproducers")
+    parser.add_argument("--commands", action="store_true", help="only map, margin, continue, sensitivity and dissipativity")
+    for name, count in commands.COUNTS.items():
+        parser.add_argument(f"--{name}", type=int, default=count, help=f"how many of them with --commands ({count})")
     parser.add_argument("--self-test", action="store_true", help="only hold the checker against known answers")
     return parser.parse_args()
 
@@ -91,6 +94,9 @@ def main():
     rewritten = counts["rewritings"] if options.rewritings is None else options.rewritings
     folder = pathlib.Path("build/random-loops") / f"seed-{options.seed}"
     folder.mkdir(parents=True, exist_ok=True)
+    if options.commands:
+        counts = {name: getattr(options, name) for name in commands.COUNTS}
+        return commands.run(program, folder, counts, options.seed, options.family)
     table = report.Table(program.predict("cases/pid-lugre.toml").seconds, options.decided)
     answered = _loops(options, program, folder, table, loops)
     _rewritings(options, program, folder, table, answered, rewritten)

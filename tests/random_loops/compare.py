@@ -54,7 +54,7 @@ def judge(case, answer):
     listed = cycles_of(document)
     try:
         why, missed = _checked(Truth(case), listed, document)
-    except (ArithmeticError, ValueError) as fault:  # LinAlgError is a ValueError
+    except (ArithmeticError, ValueError, RuntimeError) as fault:  # LinAlgError is a ValueError
         return Verdict("unchecked", [f"the checker gave up: {fault}"], len(undecided), len(outcomes))
     verdict = Verdict("right", why, len(undecided), len(outcomes))
     if why:
@@ -110,7 +110,7 @@ def _reached(truth, cycle):
 
 
 def _starts(truth, listed, document):
-    """Starts whose displacement is told and whose plant has positions: the checker goes the same way."""
+    """Starts whose displacement is told and whose plant has positions, all of which it moves: the checker does the same."""
     if not truth.model.names["positions"]:
         return []
     wrong = []

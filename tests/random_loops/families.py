@@ -53,7 +53,7 @@ def _levels(dice, most=2.5):
     return {"Fc": 1.0, "Fs": dice.between(1.05, most)}
 
 
-def _friction(dice, kind):
+def friction(dice, kind):
     """A law with sliding force 1; speeds of slip are of order one."""
     keys = {"kind": kind}
     if kind == "dahl":
@@ -86,7 +86,7 @@ def servo(kind):
         plant = {"kind": "mass", "mass": 1.0}
         if dice.chance(0.3):
             plant["damping"] = dice.log(0.01, 0.3)
-        return {"loop": loop | {"plant": plant, "controller": _pid(dice), "friction": _friction(dice, kind)}}
+        return {"loop": loop | {"plant": plant, "controller": _pid(dice), "friction": friction(dice, kind)}}
 
     return draw
 
@@ -101,7 +101,7 @@ def two_mass(dice):
     plant["measured"] = dice.among(["motor", "motor", "load"])
     controller = _pid(dice)
     controller.pop("lag", None)
-    return {"loop": {"plant": plant, "controller": controller, "friction": _friction(dice, "coulomb")}}
+    return {"loop": {"plant": plant, "controller": controller, "friction": friction(dice, "coulomb")}}
 
 
 def belt(kind):
@@ -110,7 +110,7 @@ def belt(kind):
     def draw(dice):
         plant = {"kind": "belt", "mass": 1.0, "stiffness": 1.0, "damping": dice.among([0.0, 1.0]) * dice.log(0.005, 0.2)}
         plant["speed"] = dice.log(0.02, 1.5)
-        return {"loop": {"plant": plant, "friction": _friction(dice, kind)}}
+        return {"loop": {"plant": plant, "friction": friction(dice, kind)}}
 
     return draw
 
@@ -192,7 +192,7 @@ def sensor_lag(dice):
     }
     controller = _pid(dice)
     controller.pop("saturation", None)
-    return {"loop": {"plant": plant, "controller": controller, "friction": _friction(dice, "coulomb")}}
+    return {"loop": {"plant": plant, "controller": controller, "friction": friction(dice, "coulomb")}}
 
 
 FAMILIES = {
@@ -210,13 +210,13 @@ def loop(seed, index, family=None):
     natural = FAMILIES[name](dice)
     factors = dice.log(1e-4, 1e2), dice.log(1e-2, 1e4), dice.log(1e-3, 1e1)
     case = {"title": f"{name}, loop {index} of seed {seed}"} | units.scaled(natural, *factors)
-    return name, _rounded(case), factors
+    return name, rounded(case), factors
 
 
-def _rounded(entry):
+def rounded(entry):
     """Six digits, as a person would write them; the case is then what it says."""
     if isinstance(entry, dict):
-        return {key: _rounded(value) for key, value in entry.items()}
+        return {key: rounded(value) for key, value in entry.items()}
     if isinstance(entry, list):
-        return [_rounded(value) for value in entry]
+        return [rounded(value) for value in entry]
     return float(f"{entry:.6g}") if isinstance(entry, float) else entry

@@ -1,8 +1,11 @@
 """The table at the end: outcomes by family, times, rewritings, disagreements."""
 
+import resource
 import statistics
+import time
 
 KINDS = ("right", "undecided", "wrong", "missed", "late", "failed", "unchecked")
+COMPARED = ("right", "undecided", "unlisted", "wrong", "missed", "late", "failed")
 REWRITTEN = ("same", "undecided", "changed", "late", "failed")
 BAD = ("wrong", "missed", "late", "failed", "changed")
 
@@ -64,3 +67,36 @@ class Table:
         share = 1.0 - undecided / starts if starts else 0.0
         print(f"decided: {100.0 * share:.1f} % of {starts} starts (wanted: {100.0 * self.decided:g} %)")
         return share >= self.decided
+
+
+class Commands:
+    """Collects what was compared of each command."""
+
+    def __init__(self):
+        self.rows = []
+        self.began = time.process_time(), _children()
+
+    def count(self, name):
+        """How many findings there are of a command."""
+        return sum(row[0] == name for row in self.rows)
+
+    def add(self, name, path, findings):
+        """Those of one loop."""
+        for finding in findings:
+            self.rows.append((name, finding.kind))
+            if finding.kind != "right":
+                print(f"{name} {finding.kind}: {path}", *finding.why, sep="\n    ", flush=True)
+
+    def print(self):
+        """Prints the table; returns the exit code."""
+        print(_counts("command", COMPARED, self.rows))
+        own, children = time.process_time() - self.began[0], _children() - self.began[1]
+        print(f"\nCPU time: program {children:.0f} s, checker {own:.0f} s")
+        failed = sum(row[1] in BAD for row in self.rows)
+        print(f"{len(self.rows) - failed} passed, {failed} failed")
+        return 1 if failed else 0
+
+
+def _children():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime

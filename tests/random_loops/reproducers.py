@@ -1,7 +1,8 @@
 """Reproducers: tests/reproducers/*.toml against what is known to be true of each (reproducers.json).
 
 `cycles` are [period, amplitude or null, stable]; `frequencies`: how near a prediction of a method comes to the first of
-them (relative); `some`: at least one start comes to one of these; `never`: none does.
+them (relative); `some`: at least one start comes to one of these; `never`: none does; `answers`: other commands, with
+their flags, that have to give an answer.
 """
 
 import json
@@ -47,6 +48,9 @@ def run(program):
         else:
             answer = program.predict(path)
             found = faults(answer.document, truth) if answer.document else [answer.message]
+            for command, *flags in truth.get("answers", []):
+                other = program.run(command, path, *flags)
+                found += [] if other.document else [f"{command}: {other.message or f'exit code {other.code}'}"]
         passed, failed = passed + (not found), failed + bool(found)
         if found:
             print(f"reproducer: {path}", *found, sep="\n    ", flush=True)

@@ -2,7 +2,7 @@
 
 import math
 
-from . import attractor, loop_model
+from . import attractor, loop_model, planted
 from .motion import PiecewiseLoop
 
 
@@ -93,5 +93,7 @@ def run():
         if abs(period / wanted - 1.0) > 1e-6 or abs(amplitude / expected - 1.0) > 1e-6:
             failed += 1
             print(f"{test.__name__}: {period!r} for {wanted!r}, {amplitude!r} for {expected!r}")
-    print(f"self-test: {len(TESTS) - failed} passed, {failed} failed")
+    found, unseen = planted.run()
+    failed += unseen
+    print(f"self-test: {len(TESTS) + found + unseen - failed} passed, {failed} failed")
     return failed

@@ -7,7 +7,7 @@
 
 #include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/figures/plotly.hpp"
-#include "limcycle/reports/html_parts.hpp"
+#include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
 
@@ -25,7 +25,7 @@ Provenance made() {
   return from;
 }
 
-/// The page without the library, in which anything may stand.
+/// The page without the library, which may contain anything.
 std::string page(const PredictReport& report, const std::string& case_text = "a = 1 # </pre><script>bad()</script>") {
   std::string text = predict_page(report, made(), case_text, {});
   const auto at = text.find(limcycle::plotly_script());

@@ -7,8 +7,8 @@
 
 namespace limcycle::test {
 
-/// What is wrong with the tags of a page, or of a part of one: a tag that is not closed, or closes another one, an id
-/// that stands twice, a bare '<' or '&' in text. Empty: nothing. What scripts and styles hold is not looked at.
+/// First error in the tags of a page, or of a part of one: a tag that is not closed, or closes another one, a duplicate
+/// id, a bare '<' or '&' in text. Empty: none. The content of scripts and styles is not checked.
 class MarkupCheck {
  public:
   explicit MarkupCheck(std::string_view text) : text_(text) {}

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/analysis/study/predict.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
 
 namespace limcycle::sample {
 
-/// A made-up stick-slip cycle in closed form: stuck for half the period (y constant), slipping along half cosines
-/// between.
+/// An artificial stick-slip cycle in closed form: stuck for half the period (y constant), slipping along half cosines
+/// in between.
 inline Trace stick_slip_trace(double amplitude, double period, int n = 4001) {
   Trace trace;
   for (int i = 0; i < n; ++i) {
@@ -45,7 +45,7 @@ inline Cycle hunting_cycle() {
   return cycle;
 }
 
-/// What the plain describing function makes of a hunting servo: nothing.
+/// Report on a hunting servo for which the describing function finds nothing.
 inline PredictReport hunting() {
   PredictReport report;
   report.search = {1e-6, 1.0, 0.01, 1000.0};
@@ -103,7 +103,7 @@ inline PredictReport trusted() {
   return report;
 }
 
-/// No prediction, and absence asked for.
+/// A report without predictions, with the absence of oscillations requested.
 inline PredictReport without_roots(BandVerdict verdict) {
   PredictReport report = hunting();
   report.cycles.clear();

@@ -55,7 +55,7 @@ TEST_CASE("a table that is too wide is turned") {
   CHECK(table.text(80).substr(0, 9) == "first one");
   table.columns[1].heading = std::string(70, 'h');
   const auto lines = lines_of(table.text(80));
-  REQUIRE(lines.size() == 5);  // two rows fit beside the labels, the third follows after an empty line
+  REQUIRE(lines.size() == 5);  // two rows fit next to the labels, the third follows after an empty line
   CHECK(lines[0] == "first one [s]" + std::string(57, ' ') + "  1  22");
   CHECK(lines[1] == table.columns[1].heading + "  x   y");
   CHECK(lines[2].empty());

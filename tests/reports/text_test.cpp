@@ -4,8 +4,8 @@
 #include <limits>
 #include <sstream>
 
-#include "limcycle/reports/answer.hpp"
 #include "limcycle/reports/figures/multipliers.hpp"
+#include "limcycle/reports/predict/answer.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
 
 using namespace limcycle;
@@ -88,7 +88,7 @@ TEST_CASE("predict: trust in the predictions, with bands that are proved, heuris
   const auto table = trust_table(sample::trusted(), {});
   REQUIRE(table.rows.size() == 2);
   CHECK(table.rows[0].back() == "proved");
-  CHECK(table.rows[1].back() == "heuristic");  // whatever it says, it is never called proved
+  CHECK(table.rows[1].back() == "heuristic");  // it is never called proved, whatever the result
   CHECK(trust_table(sample::relay(), {}).rows.empty());
   CHECK(predict_text("Relay", sample::relay(), {}).find("Trust") == std::string::npos);
 }

@@ -44,7 +44,7 @@ export function openBrowser(chromium) {
       browser.removeAllListeners('exit');
       const gone = new Promise((done) => browser.once('exit', done));
       if (browser.exitCode === null && browser.kill()) await gone;
-      rmSync(profile, { recursive: true, force: true, maxRetries: 5, retryDelay: 100 });
+      rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 200 });
     },
   };
 }

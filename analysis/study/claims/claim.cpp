@@ -8,7 +8,7 @@
 namespace limcycle {
 namespace {
 
-/// Size to which an error is held; a number without a size is held to 1.
+/// Size to which an error is compared; a number without a size is compared to 1.
 double size_of(double a, double b) {
   const double size = std::max(std::abs(a), std::abs(b));
   return size > 0.0 ? size : 1.0;
@@ -16,7 +16,7 @@ double size_of(double a, double b) {
 
 bool is_number(const ClaimCheck& check) { return !std::isnan(check.claimed) && !std::isnan(check.computed); }
 
-/// How much of what is allowed a check uses up: what is worst among several.
+/// Share of the allowed error that a check uses, to find the worst of several.
 double use_of(const ClaimCheck& check) {
   if (!is_number(check)) return HUGE_VAL;
   if (check.allowed > 0.0) return check.error / check.allowed;
@@ -60,7 +60,7 @@ void ClaimChecks::equal(std::string where, std::string quantity, std::string uni
 
 void ClaimChecks::at_most(std::string where, std::string quantity, std::string unit, double bound, double computed,
                           double slack) {
-  // An infinite bound has no size and forbids nothing.
+  // An infinite bound has no size and excludes nothing.
   const double scale = std::isfinite(bound) ? size_of(bound, computed) : 1.0;
   add({std::move(where), std::move(quantity) + " <= claimed", std::move(unit), bound, computed,
        std::max(0.0, computed - bound) / scale, slack / scale, false, computed <= bound + slack});
@@ -90,7 +90,7 @@ ClaimResult ClaimChecks::result(const std::string& finding) const {
     if (is_number(worst) && worst.error > 0.0)
       say("largest error " + short_number(worst.error, 2) + " of " + short_number(worst.allowed, 2) + " allowed");
   }
-  // What could not be computed refutes nothing.
+  // A value that could not be computed refutes nothing.
   const ClaimCheck* refuted = nullptr;
   bool unknown = false;
   for (const auto& check : checks) {

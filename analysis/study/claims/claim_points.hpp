@@ -9,9 +9,9 @@
 
 namespace limcycle {
 
-/// Random parameters of a claim: the same numbers for the same seed with every standard library (the standard leaves
-/// open what its distributions draw, but not what the engine does). Draw one number a declaration or within braces: the
-/// order in which the arguments of a call are computed is open, too.
+/// Random parameters of a claim: the same numbers for the same seed with every standard library (the standard specifies
+/// the numbers of the engine, but not of its distributions). Draw one number per declaration or within braces: the
+/// order of evaluation of the arguments of a call is unspecified, too.
 class RandomPoints {
  public:
   explicit RandomPoints(std::uint64_t seed) : source_(seed) {}
@@ -37,8 +37,8 @@ struct Named {
 /// "A = 5e-06 m, w = 10 rad/s".
 std::string place(std::initializer_list<Named> numbers);
 
-/// A number as a source prints it, `last_digit` being one unit of its last digit: it agrees if it is what the computed
-/// one rounds to, give or take a tenth of that unit and the error of the computation.
+/// A number as a source prints it, `last_digit` being one unit of its last digit: it agrees if the computed one rounds
+/// to it, within a tenth of that unit and the error of the computation.
 void check_printed(ClaimChecks& checks, std::string where, std::string quantity, std::string unit, double printed,
                    double last_digit, double computed, double error = 0.0);
 

@@ -7,7 +7,7 @@
 
 namespace limcycle {
 
-/// A claim and what became of it.
+/// A claim and its result.
 struct TestedClaim {
   Claim claim;
   ClaimResult result;
@@ -16,19 +16,19 @@ struct TestedClaim {
 };
 
 struct ClaimRunOptions : ClaimOptions {
-  int threads = 1;  ///< 0: one a core. The results do not depend on it
+  int threads = 1;  ///< 0: one per core. The results do not depend on it
   std::function<void(double, std::string_view)> progress;
 };
 
-/// Tests some claims, several at a time. Each has random parameters of its own, which depend on the seed and its id
-/// only; one that throws is undecided, its finding says what was thrown. Stopped early: those that were finished or
-/// had begun, in the order of the list.
+/// Tests some claims, several at a time. Each has random parameters of its own, which depend only on the seed and its
+/// id. One that throws is undecided, and its finding gives the message. Stopped early: those that were finished or had
+/// begun, in the order of the list.
 std::vector<TestedClaim> run_claims(const std::vector<Claim>& which, const ClaimRunOptions& options);
 
 /// The claims of that id; if there is none, those whose id begins with it ("A": all of A). Empty: unknown.
 std::vector<Claim> claims_named(const std::vector<Claim>& all, std::string_view id);
 
-/// Share (0 up to 1) number k of a stream of random numbers that depends on nothing but the seed.
+/// Share (0 up to 1) number k of a stream of random numbers that depends only on the seed.
 class RandomShares {
  public:
   explicit RandomShares(std::uint64_t seed) : state_(seed) {}

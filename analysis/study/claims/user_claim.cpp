@@ -3,24 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/analysis/energy/bounds.hpp"
-#include "limcycle/analysis/energy/threshold.hpp"
+#include "limcycle/analysis/energy/passivity/bounds.hpp"
+#include "limcycle/analysis/energy/passivity/threshold.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/claims/run_claims.hpp"
-#include "limcycle/analysis/study/verdicts.hpp"
+#include "limcycle/analysis/study/predict/verdicts.hpp"
 
 namespace limcycle {
 namespace {
 
-/// A number that was computed, its absolute error, and why there may be none.
+/// A computed number, its absolute error, and the reason if there is none.
 struct Computed {
   double value = NAN, error = 0.0;
-  double size = 0.0;  ///< to which an equality is held where more is at hand than the number itself
+  double size = 0.0;  ///< reference size of an equality, if a better one is known than the number itself
   Status status = Status::converged;
-  bool exists = true;  ///< false: it was looked for, and there is no such thing
+  bool exists = true;  ///< false: it was sought, and does not exist
 };
 
-/// Whether every start came to something that was recognised.
+/// True if the outcome of every start was recognised.
 bool all_decided(const PredictReport& report) {
   return !report.outcomes.empty() && std::ranges::none_of(report.outcomes, [](const OutcomeOfStart& one) {
     return one.outcome == Outcome::undecided;
@@ -45,7 +45,7 @@ Computed of_cycle(const std::string& quantity, const ClaimPoint& point, const Pr
   if (quantity == "frequency") return {cycle->frequency(), cycle->error * cycle->frequency()};
   if (quantity == "amplitude") return {cycle->amplitude, cycle->error * cycle->amplitude};
   if (quantity == "first_harmonic") return {cycle->first_harmonic, cycle->error * cycle->first_harmonic};
-  // Their own errors are not told: those of the cycle's motion, with a margin.
+  // Their own errors are not given: those of the cycle's motion are used, with a margin.
   if (quantity == "offset") return {cycle->offset, 10.0 * cycle->error * cycle->amplitude, cycle->amplitude};
   if (quantity == "sticking_fraction") return {cycle->sticking_fraction, 10.0 * cycle->error};
   const double largest = cycle->multipliers.empty() ? 0.0 : std::abs(cycle->multipliers.front());
@@ -55,13 +55,13 @@ Computed of_cycle(const std::string& quantity, const ClaimPoint& point, const Pr
 Computed of_describing_function(const std::string& quantity, const ClaimPoint& point) {
   DfOptions options;
   options.accuracy = 1e-9;
-  options.method = DfMethod::quadrature;  // not a closed form, which may be what is claimed
+  options.method = DfMethod::quadrature;  // not a closed form, which the claim may state
   const DescribingFunction df = describing_function(*point.element, point.at, options);
   if (!df.answered()) return {.status = df.status};
   const double size = std::abs(df.gain), error = df.error * size;
   if (quantity == "gain.real") return {df.gain.real(), error, size};
   if (quantity == "gain.imag") return {df.gain.imag(), error, size};
-  // No error is told of these: that of the output, as large as that of the first harmonic.
+  // No error is given for these: that of the output is used, as large as that of the first harmonic.
   const double output = error * point.at.amplitude;
   if (quantity == "mean") return {df.mean, output, size * point.at.amplitude};
   const double way = 4.0 * point.at.amplitude + 6.3 * std::abs(point.at.bias) / point.at.frequency;
@@ -71,7 +71,7 @@ Computed of_describing_function(const std::string& quantity, const ClaimPoint& p
 Computed of_bound(bool of_force, const ClaimPoint& point, const ClaimOptions& options) {
   BoundsOptions how;
   how.seed = options.seed;
-  how.inputs = 0;  // what a search reached is no bound
+  how.inputs = 0;  // values reached by a search are no bound
   how.stop = options.stop;
   const Bounds found = bounds(*point.element, how);
   if (found.status != Status::converged) return {.status = found.status};
@@ -111,7 +111,7 @@ void compare(const UserClaim& user, const std::string& unit, const std::string& 
   if (computed.status != Status::converged) return checks.stop(computed.status);
   if (!computed.exists) return checks.is_true(where, "there is a stable limit cycle", false);
   const double value = computed.value, error = computed.error;
-  // Where the error of what was computed is larger than the difference, nothing is decided.
+  // If the error of the computed value exceeds the difference, nothing is decided.
   switch (user.comparison) {
     case Comparison::equal: {
       const double size = std::max(std::abs(claimed), computed.size), share = error / (size > 0.0 ? size : 1.0);
@@ -155,7 +155,7 @@ ClaimResult test(const UserClaim& user, const PredictOptions& predict_options, c
   if (const auto own = points({})) one(*own, "the case's own numbers");
   RandomShares random(options.seed);
   checks.random(true);
-  // Draws that are no valid case (Fs < Fc, say) are repeated, within reason.
+  // Draws that give no valid case (such as Fs < Fc) are repeated, up to a limit.
   const int wanted = user.over.empty() ? 0 : user.random_points;
   int tested = 0;
   for (int tries = 0; tested < wanted && tries < 20 * wanted; ++tries) {

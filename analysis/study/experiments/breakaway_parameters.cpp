@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/analysis/study/experiments/breakaway.hpp"
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
+#include "limcycle/analysis/study/experiments/runs/breakaway.hpp"
 
 namespace limcycle {
 namespace {
@@ -38,7 +38,7 @@ LawPart one(const LawSetting& setting) {
   for (const auto& key : shape_keys(setting)) {
     std::array<BreakAway, factors.size()> runs;
     for (std::size_t i = 0; i < factors.size(); ++i) {
-      // The gross displacement stays: it is the yardstick of the applied force, not a parameter of the law.
+      // The gross displacement is kept: it is the reference for the applied force, not a parameter of the law.
       const auto changed = varied(setting, key, factors[i]);
       if (!changed) continue;
       runs[i] = factors[i] == 1.0 ? base : break_away(*changed, rate, gross);

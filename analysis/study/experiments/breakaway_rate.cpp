@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "limcycle/analysis/study/experiments/breakaway.hpp"
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
+#include "limcycle/analysis/study/experiments/runs/breakaway.hpp"
 
 namespace limcycle {
 namespace {

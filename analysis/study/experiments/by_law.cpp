@@ -11,7 +11,7 @@
 namespace limcycle {
 namespace {
 
-/// A law that has not finished one experiment by then is stuck in it (switches without end, say).
+/// A law that has not finished one experiment by then is stuck in it (for example by switching without end).
 constexpr std::chrono::seconds patience{70};
 
 /// Greatest minus least of the finite values.
@@ -96,7 +96,7 @@ Curve thinned(std::string name, const std::vector<double>& x, const std::vector<
   for (std::size_t i = 0; i < x.size(); ++i) {
     const bool gap = !std::isfinite(x[i]) || !std::isfinite(y[i]);
     if (length[i] < next && i + 1 < x.size() && !gap) continue;
-    // The point before a long stride belongs to it, else a corner would be cut.
+    // The point before a long stride belongs to it; otherwise a corner would be cut.
     if (i > last + 1 && length[i] - length[i - 1] > step) {
       curve.x.push_back(x[i - 1]);
       curve.y.push_back(y[i - 1]);

@@ -3,7 +3,7 @@
 
 namespace limcycle {
 
-// The experiments, one file each. A new one is its file, a line here and a line in catalogue.cpp.
+// The experiments, one file each. A new one needs its file, a line here and a line in catalogue.cpp.
 Experiment non_drift_experiment(const ExperimentOptions& options);
 Experiment non_local_memory_experiment(const ExperimentOptions& options);
 Experiment stick_slip_transition_experiment(const ExperimentOptions& options);

@@ -4,7 +4,7 @@
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/forced_run.hpp"
+#include "limcycle/analysis/study/experiments/runs/forced_run.hpp"
 
 namespace limcycle {
 namespace {
@@ -55,10 +55,10 @@ double slow_drift() {
   return 1.5e-5 * std::log((1.0 - (low / 1.5) * (low / 1.5)) / (1.0 - (high / 1.5) * (high / 1.5)));
 }
 
-/// Below this a drift is that of the steps, m.
+/// A smaller drift is due to the steps, m.
 constexpr double none = 1e-11;
 
-/// A drift that has halved since is the end of a shakedown, or of a ringing of the mass, not a drift.
+/// A drift that has halved since then is the end of a shakedown, or of a ringing of the mass, not a drift.
 std::string in_words(const Drift& drift) {
   if (!std::isfinite(drift.late)) return "was not answered in time";
   if (std::abs(drift.late) < none) return "does not drift";

@@ -6,7 +6,7 @@
 
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/forced_run.hpp"
+#include "limcycle/analysis/study/experiments/runs/forced_run.hpp"
 
 namespace limcycle {
 namespace {
@@ -17,8 +17,8 @@ constexpr std::array tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
 constexpr double reference_tolerance = 1e-10;
 
 /// A force that makes the mass stick, slip and stick again: a zig-zag of 1 N/s to 2 N either way. It stops the mass
-/// where the force is far below stiction: a stop close to it would ask whether the mass is caught, not what a law
-/// costs.
+/// where the force is far below stiction: a stop close to stiction would test if the mass is caught, not the cost of a
+/// law.
 Signal force() {
   Signal zigzag;
   zigzag.kind = Signal::Kind::zigzag;
@@ -27,7 +27,7 @@ Signal force() {
   return zigzag;
 }
 
-/// Time of this thread on its processor: what else the machine does is not counted.
+/// CPU time of this thread, so that other load of the machine is not counted.
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -39,7 +39,7 @@ struct Timed {
   double seconds = 0.0;
 };
 
-Timed timed(const Element<double>& law, double rtol, const std::function<bool()>& stop) {
+Timed timed(const Element& law, double rtol, const std::function<bool()>& stop) {
   ForcedOptions options;
   options.duration = duration;
   options.rtol = rtol;
@@ -62,7 +62,7 @@ double error_of(const ForcedRun& run, const ForcedRun& reference) {
   return size > 0.0 ? worst / size : NAN;
 }
 
-/// Cost at the wanted error, between the runs on both sides of it on logarithmic scales; NaN if none is that good.
+/// Cost at the wanted error, between the runs on both sides of it on logarithmic scales; NaN if none is as accurate.
 double cost_at(const std::vector<double>& errors, const std::vector<double>& costs) {
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (!(errors[i] <= wanted)) continue;
@@ -74,7 +74,7 @@ double cost_at(const std::vector<double>& errors, const std::vector<double>& cos
 }
 
 LawPart one(const LawSetting& setting) {
-  const Element<double> law = make_law(setting);
+  const Element law = make_law(setting);
   const Timed reference = timed(law, reference_tolerance, setting.stop);
   LawPart part;
   part.status = reference.run.status;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limcycle/analysis/status.hpp"
-#include "limcycle/analysis/study/experiments/laws.hpp"
+#include "limcycle/analysis/study/experiments/runs/laws.hpp"
 
 namespace limcycle {
 
@@ -16,14 +16,14 @@ struct Quantity {
   std::string unit;     ///< empty: none
 };
 
-/// What one run of one law measured, in the order of the experiment's quantities; NaN where there is no such number.
+/// Results of one run of one law, in the order of the experiment's quantities; NaN if there is no such number.
 struct Measured {
   std::string law;      ///< label of the setting
   std::string setting;  ///< what was varied, "0.1 N/s"; may be empty
   std::vector<double> values;
 };
 
-/// What the numbers of one law say, in a sentence made of them.
+/// A sentence made from the numbers of one law.
 struct Finding {
   std::string law;
   std::string text;
@@ -36,7 +36,7 @@ struct Curve {
   std::vector<double> x, y;
 };
 
-/// One picture among several of a figure: those of one law, as a rule.
+/// One panel of a figure: usually for one law.
 struct FigurePanel {
   std::string title;
   std::vector<Curve> curves;
@@ -44,27 +44,27 @@ struct FigurePanel {
 
 struct ExperimentFigure {
   std::string id;       ///< "force-time"
-  std::string heading;  ///< what is drawn, and which figure of the documents it stands for
+  std::string heading;  ///< content of the figure, and the figure of the documents that it repeats
   std::string x, x_unit, y, y_unit;
   bool logarithmic = false;  ///< the x axis
   std::vector<FigurePanel> panels{};
 };
 
-/// What became of a statement of the documents.
+/// Outcome of a statement of the documents.
 enum class ClaimOutcome { confirmed, not_confirmed, depends, not_tested };
 
 struct ExperimentClaim {
-  std::string statement;  ///< in our words
+  std::string statement;  ///< in limcycle's words
   std::string source;     ///< "thesis, section 3.6.1"
   ClaimOutcome outcome = ClaimOutcome::not_tested;
-  std::string measure;  ///< by how much
+  std::string measure;  ///< the measured difference
 };
 
-/// An experiment that was done: numbers, findings, claims and figures.
+/// An experiment with its results: numbers, findings, claims and figures.
 struct Experiment {
   std::string name, title;
-  std::string document;  ///< which figures of the documents it repeats
-  std::string input;     ///< the input signal, and what of it was chosen here
+  std::string document;  ///< figures of the documents that it repeats
+  std::string input;     ///< the input signal, and which of its data were chosen here
   std::vector<Quantity> quantities;
   std::vector<Measured> rows;
   std::vector<Finding> findings;
@@ -77,15 +77,15 @@ struct Experiment {
   double value(const std::string& law, const std::string& key, const std::string& setting = {}) const;
 };
 
-/// Which laws take part in an experiment.
+/// Options of an experiment, with the laws that take part.
 struct ExperimentOptions {
-  std::vector<LawSetting> laws = law_settings();  ///< those not in the list of laws are left out
-  int threads = 1;                                ///< 0: one a core
-  std::function<bool()> stop;                     ///< asked by several threads
+  std::vector<LawSetting> laws = law_settings();  ///< those not in the list of laws are omitted
+  int threads = 1;                                ///< 0: one per core
+  std::function<bool()> stop;                     ///< called by several threads
   std::function<void(double, std::string_view)> progress;
 };
 
-/// An experiment as the list of them knows it.
+/// Entry of an experiment in the list.
 struct ExperimentEntry {
   std::string_view name, title;
   Experiment (*run)(const ExperimentOptions&);

@@ -4,7 +4,7 @@
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/froude.hpp"
+#include "limcycle/analysis/study/experiments/runs/froude.hpp"
 
 namespace limcycle {
 namespace {

@@ -4,7 +4,7 @@
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/forced_run.hpp"
+#include "limcycle/analysis/study/experiments/runs/forced_run.hpp"
 
 namespace limcycle {
 namespace {
@@ -22,7 +22,8 @@ Signal force() {
   return signal_through(std::move(t), std::move(u));
 }
 
-/// Drift is told from rounding and steps by this share of the motion within a cycle (or this length, m).
+/// A drift must exceed this share of the motion within a cycle (or this length, m) to count, because of rounding and
+/// steps.
 bool drifts(double drift, double swing) { return std::abs(drift) > std::max(1e-3 * swing, 1e-11); }
 
 LawPart one(const LawSetting& printed) {
@@ -58,7 +59,8 @@ LawPart one(const LawSetting& printed) {
     mismatch = std::max(mismatch, std::abs(run.F[i] - run.u[i]));
   }
   const double peak = peak_of(run.t, run.F, run.F.size() - 1).value;
-  // Laws without damping ring on: the drift is that of the mean over four cycles, with a weight that hides ringing.
+  // Laws without damping keep ringing: the drift is that of the mean over four cycles, with a weight that hides
+  // ringing.
   const double window = 2.0 * averaged * half_period;
   const auto mean = [&](double back) {
     return run.mean_displacement(end - (back + 1.0) * window, end - back * window);

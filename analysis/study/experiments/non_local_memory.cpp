@@ -4,7 +4,7 @@
 
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/forced_run.hpp"
+#include "limcycle/analysis/study/experiments/runs/forced_run.hpp"
 
 namespace limcycle {
 namespace {
@@ -17,7 +17,7 @@ constexpr std::array tops{0.9, 1.2};      // N
 
 struct Programme {
   Signal force;
-  std::array<double, turns.size()> rested{};  ///< when each rest ends, s
+  std::array<double, turns.size()> rested{};  ///< end of each rest, s
 };
 
 Programme programme(double top) {
@@ -41,7 +41,7 @@ constexpr double closed = 5e-3;
 /// Loops that fill less than this share of their box are no hysteresis.
 constexpr double elastic = 1e-3;
 
-/// Its runs at one size of the force: a row, the curves, a finding.
+/// The runs of the law at one size of the force: a row, the curves, a finding.
 void one_size(const LawSetting& setting, std::size_t size, LawPart& part) {
   const double top = tops[size];
   const Programme made = programme(top);
@@ -95,7 +95,7 @@ LawPart one(const LawSetting& printed) {
   return part;
 }
 
-/// Whether the loops of a law close, at the smaller and the larger force.
+/// Claim that the loops of a law close, or not, at the smaller and the larger force.
 ExperimentClaim claim(const Experiment& e, const std::string& law, bool closes, const std::string& statement,
                       const std::string& source) {
   ExperimentClaim claim{statement, source, ClaimOutcome::not_tested, ""};

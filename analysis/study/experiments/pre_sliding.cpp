@@ -3,7 +3,7 @@
 
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/forced_run.hpp"
+#include "limcycle/analysis/study/experiments/runs/forced_run.hpp"
 
 namespace limcycle {
 namespace {

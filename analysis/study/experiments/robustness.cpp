@@ -3,7 +3,9 @@
 
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/velocity_run.hpp"
+#include "limcycle/analysis/study/experiments/runs/velocity_run.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/sliders/xiong.hpp"
 
 namespace limcycle {
 namespace {
@@ -11,7 +13,7 @@ namespace {
 constexpr double amplitude = 5e-3, frequency = 0.2, stribeck_velocity = 1e-3;  // m/s, rad/s, m/s
 constexpr double Fs = 1.5;
 
-/// Mean square of the difference of two forces, apart for low and high speeds.
+/// Mean square of the difference of two forces, separately for low and high speeds.
 struct Difference {
   double low = 0.0, high = 0.0, low_time = 0.0, high_time = 0.0;
 };

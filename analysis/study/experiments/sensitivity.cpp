@@ -1,16 +1,16 @@
 #include <array>
 #include <cmath>
 
-#include "limcycle/analysis/study/experiments/breakaway.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/velocity_loop.hpp"
+#include "limcycle/analysis/study/experiments/runs/breakaway.hpp"
+#include "limcycle/analysis/study/experiments/runs/velocity_loop.hpp"
 
 namespace limcycle {
 namespace {
 
 constexpr double rate = 0.1, mean = 1.5e-3, amplitude = 1e-3, frequency = 10.0;
 
-/// What one setting of the parameters gives.
+/// Results for one setting of the parameters.
 struct Outcome {
   double stiffness = NAN, displacement = NAN, peak = NAN, lag = NAN;
   double overshoot = NAN;  ///< peak under a velocity that jumps to 0.01 m/s, over the break-away level, N
@@ -23,7 +23,7 @@ struct Outcome {
 Outcome outcome(const LawSetting& setting, double gross) {
   Outcome o;
   BreakAway ramp = break_away(setting, rate, gross, 1e-7);
-  const Element<double> law = make_law(setting);
+  const Element law = make_law(setting);
   o.loop = run_velocity(law, mean, amplitude, frequency, 40);
   const LoopShape shape = loop_shape(o.loop, mean, amplitude);
   const VelocityRun jump = run_constant_velocity(law, 0.01, 10.0 * setting.break_away / 0.01);
@@ -41,7 +41,7 @@ Outcome outcome(const LawSetting& setting, double gross) {
   return o;
 }
 
-/// d ln y/d ln p from half to double; NaN where there is nothing to take a logarithm of.
+/// d ln y/d ln p from half to double; NaN if a logarithm does not exist.
 double elasticity(double half, double twice) {
   return half > 0.0 && twice > 0.0 && std::isfinite(half) && std::isfinite(twice)
              ? std::log(twice / half) / std::log(4.0)

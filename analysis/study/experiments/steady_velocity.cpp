@@ -3,12 +3,12 @@
 
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/velocity_run.hpp"
+#include "limcycle/analysis/study/experiments/runs/velocity_run.hpp"
 
 namespace limcycle {
 namespace {
 
-/// 1e-5 to 0.1 m/s, ten a decade.
+/// 1e-5 to 0.1 m/s, ten per decade.
 std::vector<double> speeds() {
   std::vector<double> list;
   for (int k = 0; k <= 40; ++k) list.push_back(std::pow(10.0, -5.0 + 0.1 * k));
@@ -16,7 +16,7 @@ std::vector<double> speeds() {
 }
 
 LawPart one(const LawSetting& setting) {
-  const Element<double> law = make_law(setting);
+  const Element law = make_law(setting);
   LawPart part;
   std::vector<double> v, F, g;
   double worst = 0.0, at = 0.0;

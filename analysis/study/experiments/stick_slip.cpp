@@ -1,22 +1,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/velocity_loop.hpp"
+#include "limcycle/analysis/study/experiments/runs/velocity_loop.hpp"
 
 namespace limcycle {
 namespace {
 
 /// The stick-slip of the LuGre paper of 1995: a mass of 1 kg pulled by a spring of 2 N/m whose end moves with 0.1 m/s,
-/// seen from that end (a belt).
+/// in coordinates of that end (a belt).
 struct Pulled {
   double period = NAN, fastest = NAN;
   std::vector<double> t, spring;
   Status status = Status::converged;
 };
 
-Pulled pulled(const Element<double>& law, const std::function<bool()>& stop) {
+Pulled pulled(const Element& law, const std::function<bool()>& stop) {
   Belt belt;
   belt.mass = 1.0;
   belt.stiffness = 2.0;

@@ -5,8 +5,8 @@
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/experiments/by_law.hpp"
 #include "limcycle/analysis/study/experiments/catalogue.hpp"
-#include "limcycle/analysis/study/experiments/velocity_loop.hpp"
-#include "limcycle/analysis/study/experiments/velocity_run.hpp"
+#include "limcycle/analysis/study/experiments/runs/velocity_loop.hpp"
+#include "limcycle/analysis/study/experiments/runs/velocity_run.hpp"
 
 namespace limcycle {
 namespace {
@@ -21,7 +21,7 @@ std::string unanswered(const VelocityRun& run) {
 
 bool answered(const VelocityRun& run) { return run.status == Status::converged || run.status == Status::incomplete; }
 
-/// Which samples are drawn: all, or those at small speeds.
+/// Curve of the samples at speeds within the limit (`within` infinite: of all).
 Curve loop_curve(const std::string& name, const VelocityRun& run, double within) {
   if (!std::isfinite(within)) return thinned(name, run.v, run.F, 250);
   std::vector<double> v, F;
@@ -41,7 +41,7 @@ Curve loop_curve(const std::string& name, const VelocityRun& run, double within)
 /// Loops at the paper's four frequencies about a mean velocity.
 LawPart loops(const LawSetting& setting, double mean, double amplitude, double at, double detail) {
   LawPart part;
-  const Element<double> law = make_law(setting);
+  const Element law = make_law(setting);
   std::string widths;
   bool any = false;
   for (const double w : frequencies) {
@@ -63,7 +63,7 @@ LawPart loops(const LawSetting& setting, double mean, double amplitude, double a
     part.finding = "no periodic answer was found";
   else
     part.finding = "width of the loop at " + std::string("2, 10, 25, 50 rad/s: ") + widths + " N";
-  const double band = band_of_applied_force(law);
+  const double band = law.drive_band();
   if (band > 0.0)
     part.finding += "; it needs the applied force where |v| < " + quantity(band, "m/s") + ": not shown there";
   return part;
@@ -96,7 +96,7 @@ ExperimentClaim lag_claim(const Experiment& e, const std::string& statement, con
 constexpr double transition_amplitude = 0.02, transition_frequency = 1.0;
 
 LawPart transition(const LawSetting& setting) {
-  const Element<double> law = make_law(setting);
+  const Element law = make_law(setting);
   const VelocityRun run = run_velocity(law, 0.0, transition_amplitude, transition_frequency);
   LawPart part;
   part.status = run.status;
@@ -126,7 +126,7 @@ LawPart transition(const LawSetting& setting) {
                      ? "passes reversals continuously: the force changes sign " + quantity(turn, "m") + " after them"
                      : "passes reversals without a jump that is seen; where the force changes sign after them is not";
   part.finding += "; peak " + quantity(peak, "N", 4);
-  const double band = band_of_applied_force(law);
+  const double band = law.drive_band();
   if (band > 0.0)
     part.finding += "; it needs the applied force where |v| < " + quantity(band, "m/s") + ": not shown there";
   return part;

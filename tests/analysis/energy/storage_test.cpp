@@ -1,23 +1,24 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/analysis/erased_element.hpp"
+#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 #include "limcycle/tests/law_march.hpp"
 
-// The energy that laws tell: what every one of them must hold to, and the closed form of a stack of return points.
+// Energy stored by laws: properties that each of them must have, and the closed form of a stack of return points.
 using namespace limcycle;
 using namespace limcycle::test;
 
 namespace {
 
-double length(const ErasedElement<double>& law) {
+double length(const Element& law) {
   const double own = law.scales().displacement;
   return own < infinite ? own : 1e-4;
 }
 
 /// Strokes to and fro, long and short, fast and slow.
-void wander(LawMarch<ErasedElement<double>>& march, const Sample& sample, unsigned seed) {
+void wander(LawMarch<Element>& march, const Sample& sample, unsigned seed) {
   const auto& law = march.law();
   const double speed = law.scales().velocity < infinite ? law.scales().velocity : 1e-3;
   std::mt19937 random(seed);
@@ -34,7 +35,7 @@ void wander(LawMarch<ErasedElement<double>>& march, const Sample& sample, unsign
 void for_laws_with_energy(auto&& check) {
   FrictionLaws::for_each([&]<template <class> class Kind>() {
     for_samples<Kind>([&](const Kind<double>& law, const Sample& sample) {
-      const ErasedElement<double> erased{Element<double>(law)};
+      const Element erased{Element(law)};
       if (!erased.has_storage() || erased.states() == 0) return;
       INFO(Kind<double>::kind << ", " << sample.name);
       const double speed = erased.scales().velocity < infinite ? erased.scales().velocity : 1e-3;
@@ -47,12 +48,12 @@ void for_laws_with_energy(auto&& check) {
 
 TEST_CASE("energy of a law: none without history, never negative, does not rise at a switch") {
   int laws = 0;
-  for_laws_with_energy([&](const ErasedElement<double>& law, const Sample& sample, const MarchSteps& steps) {
+  for_laws_with_energy([&](const Element& law, const Sample& sample, const MarchSteps& steps) {
     ++laws;
     std::vector<double> rest(static_cast<std::size_t>(law.states()), 0.0);
     const Mode virgin = law.has_modes() ? law.start({0.0, 0.0, infinite}, rest) : Mode{};
     CHECK(law.storage(virgin, rest) == 0.0);
-    LawMarch<ErasedElement<double>> march(law, steps);
+    LawMarch<Element> march(law, steps);
     const double size = law.scales().output * length(law);
     double least = 0.0, rise = 0.0, largest = 0.0;
     march.watch = [&](const Input<double>&, Mode mode, const std::vector<double>& z) {
@@ -73,10 +74,10 @@ TEST_CASE("energy of a law: none without history, never negative, does not rise 
 }
 
 TEST_CASE("energy of a law: a passive law stores no more than it is supplied with, however it moves") {
-  for_laws_with_energy([](const ErasedElement<double>& law, const Sample& sample, const MarchSteps& steps) {
-    // The energy of a spring to a place is not part of it; another bouc-wen is passive by another storage.
+  for_laws_with_energy([](const Element& law, const Sample& sample, const MarchSteps& steps) {
+    // The energy of a spring to a place is not part of it; other parameters of bouc-wen have another storage function.
     if (!sample.passive || law.follows_position() || sample.name == "beyond the condition") return;
-    LawMarch<ErasedElement<double>> march(law, steps);
+    LawMarch<Element> march(law, steps);
     double worst = 0.0, highest = -infinite;
     march.watch = [&](const Input<double>&, Mode mode, const std::vector<double>& z) {
       const double lost = march.work() - law.storage(mode, z);
@@ -90,7 +91,7 @@ TEST_CASE("energy of a law: a passive law stores no more than it is supplied wit
 }
 
 TEST_CASE("energy of return points is that of the springs of the elements they stand for") {
-  // Seven elements of equal force with yields (i - 1/2) Zb/7, once by Masing's rule and once one by one.
+  // Seven elements of equal force with yields (i - 1/2) Zb/7, once by Masing's rule and once individually.
   const int count = 7;
   std::vector<double> k, W;
   for (int i = 0; i < count; ++i) {

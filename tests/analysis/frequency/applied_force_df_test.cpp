@@ -1,20 +1,21 @@
 // Describing functions of the laws that need the applied force or the acceleration, and of the multistate law of Xiong
-// et al., against own computations that know nothing of modes, collocation or meshes.
+// et al., against computations without modes, collocation or meshes.
 #include <array>
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "limcycle/analysis/frequency/composite_describing_function.hpp"
-#include "limcycle/analysis/frequency/drive_dependence.hpp"
-#include "limcycle/analysis/frequency/fft_route.hpp"
-#include "limcycle/analysis/frequency/harmonic_response.hpp"
-#include "limcycle/analysis/frequency/prescribed_harmonics.hpp"
-#include "limcycle/analysis/frequency/quadrature_route.hpp"
-#include "limcycle/models/friction/awrejcewicz.hpp"
-#include "limcycle/models/friction/karnopp.hpp"
-#include "limcycle/models/friction/quinn.hpp"
-#include "limcycle/models/friction/wojewoda.hpp"
-#include "limcycle/models/friction/xiong.hpp"
+#include "limcycle/analysis/frequency/composite/composite_describing_function.hpp"
+#include "limcycle/analysis/frequency/describing_function/drive_dependence.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
+#include "limcycle/analysis/frequency/harmonic_balance/harmonic_response.hpp"
+#include "limcycle/analysis/frequency/march/prescribed_harmonics.hpp"
+#include "limcycle/models/friction/dry/awrejcewicz.hpp"
+#include "limcycle/models/friction/dry/karnopp.hpp"
+#include "limcycle/models/friction/dry/quinn.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
+#include "limcycle/models/friction/dry/wojewoda.hpp"
+#include "limcycle/models/friction/sliders/xiong.hpp"
 
 using namespace limcycle;
 
@@ -38,16 +39,16 @@ DescribingFunction by_quadrature(const Kind<double>& law, double A, double w, do
   const PrescribedMotion motion(A, w, bias, true);
   DfOptions options;
   options.accuracy = accuracy;
-  return QuadratureRoute<Kind>(law, motion, law.odd() && bias == 0.0, options).refine();
+  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, options).refine();
 }
 
-/// The gain by samples agrees with the other one within both errors.
+/// The gain by samples agrees with the other one within the errors of both.
 template <template <class> class Kind>
 void check_samples(const Kind<double>& law, double A, double w, double bias, const DescribingFunction& other) {
   const PrescribedMotion motion(A, w, bias, true);
   DfOptions options;
   options.accuracy = 1e-5;
-  const auto df = FftRoute<Kind>(law, motion, law.odd() && bias == 0.0, bias, options).refine(other);
+  const auto df = FftRoute(law, motion, law.odd() && bias == 0.0, bias, options).refine(other);
   CHECK(df.status == Status::converged);
   CHECK(std::abs(df.gain - other.gain) <= (df.error + other.error) * std::abs(other.gain));
   CHECK(df.error <= 1e-5);
@@ -58,8 +59,9 @@ struct Reference {
   double mean = 0.0, work = 0.0;
 };
 
-/// Wojewoda's law by its words: from each reversal a spring that starts with the force slip left and gives way at Fs,
-/// then slip on the upper curve while |v| grows, on the lower one while it falls. Simpson's rule between the corners.
+/// Wojewoda's law from its description: from each reversal a spring that starts with the force left by slip and yields
+/// at Fs, then slip on the upper curve while |v| grows, on the lower one while it falls. Simpson's rule between the
+/// corners.
 Reference wojewoda_by_pieces(const Wojewoda<double>& law, double A, double w, double bias) {
   Reference sum;
   double sine = 0.0, cosine = 0.0;
@@ -135,7 +137,7 @@ class OneElement {
       const Gain now = Gain(p[2], p[3]) * (2.0 / (pi * A_));
       if (half > 2 && std::abs(now - last_) < 1e-15 * std::abs(now)) return now;
       last_ = now;
-      p[1] = -p[1];  // the other half of the period is its mirror image, seen with the phase of the first
+      p[1] = -p[1];  // the other half of the period is its mirror image
       where = -where;
     }
     return last_;
@@ -187,7 +189,7 @@ TEST_CASE("describing function of wojewoda: spring, two curves of slip") {
     const Wojewoda<double>& law;
     double A, w, bias;
   };
-  // The last but one gives way after the velocity has passed its peak.
+  // The last but one yields after the velocity has passed its peak.
   for (const Case& c : {Case{law, 1e-3, 20.0, 0.0},
                         {law, 5e-3, 3.0, 4e-3},
                         {law, 3e-3, 2.0, -3e-3},
@@ -267,7 +269,7 @@ TEST_CASE("describing functions of laws with a band: outside it those of the Str
 TEST_CASE("within their band these laws have no describing function, and no number comes out") {
   const auto check = [](auto law) {
     law.dv = 2.9e-3;
-    const Element<double> element(law);
+    const Element element(law);
     const double A = 1e-3, w = 10.0;
     CHECK(undefined_under(element, 0.0, 0.0));
     CHECK(undefined_under(element, 2.9e-3, 0.0));
@@ -296,7 +298,7 @@ TEST_CASE("within their band these laws have no describing function, and no numb
 TEST_CASE("harmonic response of wojewoda: its derivative moves the switches at zero acceleration") {
   auto law = levels<Wojewoda<double>>();
   law.ks = 1e4;
-  const Element<double> element(law);
+  const Element element(law);
   Eigen::VectorXcd input(4);
   input << 0.0, Gain(1e-3, 2e-4), 0.0, Gain(5e-5, -1e-4);
   const auto response = [&](const Eigen::VectorXcd& at, Eigen::MatrixXd* derivative) {
@@ -334,7 +336,7 @@ TEST_CASE("mass and friction under a harmonic force: the applied force is known,
   stribeck.vs = 1e-2;
   stribeck.sigma2 = 0.4;
   const CompositePoint point{2.5, 6.0};
-  const auto response = [&](const Element<double>& law) {
+  const auto response = [&](const Element& law) {
     CompositeDescribingFunction composite(law, 1.0);
     const auto found = composite(point, {.harmonics = 1, .accuracy = 1e-8});
     REQUIRE(found.status == Status::converged);

@@ -1,10 +1,10 @@
 // Describing functions of Bouc-Wen hysteresis against a plain integration of its equations, and against the closed form
 // of its special case, Dahl's law.
-#include "limcycle/models/friction/bouc_wen.hpp"
+#include "limcycle/models/friction/bristle/bouc_wen.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 #include "limcycle/tests/analysis/frequency/one_state_reference.hpp"
 
@@ -26,7 +26,7 @@ BoucWen<double> bouc_wen(double beta, double gamma, double n = 1.0, double alpha
 
 DescribingFunction quadrature(const BoucWen<double>& law, double A, double w, double bias, double accuracy) {
   const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute<BoucWen>(law, motion, bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
+  return QuadratureRoute(law, motion, bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
 }
 
 OneStateReference plain(const BoucWen<double>& law, double A, double w, double bias, int steps) {
@@ -90,7 +90,7 @@ TEST_CASE("Bouc-Wen depends on the path only, and both routes agree", "[df][bouc
     const auto slow = quadrature(law, 3e-5, 1.0, 0.0, 1e-8), fast = quadrature(law, 3e-5, 977.0, 0.0, 1e-8);
     CHECK(apart(slow.gain, fast.gain) < 1e-12);
     const PrescribedMotion motion(3e-5, 1.0, 0.0, true);
-    const auto fft = FftRoute<BoucWen>(law, motion, true, 0.0, with(DfMethod::fft, 1e-6)).refine(slow);
+    const auto fft = FftRoute(law, motion, true, 0.0, with(DfMethod::fft, 1e-6)).refine(slow);
     CHECK(fft.status == Status::converged);
     CHECK(apart(fft.gain, slow.gain) <= fft.error + slow.error);
     CHECK(fft.error <= 1e-6);

@@ -1,8 +1,12 @@
-// Measured orders of the two routes to the harmonics, from both sides: not less than stated, and not by accident more.
+// Measured orders of the two routes to the harmonics, bounded from both sides: not less than stated, and not more by
+// accident.
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
+#include "limcycle/models/friction/bristle/dahl.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
 using namespace df_test;
@@ -24,9 +28,9 @@ PeriodMesh equal_panels(const PrescribedMotion& motion, int count) {
 template <template <class> class Kind>
 std::complex<double> gain_on(const Kind<double>& element, const PrescribedMotion& motion, const PeriodMesh& mesh,
                              int stages) {
-  ElementMarch<Kind> march(element, motion, stages);
+  ElementMarch<> march(element, motion, stages);
   HarmonicSums sums(1);
-  PeriodicStateSearch<Kind> search(march, mesh, true, 1e-15);
+  PeriodicStateSearch<> search(march, mesh, true, 1e-15);
   const PeriodicState periodic = search.find(sums, nullptr);
   REQUIRE(periodic.status == Status::converged);
   REQUIRE(periodic.symmetric);
@@ -69,7 +73,7 @@ TEST_CASE("FFT route converges algebraically across kinks and jumps", "[df][orde
   SECTION("a kink at each reversal: LuGre, order 2") {
     const auto law = lugre();
     const PrescribedMotion motion(1e-3, 1.0, 0.0, true);
-    FftRoute<LuGre> route(law, motion, true, 0.0, options);
+    FftRoute route(law, motion, true, 0.0, options);
     const auto exact = describing_function(law, {1e-3, 1.0, 0.0}, with(DfMethod::quadrature, 1e-12)).gain;
     const auto error = [&](int samples) { return apart(route.on_samples(samples).gain, exact); };
     const double order = measured_order(error, 256, 4);
@@ -81,7 +85,7 @@ TEST_CASE("FFT route converges algebraically across kinks and jumps", "[df][orde
     const double A = 3e-5;
     const auto law = dahl();
     const PrescribedMotion motion(A, 1.0, 0.0, true);
-    FftRoute<Dahl> route(law, motion, true, 0.0, options);
+    FftRoute route(law, motion, true, 0.0, options);
     const auto error = [&](int samples) {
       return apart(route.on_samples(samples).gain, dahl_closed_form(A, 1e-5, 1.0));
     };
@@ -93,7 +97,7 @@ TEST_CASE("FFT route converges algebraically across kinks and jumps", "[df][orde
   SECTION("a jump at a sample: Coulomb") {
     const auto law = coulomb();
     const PrescribedMotion motion(1.0, 1.0, 0.0, true);
-    FftRoute<Coulomb> route(law, motion, true, 0.0, options);
+    FftRoute route(law, motion, true, 0.0, options);
     const auto error = [&](int samples) { return apart(route.on_samples(samples).gain, {0.0, 4.0 / pi}); };
     const double order = measured_order(error, 256, 4);
     CAPTURE(order);
@@ -104,9 +108,9 @@ TEST_CASE("FFT route converges algebraically across kinks and jumps", "[df][orde
     const auto law = coulomb();
     const double bias = 0.3137;
     const PrescribedMotion motion(1.0, 1.0, bias, true);
-    FftRoute<Coulomb> route(law, motion, false, bias, options);
+    FftRoute route(law, motion, false, bias, options);
     const std::complex<double> exact(0.0, 4.0 / pi * std::sqrt(1.0 - bias * bias));
-    // Where the jump falls between the samples changes from one count to the next, and the error with it.
+    // The position of the jump between the samples changes from one count to the next, and so does the error.
     const auto error = [&](int samples) {
       double worst = 0.0;
       for (int more = 0; more < 32; more += 4)

@@ -2,9 +2,18 @@
 #include <random>
 #include <string>
 
-#include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
+#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/friction/bristle/dahl.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/dry/coulomb.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
 
-/// Laws and elements that the tests of describing functions share.
+/// Laws and elements shared by the tests of describing functions.
 namespace df_test {
 
 using namespace limcycle;

@@ -1,10 +1,10 @@
-// Describing functions of the elasto-plastic law against a plain integration of its equations, and where its closed
-// form is known.
-#include "limcycle/models/friction/elasto_plastic.hpp"
+// Describing functions of the elasto-plastic law against a plain integration of its equations, and against its closed
+// form where one exists.
+#include "limcycle/models/friction/bristle/elasto_plastic.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 #include "limcycle/tests/analysis/frequency/one_state_reference.hpp"
 
@@ -25,11 +25,10 @@ ElastoPlastic<double> seeds(bool of_coulomb = false) {
 
 DescribingFunction quadrature(const ElastoPlastic<double>& law, double A, double w, double bias, double accuracy) {
   const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute<ElastoPlastic>(law, motion, law.odd() && bias == 0.0, with(DfMethod::quadrature, accuracy))
-      .refine();
+  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
 }
 
-/// The equations as they are printed, with the sign test.
+/// The equations as printed, with the sign test.
 OneStateReference plain(const ElastoPlastic<double>& law, double A, double w, double bias, int steps) {
   const auto g = [&](double v) {
     const double Fs = v < 0.0 ? law.Fs_minus : law.Fs, Fc = v < 0.0 ? law.Fc_minus : law.Fc;
@@ -89,7 +88,7 @@ TEST_CASE("elasto-plastic: both routes agree", "[df][elasto-plastic]") {
     CAPTURE(A);
     const PrescribedMotion motion(A, 10.0, 0.0, true);
     const auto smooth = quadrature(seeds(), A, 10.0, 0.0, 1e-8);
-    const auto fft = FftRoute<ElastoPlastic>(seeds(), motion, true, 0.0, with(DfMethod::fft, 1e-5)).refine(smooth);
+    const auto fft = FftRoute(seeds(), motion, true, 0.0, with(DfMethod::fft, 1e-5)).refine(smooth);
     CHECK(fft.status == Status::converged);
     CHECK(fft.error <= 1e-5);
     CHECK(apart(fft.gain, smooth.gain) <= fft.error + smooth.error);
@@ -98,7 +97,7 @@ TEST_CASE("elasto-plastic: both routes agree", "[df][elasto-plastic]") {
 
 TEST_CASE("elasto-plastic: in the elastic range a spring and a damper, without loss to friction",
           "[df][elasto-plastic]") {
-  // Many states are periodic there; the half-wave symmetric one is meant. Claim D9: up to 0.69 Fs, or 0.69 Fc.
+  // Many states are periodic there; the half-wave symmetric one is required. Claim D9: up to 0.69 Fs, or 0.69 Fc.
   for (const bool of_coulomb : {false, true})
     for (const double share : {1e-3, 0.5, 0.999}) {
       auto law = seeds(of_coulomb);

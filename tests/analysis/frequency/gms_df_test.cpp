@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
-#include "limcycle/analysis/frequency/quadrature_route.hpp"
-#include "limcycle/models/friction/gms.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
+#include "limcycle/models/friction/sliders/gms.hpp"
 
 using namespace limcycle;
 using std::numbers::pi;
@@ -32,11 +32,11 @@ Gms<double> ten_elements(double k0, double C) {
 
 DescribingFunction quadrature(const Gms<double>& law, double A, double w, double bias, double accuracy) {
   const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute<Gms>(law, motion, law.odd() && bias == 0.0, {.harmonics = 3, .accuracy = accuracy}).refine();
+  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, {.harmonics = 3, .accuracy = accuracy}).refine();
 }
 
 /// The law again, from its equations alone, with the classical Runge-Kutta method in the phase. The integrals of the
-/// force by sine and cosine are states like the others, so that all is of order 4.
+/// force by sine and cosine are states like the others, so that everything is of order 4.
 class Reference {
  public:
   Reference(const Gms<double>& law, double A, double w, double bias) : p_(law), A_(A), w_(w), bias_(bias) {
@@ -206,7 +206,7 @@ TEST_CASE("gms: the two routes agree", "[df][friction]") {
   const auto law = ten_elements(1000.0, 1000.0);
   const PrescribedMotion motion(5e-4, 20.0, 0.0, true);
   const auto other = quadrature(law, 5e-4, 20.0, 0.0, 1e-8);
-  const auto fft = FftRoute<Gms>(law, motion, true, 0.0, {.harmonics = 3, .accuracy = 1e-6}).refine(other);
+  const auto fft = FftRoute(law, motion, true, 0.0, {.harmonics = 3, .accuracy = 1e-6}).refine(other);
   CHECK(fft.status == Status::converged);
   CHECK(apart(fft.gain, other.gain) < 1e-6);
 }

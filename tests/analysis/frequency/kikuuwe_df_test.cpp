@@ -1,10 +1,10 @@
 // Describing functions of the compliant Coulomb law of Kikuuwe et al. against a plain integration of its equations.
-#include "limcycle/models/friction/kikuuwe.hpp"
+#include "limcycle/models/friction/dry/kikuuwe.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 #include "limcycle/tests/analysis/frequency/one_state_reference.hpp"
 
@@ -25,7 +25,7 @@ Kikuuwe<double> kikuuwe(double K = 1e5, double B = 316.0, double sigma2 = 0.0) {
 
 DescribingFunction quadrature(const Kikuuwe<double>& law, double A, double w, double bias, double accuracy) {
   const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute<Kikuuwe>(law, motion, law.odd() && bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
+  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
 }
 
 OneStateReference plain(const Kikuuwe<double>& law, double A, double w, double bias, int steps) {
@@ -74,7 +74,7 @@ TEST_CASE("Kikuuwe: both routes agree", "[df][kikuuwe]") {
     CAPTURE(A);
     const PrescribedMotion motion(A, 10.0, 0.0, true);
     const auto smooth = quadrature(kikuuwe(), A, 10.0, 0.0, 1e-8);
-    const auto fft = FftRoute<Kikuuwe>(kikuuwe(), motion, true, 0.0, with(DfMethod::fft, 1e-5)).refine(smooth);
+    const auto fft = FftRoute(kikuuwe(), motion, true, 0.0, with(DfMethod::fft, 1e-5)).refine(smooth);
     CHECK(fft.status == Status::converged);
     CHECK(fft.error <= 1e-5);
     CHECK(apart(fft.gain, smooth.gain) <= fft.error + smooth.error);

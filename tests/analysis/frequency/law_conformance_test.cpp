@@ -1,11 +1,12 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "limcycle/analysis/frequency/describing_function.hpp"
+#include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
+#include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 #include "limcycle/tests/law_march.hpp"
 
-// What the describing function of every friction law must hold to.
+// Properties that the describing function of every friction law must have.
 using namespace limcycle;
 using namespace limcycle::test;
 
@@ -47,7 +48,7 @@ TEST_CASE("friction laws: the describing function converges, is dissipative wher
     for (const DfPoint& at : points_of(law)) {
       for (const double bias : {0.0, 0.4, 1.5}) {
         if (bias > 0.0 && !sample.sustained) continue;
-        if (bias > 1.0 && at.amplitude > 2.0 * length(law)) continue;  // sliding on and on
+        if (bias > 1.0 && at.amplitude > 2.0 * length(law)) continue;  // steady sliding without end
         const DfPoint point{at.amplitude, at.frequency, bias * at.amplitude * at.frequency};
         INFO("A " << point.amplitude << ", w " << point.frequency << ", bias " << point.bias);
         const auto df = describing_function(law, point, {.harmonics = 3});
@@ -66,7 +67,7 @@ TEST_CASE("friction laws: the describing function converges, is dissipative wher
         if (sample.passive && bias == 0.0) CHECK(df.gain.imag() >= -1e-9 * sample.level / A);
         if (sample.per_way == 0.0)
           CHECK(std::abs(df.gain) * A <= 4.0 / pi * (sample.level + sample.per_speed * speed) * (1.0 + 1e-6));
-        // Where the return points of the way in are kept, the state that mirrors itself need not be the one reached.
+        // If return points of the approach are kept, the half-wave symmetric state need not be the one reached.
         const bool local = std::decay_t<decltype(law)>::features.memory != Memory::non_local;
         if (law.odd() && bias == 0.0 && local) CHECK(df.symmetric);
         if (df.symmetric) CHECK(std::abs(df.mean) <= 1e-6 * sample.level);
@@ -136,9 +137,9 @@ TEST_CASE("friction laws that need the applied force: a gain outside the band, n
 }
 
 TEST_CASE("stiff friction laws have the describing function of Coulomb friction, j 4 Fc/(pi A)") {
-  // What is left of dahl at a = sigma0 A/Fc: (1 - tanh(a)/a) in the imaginary part, sqrt(pi/(2a)) in the real one, both
+  // Deviation of dahl at a = sigma0 A/Fc: (1 - tanh(a)/a) in the imaginary part, sqrt(pi/(2a)) in the real one, both
   // relative to 4 Fc/(pi A) (claim A12).
-  const auto check = [](const Element<double>& law) {
+  const auto check = [](const Element& law) {
     const double a = 1e6, coulomb = 4.0 / (pi * 1e-3);
     const auto df = describing_function(law, {1e-3, 1e-3, 0.0});
     CHECK(df.status == Status::converged);

@@ -1,11 +1,12 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/analysis/dual.hpp"
+#include "limcycle/models/dual.hpp"
+#include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 #include "limcycle/tests/law_march.hpp"
 
-// Every friction law on every scalar: the same values, and derivatives that are those of differences.
+// Every friction law on every scalar: the same values, and derivatives that agree with differences.
 using namespace limcycle;
 using namespace limcycle::test;
 
@@ -18,8 +19,8 @@ struct Point {
   int fired = -1;  ///< guard that switches here
 };
 
-/// Points on a motion of the law that passes pre-sliding, sliding and reversals. A law that needs the applied force is
-/// visited at inputs of any kind in the modes that they lead to.
+/// Points on a motion of the law through pre-sliding, sliding and reversals. A law that needs the applied force is
+/// evaluated at inputs of any kind in the resulting modes.
 template <class Law>
 std::vector<Point> points_of(const Law& law, const Sample& sample) {
   std::vector<Point> points;
@@ -53,7 +54,7 @@ std::vector<Point> points_of(const Law& law, const Sample& sample) {
   return points;
 }
 
-/// All that a law says at one point: output, rates, guards, and the state after a switch.
+/// All values of a law at one point: output, rates, guards, and the state after a switch.
 template <class S, class Law>
 std::vector<S> sayings(const Law& law, const Input<S>& in, const Point& at, std::vector<S> z) {
   std::vector<S> all{law.output(in, at.mode, z)};
@@ -76,8 +77,8 @@ bool near(double a, double b, double tolerance, double floor) {
   return a == b || std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b)) + floor;
 }
 
-/// Counts how derivatives compare with differences. Where those to both sides, over two distances, disagree, there is a
-/// kink or too much curvature to tell.
+/// Compares derivatives with differences. Where those to both sides, over two distances, disagree, there is a kink or
+/// too much curvature for a comparison.
 struct Comparison {
   long same = 0, kinks = 0, wrong = 0;
   double worst_got = 0.0, worst_expected = 0.0;
@@ -103,7 +104,7 @@ struct Comparison {
   }
 };
 
-/// Size of what sayings() tells: forces, then rates and guards.
+/// Sizes of the values of sayings(): forces, then rates and guards.
 template <class Law>
 double size_of(const Law& law, const Sample& sample, const Point& at, std::size_t i) {
   return i == 0 ? sample.level : std::abs(at.in.v) + 1e-3 * std::min(law.scales().velocity, 1e-3);
@@ -192,7 +193,7 @@ TEST_CASE("friction laws: derivatives by every parameter are those of difference
       const auto points = points_of(law, sample);
       const auto table = Kind<double>::parameters();
       const auto dual_table = Kind<S>::parameters();
-      // The number, or the first entry of the list, that row `row` of a table tells of; null for anything else.
+      // The number, or the first entry of the list, in row `row` of a table; null for anything else.
       const auto number = []<class T>(auto& owner, const auto& parameter, T) -> T* {
         using Owner = std::decay_t<decltype(owner)>;
         if (const auto* member = std::get_if<T Owner::*>(&parameter.member)) return &(owner.*(*member));

@@ -1,13 +1,13 @@
-// The modified Leuven law under prescribed motion: LuGre and Dahl where it becomes them, and a march of its own that
-// knows the elements only as a function of z.
+// The modified Leuven law under prescribed motion: against LuGre and Dahl in their special cases, and against a
+// separate march in which the elements are a function of z only.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
-#include "limcycle/analysis/frequency/quadrature_route.hpp"
-#include "limcycle/models/friction/leuven.hpp"
-#include "limcycle/models/friction/lugre.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/sliders/leuven.hpp"
 
 using namespace limcycle;
 using std::numbers::pi;
@@ -40,7 +40,7 @@ Leuven<double> five_elements(double n) {
 template <template <class> class Kind>
 DescribingFunction quadrature(const Kind<double>& law, double A, double w, double bias, double accuracy) {
   const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute<Kind>(law, motion, law.odd() && bias == 0.0, {.harmonics = 3, .accuracy = accuracy}).refine();
+  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, {.harmonics = 3, .accuracy = accuracy}).refine();
 }
 
 /// The law from its equations, by Runge-Kutta steps in z alone: within a step z is monotonic and each stretch is
@@ -169,7 +169,7 @@ TEST_CASE("leuven: the two routes agree, uneven levels too", "[df][friction]") {
     law.Fc_minus = back - 0.5;
     const PrescribedMotion motion(3e-4, 5.0, 0.0, true);
     const auto other = quadrature(law, 3e-4, 5.0, 0.0, 1e-7);
-    const auto fft = FftRoute<Leuven>(law, motion, law.odd(), 0.0, {.harmonics = 3, .accuracy = 1e-6}).refine(other);
+    const auto fft = FftRoute(law, motion, law.odd(), 0.0, {.harmonics = 3, .accuracy = 1e-6}).refine(other);
     CHECK(fft.status == Status::converged);
     CHECK(apart(fft.gain, other.gain) < 1e-6);
   }

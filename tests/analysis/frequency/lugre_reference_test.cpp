@@ -1,9 +1,10 @@
-// LuGre describing functions against a table computed apart from the program (tests/reference/make_lugre_df.py).
+// LuGre describing functions against a table computed independently of the program (tests/reference/make_lugre_df.py).
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <map>
 #include <sstream>
 
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
 using namespace df_test;
@@ -21,7 +22,7 @@ std::vector<Row> reference() {
   std::ifstream file(LIMCYCLE_SOURCE_DIR "/tests/reference/lugre_df.csv");
   REQUIRE(file.good());
   std::string line, cell;
-  std::getline(file, line);  // says how it was made
+  std::getline(file, line);  // header: how it was made
   REQUIRE(line.front() == '#');
   std::getline(file, line);
   std::vector<std::string> keys;
@@ -66,11 +67,11 @@ TEST_CASE("quadrature gives the reference table of LuGre to the accuracy asked f
       CAPTURE(accuracy, row.point.amplitude, row.point.frequency, row.point.bias, row.law.vs, row.law.delta,
               row.law.sigma0, row.law.curve.index);
       const auto df = describing_function(row.law, row.point, with(DfMethod::quadrature, accuracy));
-      // Where the mean force is 2500 times the first harmonic, rounding alone is 1e-11 of the gain, and said to be so.
+      // If the mean force is 2500 times the first harmonic, rounding alone is 1e-11 of the gain, as the error shows.
       const bool cancels = row.point.bias == 5e-3 && accuracy < 1e-10;
       CHECK(df.status == (cancels && df.error > accuracy ? Status::incomplete : Status::converged));
       CHECK(df.error <= (cancels ? 5e-11 : accuracy));
-      // The table itself is good to some 1e-12.
+      // The table itself is accurate to some 1e-12.
       CHECK(apart(df.gain, row.gain) <= df.error + 5e-12);
       CHECK(df.mean == Approx(row.mean).epsilon(accuracy).margin(1e-12));
       CHECK(df.dissipation == Approx(row.dissipation).epsilon(accuracy + 5e-12));
@@ -91,7 +92,7 @@ TEST_CASE("the FFT route gives the reference table of LuGre within its own error
 }
 
 TEST_CASE("LuGre values of the claims, A15", "[df][lugre][claims]") {
-  // A in m, w in rad/s, Re N, Im N, and relative room for the printed digits. The two rows at 5e-6 m were printed
+  // A in m, w in rad/s, Re N, Im N, and relative tolerance for the printed digits. The two rows at 5e-6 m were printed
   // 4e-8 too low: the reference table above and the quadrature agree on 95968.9002 and 95579.3430.
   const struct {
     double A, w, re, im, room;

@@ -1,9 +1,9 @@
 // Describing functions of LuGre with a B-spline level against a plain integration of its equations.
-#include "limcycle/models/friction/lugre_spline.hpp"
+#include "limcycle/models/friction/bristle/lugre_spline.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 #include "limcycle/tests/analysis/frequency/one_state_reference.hpp"
 
@@ -22,7 +22,7 @@ LuGreSpline<double> spline() {
 
 DescribingFunction quadrature(const LuGreSpline<double>& law, double A, double w, double bias, double accuracy) {
   const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute<LuGreSpline>(law, motion, bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
+  return QuadratureRoute(law, motion, bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
 }
 
 OneStateReference plain(const LuGreSpline<double>& law, double A, double w, double bias, int steps) {
@@ -81,7 +81,7 @@ TEST_CASE("spline LuGre: both routes agree", "[df][lugre-spline]") {
     CAPTURE(A);
     const PrescribedMotion motion(A, 10.0, 4e-5, true);
     const auto smooth = quadrature(spline(), A, 10.0, 4e-5, 1e-8);
-    const auto fft = FftRoute<LuGreSpline>(spline(), motion, false, 4e-5, with(DfMethod::fft, 1e-5)).refine(smooth);
+    const auto fft = FftRoute(spline(), motion, false, 4e-5, with(DfMethod::fft, 1e-5)).refine(smooth);
     CHECK(fft.status == Status::converged);
     CHECK(fft.error <= 1e-5);
     CHECK(apart(fft.gain, smooth.gain) <= fft.error + smooth.error);

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-/// Describing functions of one-state laws by the plainest means, apart from the program: classical Runge-Kutta with
+/// Describing functions of one-state laws by the simplest means, independent of the program: classical Runge-Kutta with
 /// fixed steps from reversal to reversal, the fixed point of the period map by secants, Simpson's rule.
 namespace df_test {
 
@@ -13,7 +13,7 @@ struct OneStateReference {
   double mean = 0.0, work = 0.0;
 };
 
-/// `rate(v, z)` is dz/dt, `force(x, v, z)` the output, under x = bias t + A sin wt; x is handed to `force` without the
+/// `rate(v, z)` is dz/dt, `force(x, v, z)` the output, under x = bias t + A sin wt; x is passed to `force` without the
 /// drift. `steps` (even) per stretch between reversals, closer together near the reversals. `symmetric`: the half-wave
 /// symmetric state is wanted. `guess`: a state to begin with, of the size of the state.
 template <class Rate, class Force>

@@ -5,7 +5,7 @@
 
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
-/// What the tests of kernels ask at random points.
+/// Common parts of the tests of kernels at random points.
 namespace df_test {
 
 class Random {
@@ -27,8 +27,8 @@ inline DfOptions asking(double accuracy, Isa isa = Isa::scalar, int harmonics = 
 
 struct Tally {
   int points = 0, unanswered = 0, broken = 0;
-  std::string which;              ///< the broken ones, in words
-  std::vector<double> looseness;  ///< estimate over true error, where that can be told from roundings
+  std::string which;              ///< the broken ones, as text
+  std::vector<double> looseness;  ///< estimate over true error, where that exceeds roundings
 };
 
 }  // namespace df_test

@@ -3,12 +3,12 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
-#include "limcycle/analysis/frequency/quadrature_route.hpp"
-#include "limcycle/models/friction/iwan.hpp"
-#include "limcycle/models/friction/non_drift.hpp"
-#include "limcycle/models/friction/two_state.hpp"
-#include "limcycle/models/friction/xiong.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
+#include "limcycle/models/friction/bristle/non_drift.hpp"
+#include "limcycle/models/friction/bristle/two_state.hpp"
+#include "limcycle/models/friction/sliders/iwan.hpp"
+#include "limcycle/models/friction/sliders/xiong.hpp"
 
 using namespace limcycle;
 using std::numbers::pi;
@@ -20,12 +20,12 @@ double apart(std::complex<double> a, std::complex<double> b) { return std::abs(a
 template <template <class> class Kind>
 DescribingFunction quadrature(const Kind<double>& law, double A, double w, double bias, double accuracy) {
   const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute<Kind>(law, motion, bias == 0.0, {.harmonics = 5, .accuracy = accuracy}).refine();
+  return QuadratureRoute(law, motion, bias == 0.0, {.harmonics = 5, .accuracy = accuracy}).refine();
 }
 template <template <class> class Kind>
 DescribingFunction fft(const Kind<double>& law, double A, double w, double bias, const DescribingFunction& other) {
   const PrescribedMotion motion(A, w, bias, true);
-  return FftRoute<Kind>(law, motion, bias == 0.0, bias, {.harmonics = 5, .accuracy = 1e-5}).refine(other);
+  return FftRoute(law, motion, bias == 0.0, bias, {.harmonics = 5, .accuracy = 1e-5}).refine(other);
 }
 
 Iwan<double> iwan(int curve, double elements = 0.0) {
@@ -99,7 +99,8 @@ TEST_CASE("iwan: the march meets the closed forms", "[iwan][df]") {
 }
 
 TEST_CASE("iwan: with a drift the loops hang on saturation", "[iwan][df]") {
-  // Forwards on Fs but for the way after the reversal, F = Fs - 2 f_v(xi/2) on the way back, then the same branch up.
+  // Forwards on Fs except for the displacement after the reversal, F = Fs - 2 f_v(xi/2) on the way back, then the same
+  // branch up.
   const auto law = iwan(2);
   const double A = 2e-3, w = 1.0, V = 1.6e-3;
   const auto df = quadrature(law, A, w, V, 1e-9);
@@ -155,12 +156,12 @@ TEST_CASE("non-drift in sliding: both routes, dissipation, no mean", "[non-drift
   const double A = 1e-3;
   const PrescribedMotion motion(A, 1.0, 0.0, true);
   const DfOptions options{.harmonics = 5, .accuracy = 1e-7};
-  const auto df = QuadratureRoute<NonDrift>(law, motion, false, options).refine();
+  const auto df = QuadratureRoute(law, motion, false, options).refine();
   REQUIRE(df.status == Status::converged);
   CHECK(df.dissipation == Approx(pi * A * A * df.gain.imag()).epsilon(1e-6));
   CHECK(std::abs(df.mean) < 1e-6);
   CHECK(df.gain.imag() > 0.0);
-  FftRoute<NonDrift> route(law, motion, false, 0.0, options);
+  FftRoute route(law, motion, false, 0.0, options);
   const auto coarse = route.on_samples(512), fine = route.on_samples(1024);
   REQUIRE(fine.status == Status::converged);
   CHECK(apart(fine.gain, df.gain) < 2e-5);

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "limcycle/analysis/frequency/root_search.hpp"
+#include "limcycle/analysis/frequency/roots/root_search.hpp"
 
 using namespace limcycle;
 using Complex = std::complex<double>;
@@ -70,7 +70,7 @@ struct Fold {
   }
 };
 
-// A relative error of N of the size that was asked for, different at each point (and repeatable).
+// A relative error of N of the requested size, different at each point (and repeatable).
 template <typename Function>
 LoopEquation with_noise(Function f) {
   return [=](double A, double w, double accuracy) -> Complex {
@@ -242,9 +242,25 @@ TEST_CASE("budget, interruption and exceptions of the caller end the search", "[
   CHECK(to_string(stopped.status) == "interrupted");
   CHECK(asked == 21);
 
+  // Called at every evaluation, also in the scan for borders of existence and within a cell.
+  for (const long allowed : {0L, 5L, 100L, 1000L}) {
+    options = {};
+    long evaluated = 0;
+    options.stop = [&] { return evaluated >= allowed; };
+    const auto left = find_roots(
+        [&](double A, double w, double accuracy) {
+          ++evaluated;
+          return f(A, w, accuracy);
+        },
+        unit_box, options);
+    CHECK(to_string(left.status) == "interrupted");
+    CHECK(evaluated == allowed);
+    CHECK(left.evaluations == allowed);
+  }
+
   struct Failure {};
   const LoopEquation fails = [&](double A, double w, double accuracy) {
-    if (accuracy < 1e-11) throw Failure{};  // only polishing asks for that here
+    if (accuracy < 1e-11) throw Failure{};  // only polishing requests that here
     return f(A, w, accuracy);
   };
   CHECK_THROWS_AS(find_roots(fails, unit_box), Failure);

@@ -4,10 +4,10 @@
 #include <numbers>
 #include <random>
 
-#include "limcycle/analysis/frequency/fft_route.hpp"
-#include "limcycle/analysis/frequency/quadrature_route.hpp"
-#include "limcycle/models/friction/jenkins.hpp"
-#include "limcycle/models/friction/maxwell_slip.hpp"
+#include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
+#include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
+#include "limcycle/models/friction/sliders/jenkins.hpp"
+#include "limcycle/models/friction/sliders/maxwell_slip.hpp"
 
 using namespace limcycle;
 using std::numbers::pi;
@@ -29,7 +29,7 @@ MaxwellSlip<double> ten_elements() {
 template <template <class> class Kind>
 DescribingFunction quadrature(const Kind<double>& law, double A, double w, double bias, double accuracy) {
   const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute<Kind>(law, motion, bias == 0.0, {.harmonics = 5, .accuracy = accuracy}).refine();
+  return QuadratureRoute(law, motion, bias == 0.0, {.harmonics = 5, .accuracy = accuracy}).refine();
 }
 
 /// Gain and mean force of one element in x = bias t + A sin wt: the stretch after a reversal at x_r follows x until it
@@ -149,7 +149,7 @@ TEST_CASE("maxwell-slip: the two routes agree, and the frequency does not matter
   for (std::size_t i = 0; i < slow.harmonics.size(); ++i)
     CHECK(std::abs(fast.harmonics[i] - slow.harmonics[i]) < 1e-13 * std::abs(slow.harmonics[0]));
   const PrescribedMotion motion(A, 2.0, 0.0, true);
-  const auto fft = FftRoute<MaxwellSlip>(law, motion, true, 0.0, {.harmonics = 5, .accuracy = 1e-7}).refine(slow);
+  const auto fft = FftRoute(law, motion, true, 0.0, {.harmonics = 5, .accuracy = 1e-7}).refine(slow);
   CHECK(fft.status == Status::converged);
   CHECK(apart(fft.gain, slow.gain) < 1e-7);
 }

@@ -30,7 +30,7 @@ PackFunctions functions(Isa isa) {
                             : scalar_pack_functions();
 }
 
-/// Calls check(functions) for every set; one that this machine lacks must say so.
+/// Calls check(functions) for every available set; an unavailable one must be wider than best_isa().
 template <class Check>
 void on_every_set(Check check) {
   for (const Isa isa : all_isas()) {

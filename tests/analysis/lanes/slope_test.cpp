@@ -2,8 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/dual.hpp"
 #include "limcycle/analysis/lanes/pack.hpp"
+#include "limcycle/models/dual.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

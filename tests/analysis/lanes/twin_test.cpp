@@ -13,7 +13,7 @@ namespace {
 using P = Pack<2, Isa::scalar>;
 using T = Twin<P>;
 
-/// f on a twin says in every lane what it says on a pack of that lane's numbers.
+/// f on a twin gives in every lane the same as on a pack of that lane's numbers.
 template <class F>
 void check(const F& f) {
   const double x[4] = {-1.5, 0.25, 3.0, 0.0}, y[4] = {2.0, 0.25, -1.0, 1e-3};

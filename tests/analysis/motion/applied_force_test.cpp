@@ -5,8 +5,12 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/march.hpp"
-#include "limcycle/analysis/motion/rodas5p.hpp"
+#include "limcycle/analysis/motion/steppers/rodas5p.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/models/friction/dry/awrejcewicz.hpp"
+#include "limcycle/models/friction/dry/karnopp.hpp"
+#include "limcycle/models/friction/dry/quinn.hpp"
+#include "limcycle/models/friction/dry/wojewoda.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -188,8 +192,8 @@ TEST_CASE("applied force: gradients of the field in every mode, by state and by 
 }
 
 TEST_CASE("applied force: beside an element that holds, both are solved for together") {
-  // A relay that slides on its own input, next to friction in its band: the relay's output holds the input, the drive
-  // contains the relay's output, which contains the friction.
+  // A relay that slides on its own input, together with friction in its band: the relay's output holds the input, the
+  // drive contains the relay's output, which contains the friction.
   LoopParts parts;
   parts.plant = Mass{1.0, 0.1, 0.0};
   parts.controller = pid(3.0, 0.0, 0.5);
@@ -206,13 +210,13 @@ TEST_CASE("applied force: beside an element that holds, both are solved for toge
   // The input of the relay stands still: 3 dy/dt + 0.5 dv/dt = 0, so dv/dt = -6 v.
   CHECK(dx[1] == Approx(-6.0 * v));
   // F = (1 - s) (u - c v) + s g and dv/dt = u - c v - F give s (u - c v - g) = -6 v.
-  const auto& law = std::get<Quinn<double>>(loop.elements[1]);
+  const auto& law = law_of<Quinn<double>>(loop.elements[1]);
   const double s = 0.6, u = law.level(v) - 6.0 * v / s + 0.1 * v;
   CHECK(field.output(0) == Approx(u));
   CHECK(field.input(1).drive == Approx(u - 0.1 * v));
   CHECK(field.output(1) == Approx((1.0 - s) * (u - 0.1 * v) + s * law.level(v)));
   CHECK(jacobian_defect(field, x) < 1e-8);
-  // What is not friction has no applied force.
+  // An element other than friction has no applied force.
   parts.controller = pid(3.0, 0.0, 0.0);
   parts.element = banded<Quinn<double>>(1e-3);
   CHECK_THROWS_WITH(build_loop(parts), Catch::Contains("applied force"));
@@ -286,7 +290,7 @@ TEST_CASE("applied force: the stiff stepper keeps its order") {
 
 TEST_CASE("applied force: rest without creep") {
   // No integrator: a constant force below Fs, a body that comes to rest.
-  const auto rest = [](Element<double> friction, double duration) {
+  const auto rest = [](Element friction, double duration) {
     LoopParts parts;
     parts.plant = Mass{1.0, 0.5, 0.0};
     parts.controller = pid(3.0, 0.0, 0.0);
@@ -324,7 +328,7 @@ TEST_CASE("applied force: the hunting servo as the band shrinks") {
   const Hunting exact = hunt(servo(stribeck(1.5, 1.0, 1e-2)), 200.0);
   REQUIRE(exact.status == Status::converged);
   REQUIRE(exact.period > 1.0);
-  const auto apart = [&](Element<double> law) {
+  const auto apart = [&](Element law) {
     const Hunting found = hunt(servo(std::move(law)), 200.0);
     CHECK(found.status == Status::converged);
     CHECK(found.steps < 40000);

@@ -33,7 +33,7 @@ TEST_CASE("The error norm of what is not finite is infinite, wherever it stands"
       spoilt[i] = bad;
       CHECK(weights.norm(fine, fine, spoilt) == infinity);
       CHECK(weights.norm(fine, spoilt, {0, 0, 0}) == infinity);
-      CHECK(weights.norm(spoilt, fine, {0, 0, 0}) >= 0);  // never NaN: whatever it is can be compared
+      CHECK(weights.norm(spoilt, fine, {0, 0, 0}) >= 0);  // never NaN, so that it can always be compared
     }
 }
 

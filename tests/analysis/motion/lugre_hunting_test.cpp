@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "limcycle/analysis/motion/controlled_rodas5p.hpp"
-#include "limcycle/analysis/motion/explicit_steppers.hpp"
+#include "limcycle/analysis/motion/steppers/controlled_rodas5p.hpp"
+#include "limcycle/analysis/motion/steppers/explicit_steppers.hpp"
 
 using limcycle::ControlledRodas5p;
 using limcycle::ErrorWeights;
@@ -156,7 +156,7 @@ TEST_CASE("RODAS5P is not misled by a loose tolerance when velocity is weighted 
 }
 
 TEST_CASE("An explicit stepper finds the same motion as RODAS5P where both can go", "[explicit_steppers][lugre]") {
-  // Two codes that share only the right side, over the first slip and the first stick (2 s), state by state.
+  // Two codes that share only the right-hand side, over the first slip and the first stick (2 s), state by state.
   const Hunting loop;
   const auto rhs = [&](const State& x, State& rate, double) { loop.rhs(x, rate); };
   const auto march = [](auto stepper, const auto& system) {

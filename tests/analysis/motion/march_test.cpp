@@ -63,7 +63,7 @@ TEST_CASE("a stuck body stays exactly where it is for a million seconds") {
 }
 
 TEST_CASE("events are located to the accuracy of the stepper: order of the switching time") {
-  // Relay before 1/s with hysteresis: switches at the known times (claim B1), whatever the step.
+  // Relay with hysteresis followed by 1/s: switches at the known times (claim B1), for any step.
   const Loop loop = forward(relay(1.0, 0.1), {1.0}, {1.0, 0.0});
   LoopField field(loop);
   March march(field, StepperKind::dopri5, loop_weights(loop, 1e-3));
@@ -98,7 +98,7 @@ TEST_CASE("crossings of a section stop the march on it, and a start on it does n
 
 TEST_CASE("Zeno switching ends with a status, not a hang") {
   // Double integrator with relay on a combination that chatters: x'' = -sgn(x' + x) slides along x' = -x only if held;
-  // seen through a fast filter the relay cannot hold, so switches accumulate.
+  // behind a fast filter the relay cannot hold, so switches accumulate.
   const Loop loop = forward(relay(1.0), {1.0, 1.0}, {1e-9, 1.0, 0.0, 0.0});
   LoopField field(loop);
   March march(field, StepperKind::rodas5p, loop_weights(loop, 1e-6));

@@ -1,7 +1,11 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/motion/loop_field.hpp"
+#include "limcycle/analysis/motion/field/loop_field.hpp"
+#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/delayed_relay.hpp"
+#include "limcycle/models/element/relay.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -120,7 +124,7 @@ TEST_CASE("saltation: an ideal relay, as claim B1 has it") {
   State rate;
   field.modes() = from.modes;
   field.rate(from.x, rate, 0.0);
-  // The relay switches where -y falls through 0 from above, which is what its mode says.
+  // The relay switches where -y falls through 0 from above; set its mode accordingly.
   if (field.y_rate(rate) < 0.0) from.modes[0] = Mode{-1};
   const auto one = switched(loop, from, 0, same(3, 1e-5));
   CHECK(one.after[0] == Mode{-from.modes[0].value});
@@ -144,7 +148,7 @@ TEST_CASE("saltation: a relay with hysteresis and one with dead zone") {
       field.modes() = {Mode{mode}};
       std::vector<double> g;
       State x{0.0, 0.0};
-      if (mode == 0 && std::get<Relay<double>>(loop.elements[0]).dead_zone == 0.0) continue;
+      if (mode == 0 && law_of<Relay<double>>(loop.elements[0]).dead_zone == 0.0) continue;
       for (std::size_t guard = 0; guard < field.guard_count(); ++guard) {
         // Put y on the guard, which is affine in it, with a rate of y.
         field.modes() = {Mode{mode}};
@@ -217,7 +221,7 @@ TEST_CASE("saltation: break-away from stiction with Fs > Fc") {
 TEST_CASE("saltation: saturation and dead zone, whose output is continuous, leave deviations as they are") {
   DeadZone<double> zone;
   zone.half_width = 0.2;
-  for (const Element<double>& element : {Element<double>(saturation(0.2)), Element<double>(zone)}) {
+  for (const Element& element : {Element(saturation(0.2)), Element(zone)}) {
     const Loop loop = forward(element, {1.0}, {1.0, 2.0, 1.0});
     LoopField field(loop);
     const Eigen::RowVectorXd C = loop.C_y;
@@ -244,7 +248,7 @@ TEST_CASE("saltation: backlash that stops driving resets what it holds, one that
   const Loop loop = forward(backlash, {1.0}, {1.0, 2.0, 1.0});
   const auto n = static_cast<std::size_t>(loop.states());
   LoopField field(loop);
-  // A state in which y turns: y' = 0. The input -y stops rising; the backlash, driven upwards, stands from then on.
+  // A state at which y turns: y' = 0. The input -y stops rising; the backlash, driven upwards, stands from then on.
   Eigen::VectorXd X(2);
   const Eigen::RowVectorXd velocity = loop.ports[0].C_v;
   REQUIRE(velocity.squaredNorm() > 0.0);
@@ -280,7 +284,7 @@ TEST_CASE("saltation: a delayed relay keeps when it was told") {
   field.start(x, 0.0);
   const auto timer = field.first_state(0);
   const State sizes = same(x.size(), 1e-5);
-  // The input passes 0: a decision is pending, and how early it came is how early it will come out.
+  // The input passes 0: a decision is pending, and a shift of its start shifts its end by as much.
   for (auto& value : x) value = 0.0;
   x[0] = 0.0;
   LoopState from{x, field.modes()};

@@ -1,6 +1,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "limcycle/models/friction/bristle/elasto_plastic.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/bristle/non_drift.hpp"
+#include "limcycle/models/friction/dry/coulomb.hpp"
+#include "limcycle/models/friction/dry/karnopp.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
+#include "limcycle/models/friction/sliders/gms.hpp"
 #include "limcycle/tests/cycle_knobs.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 

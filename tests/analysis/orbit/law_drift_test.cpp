@@ -1,9 +1,10 @@
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/orbit/simulate.hpp"
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
+#include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 
-// A mass on every friction law, pushed to and fro with a biased force below sliding: does it wander off?
+// A mass on every friction law, pushed back and forth with a biased force below sliding, to test for drift.
 using namespace limcycle;
 using namespace limcycle::test;
 
@@ -12,8 +13,7 @@ namespace {
 /// Displacements of 1 kg at the end of each cycle of a force that goes from F1 to F2, waits, goes back and waits, each
 /// for T/4. The plant's own damping is such that the mass follows without ringing on a spring a hundred times as stiff
 /// as `stiffness`.
-std::vector<double> positions(const Element<double>& law, double F1, double F2, double T, int cycles,
-                              double stiffness) {
+std::vector<double> positions(const Element& law, double F1, double F2, double T, int cycles, double stiffness) {
   LoopParts parts;
   parts.plant = Mass{1.0, 20.0 * std::sqrt(stiffness), 0.0};
   parts.friction = law;
@@ -66,7 +66,7 @@ TEST_CASE("friction laws: no drift below the force claimed, after shakedown, and
 }
 
 TEST_CASE("dahl and slow lugre drift by (Fs/sigma0) ln[(1 - (F1/Fs)^2)/(1 - (F2/Fs)^2)] a cycle (claim D3)") {
-  const auto check = [](const Element<double>& law) {
+  const auto check = [](const Element& law) {
     const auto y = positions(law, 0.5, 1.0, 3000.0, 4, 1e5);
     CHECK(y.back() - y[y.size() - 2] == Approx(7.050054e-6).epsilon(1e-3));
   };

@@ -3,12 +3,14 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/orbit/measure.hpp"
-#include "limcycle/analysis/orbit/settle.hpp"
+#include "limcycle/analysis/orbit/cycle/measure.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/models/friction/bristle/non_drift.hpp"
+#include "limcycle/models/friction/sliders/xiong.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 #include "limcycle/tests/loops.hpp"
 
-// Cycles of laws that remember more than one period: what they keep is not dynamics, and several unequal swings may
+// Cycles of laws whose memory lasts more than one period: kept states are not dynamics, and several unequal swings may
 // make one period.
 using namespace limcycle;
 using namespace limcycle::test;
@@ -62,10 +64,10 @@ TEST_CASE("a servo with the non-drift law hunts: one cycle of each history, stab
   CHECK(cycle.stable == true);
   CHECK(cycle.remembered > 0);
   for (const auto& value : cycle.multipliers) CHECK(std::abs(value) < 0.01);
-  // Plain simulation, without any shooting, comes to the same period.
+  // Plain simulation, without any shooting, gives the same period.
   CHECK(plain_period(loop, 0.1, 300.0, 0.02, 1) == Approx(cycle.period).epsilon(1e-6));
 
-  // Another history, outer return points moved apart: another cycle beside it, and the map keeps what was changed.
+  // Another history, with outer return points moved apart: another cycle close to it, and the map keeps the change.
   LoopState other = cycle.start;
   const auto outer = static_cast<std::size_t>(loop.states()) + 1;
   REQUIRE(other.x[outer] > 0.0);
@@ -84,7 +86,7 @@ TEST_CASE("laws that forget keep all their multipliers") {
 }
 
 TEST_CASE("a servo with Xiong's law repeats after three unequal swings each way") {
-  // Ten elements, as the source thesis prints them.
+  // Ten elements, as printed in the source thesis.
   std::vector<double> K, sigma, lambda;
   for (int i = 0; i < 10; ++i) {
     K.push_back(1000.0 + 800.0 * i);

@@ -3,10 +3,11 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/orbit/ensemble.hpp"
-#include "limcycle/analysis/orbit/irregular.hpp"
-#include "limcycle/analysis/orbit/settle.hpp"
-#include "limcycle/analysis/orbit/standstill.hpp"
+#include "limcycle/analysis/orbit/settle/irregular.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/orbit/settle/standstill.hpp"
+#include "limcycle/analysis/orbit/simulate/ensemble.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/gantry.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -23,7 +24,7 @@ Settled settled(const Loop& loop, const LoopState& start, double floor = 1e-9) {
   return settle(loop, start, options);
 }
 
-/// The outcome, which an ensemble must find too.
+/// The outcome, which an ensemble must find as well.
 Settled from(const Loop& loop, double displacement, double floor = 1e-9) {
   const LoopState start = displaced(loop, displacement);
   const Settled found = settled(loop, start, floor);
@@ -36,7 +37,7 @@ Settled from(const Loop& loop, double displacement, double floor = 1e-9) {
   return found;
 }
 
-/// Residual of A X + B w + E ext at a state, outputs as the elements have them in its modes.
+/// Residual of A X + B w + E ext at a state, with the outputs of the elements in its modes.
 double residual(const Loop& loop, const Standstill& at, const std::vector<Mode>& modes) {
   LoopField field(loop);
   field.modes() = modes;
@@ -158,7 +159,7 @@ TEST_CASE("an ideal relay behind two lags rests through ever faster switching") 
       CHECK(found.why.find("0.386") != std::string::npos);  // (0.516 + 0.642)/3: q/3 of the transfer function
     }
   }
-  // Beyond what the relay can hold (level over gain at rest: 0.2628) it rests away from the surface.
+  // Beyond the range that the relay can hold (level over gain at rest: 0.2628) it rests away from the surface.
   const auto beyond = from(two_lags(0.3), 0.01);
   CHECK(beyond.outcome == Outcome::rest);
   CHECK(beyond.by.empty());
@@ -322,4 +323,33 @@ TEST_CASE("Stribeck curves with infinite slope at rest are marched") {
     CHECK(found.shot->cycle.period != last);
     last = found.shot->cycle.period;
   }
+}
+
+TEST_CASE("rest: a body that a limited command cannot break away stays where it is while the integrator winds up") {
+  LoopParts parts = servo_parts(stribeck(1.5, 1.0, 0.01));
+  Pid controller = pid(3.0, 4.0, 6.0);
+  controller.saturation = 1.4;
+  parts.controller = controller;
+  for (const double displacement : {1.0, -20.0}) {
+    const Settled found = from(build_loop(parts), displacement);
+    CHECK(found.outcome == Outcome::rest);
+    CHECK(found.time < 1e6);
+  }
+  controller.saturation = 1.6;  // a little more, and it breaks away again and again
+  parts.controller = controller;
+  CHECK(from(build_loop(parts), 1.0).outcome == Outcome::cycle);
+}
+
+TEST_CASE("divergence: swings that grow like a power of time have no bound") {
+  TurningPoints power, fades, grows;
+  for (int n = 0; n < 400; ++n) {
+    const double sign = n % 2 == 0 ? 1.0 : -1.0;
+    const auto feed = [&](TurningPoints& turning, double size) { turning.feed(n, sign * size); };
+    feed(power, 1.0 + std::pow(n, 0.6));
+    feed(fades, 5.0 - 4.0 * std::exp(-0.01 * n));
+    feed(grows, std::exp(0.01 * n));
+  }
+  CHECK(grows_like_a_power(power));
+  CHECK_FALSE(grows_like_a_power(fades));  // comes to 5
+  CHECK_FALSE(grows_like_a_power(grows));  // leaves an unstable rest, for a cycle perhaps
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The tests are written for Catch2 2 (Debian 12). With Catch2 3 (Debian 13, Ubuntu 24.04) this header stands in its
-// place and offers the names that version 3 moved or renamed.
+// The tests are written for Catch2 2 (Debian 12). With Catch2 3 (Debian 13, Ubuntu 24.04) this header replaces its own
+// and offers the names that version 3 moved or renamed.
 #include <catch2/catch_all.hpp>
 #include <concepts>
 #include <string>
@@ -9,8 +9,8 @@
 namespace Catch {
 namespace Matchers {
 
-/// Version 3 means ranges by this name and calls the matcher of texts ContainsSubstring. More constrained than the
-/// template of version 3, so that a text always finds this one.
+/// In version 3 this name matches ranges, and ContainsSubstring matches texts. More constrained than the template of
+/// version 3, so that a text always selects this one.
 template <class Text>
 requires std::convertible_to<Text, std::string> StringContainsMatcher Contains(Text&& text) {
   return ContainsSubstring(std::forward<Text>(text));

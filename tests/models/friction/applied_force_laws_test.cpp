@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/models/friction/awrejcewicz.hpp"
-#include "limcycle/models/friction/karnopp.hpp"
-#include "limcycle/models/friction/quinn.hpp"
-#include "limcycle/models/friction/wojewoda.hpp"
+#include "limcycle/models/friction/dry/awrejcewicz.hpp"
+#include "limcycle/models/friction/dry/karnopp.hpp"
+#include "limcycle/models/friction/dry/quinn.hpp"
+#include "limcycle/models/friction/dry/wojewoda.hpp"
 
 using namespace limcycle;
 
@@ -102,7 +102,7 @@ TEST_CASE("Quinn and Awrejcewicz: the band, case by case, and continuity across 
                                                  : (2.0 * A3 - 1.0) * 1.5 * sgn;
     CHECK(fresh(smooth, v, Fe) == Approx(published + viscous));
   }
-  // Over the edge of the band: continuous, or a fall from Fs to g(dv).
+  // At the edge of the band: continuous, or a fall from Fs to g(dv).
   const double in = 1e-3 * (1.0 - 1e-12), out = 1e-3 * (1.0 + 1e-12);
   for (const double Fe : {-2.0, 0.7, 2.0}) {
     CHECK(fresh(quinn, in, Fe) == Approx(fresh(quinn, out, Fe)).epsilon(1e-10));

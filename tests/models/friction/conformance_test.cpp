@@ -2,10 +2,11 @@
 #include <random>
 #include <set>
 
+#include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 #include "limcycle/tests/law_march.hpp"
 
-// What every friction law must hold to: each test runs over the whole list of laws and the samples of each.
+// Requirements for every friction law: each test runs over the whole list of laws and the samples of each.
 using namespace limcycle;
 using namespace limcycle::test;
 
@@ -32,7 +33,7 @@ LawMarch<Law> march_of(const Law& law, const Sample& sample) {
   return LawMarch<Law>(law, steps_of(law, sample));
 }
 
-/// Strokes of all lengths and speeds by the scales of a law, some of which go on in the direction of the last one.
+/// Strokes of all lengths and speeds on the scales of a law, some of which continue in the direction of the last one.
 /// `after` is called at the end of each.
 template <class Law>
 void wander(LawMarch<Law>& march, const Law& scaled_as, const Sample& sample, unsigned seed, double sign,
@@ -50,7 +51,7 @@ void wander(LawMarch<Law>& march, const Law& scaled_as, const Sample& sample, un
   }
 }
 
-/// The same law for the mirrored motion: levels of the two directions change places.
+/// The same law for the mirrored motion: the levels of the two directions are exchanged.
 template <class Law>
 Law reflected(Law law) {
   if constexpr (requires { law.Fs_minus; }) {
@@ -96,8 +97,8 @@ bool is_reflected(const Law& law, const Law& other, const Input<double>& in, Mod
   return same;
 }
 
-/// Runs `check(law, sample)` on every sample of every law: of those that have a value under any prescribed motion, or
-/// of those that need the applied force near rest.
+/// Runs `check(law, sample)` on every sample of every law: of those defined under any prescribed motion, or of those
+/// that need the applied force near rest.
 void for_laws(auto&& check, bool with_band = false) {
   FrictionLaws::for_each([&]<template <class> class Kind>() {
     for_samples<Kind>([&](const auto& law, const Sample& sample) {

@@ -1,10 +1,24 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "limcycle/models/friction/bristle/bouc_wen.hpp"
+#include "limcycle/models/friction/bristle/dahl.hpp"
+#include "limcycle/models/friction/bristle/elasto_plastic.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/bristle/lugre_spline.hpp"
+#include "limcycle/models/friction/bristle/non_drift.hpp"
+#include "limcycle/models/friction/dry/kikuuwe.hpp"
+#include "limcycle/models/friction/dry/wojewoda.hpp"
+#include "limcycle/models/friction/sliders/gms.hpp"
+#include "limcycle/models/friction/sliders/iwan.hpp"
+#include "limcycle/models/friction/sliders/jenkins.hpp"
+#include "limcycle/models/friction/sliders/leuven.hpp"
+#include "limcycle/models/friction/sliders/maxwell_slip.hpp"
+#include "limcycle/models/friction/sliders/xiong.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 #include "limcycle/tests/law_march.hpp"
 
-// Laws that become one another in a limit: the same forces on the same way; and closed forms of two of them.
+// Laws that become one another in a limit: the same forces on the same path; and closed forms of two of them.
 using namespace limcycle;
 using namespace limcycle::test;
 
@@ -12,8 +26,7 @@ namespace {
 
 const std::vector<double> one{1.0};
 
-/// Largest difference of the forces of two laws on a way of random strokes of up to 6 L at speeds of about v, looked at
-/// while moving.
+/// Largest difference in motion of the forces of two laws on random strokes of up to 6 L at speeds of about v.
 template <class A, class B>
 double difference(const A& a, const B& b, double L, double v, MarchSteps steps = {}) {
   steps.displacement = std::min(steps.displacement, 0.02 * L);
@@ -153,7 +166,7 @@ TEST_CASE("dahl and slow lugre: minor loops contract by exp(-sigma0 (x2 - x1)/Fs
 }
 
 TEST_CASE("lugre as published gives work away (claim D2), and does not at sigma2 = 158.2") {
-  // A slow slide loads the bristle to Fs/sigma0; then comes a leap of speed to V over X.
+  // A slow slide loads the bristle to Fs/sigma0; then the speed jumps to V over X.
   const auto work_of_leap = [](double sigma2) {
     const auto law = made<LuGre<double>>(with(bristle, {{"sigma1", root}, {"sigma2", sigma2}}));
     LawMarch march(law, {1e-8, infinite, infinite});

@@ -3,7 +3,8 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "limcycle/models/elements.hpp"
+#include "limcycle/models/catalogue.hpp"
+#include "limcycle/models/element/element.hpp"
 #include "limcycle/tests/loops.hpp"
 #include "limcycle/tests/own_laws.hpp"
 
@@ -13,19 +14,19 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// F = 1 + v: as little as a law can say.
+/// F = 1 + v: a law with the required members only.
 struct Bare {
   double output(const Input<double>& in, Mode, std::span<const double>) const { return 1.0 + in.v; }
   Scales scales() const { return {.velocity = 1.0, .output = 1.0}; }
 };
 
-/// One that claims to be odd, and is not.
+/// A law that wrongly claims to be odd.
 struct Crooked : Bare {
   static constexpr std::string_view kind = "crooked";
   bool odd() const { return true; }
 };
 
-/// One whose force changes along the way.
+/// A law whose force changes along the path.
 struct Washboard : Bare {
   double output(const Input<double>& in, Mode, std::span<const double>) const { return in.v + std::sin(in.x); }
 };
@@ -52,19 +53,16 @@ struct Broken : Bare {
 
 }  // namespace
 
-static_assert(ElementOn<OwnLaw<double>, double> && HasModes<OwnLaw<double>, double>);
-static_assert(!CanHold<OwnLaw<double>> && !NeedsDrive<OwnLaw<double>> && NeedsRate<OwnLaw<double>>);
-
 TEST_CASE("an own law says what its type says, and what is missing is filled in") {
   const NamedLuGre mine;
   const auto law = own_law(mine);
-  const std::vector<double> z{3e-6, 99.0};  // what follows belongs to others
+  const std::vector<double> z{3e-6, 99.0};  // the second number is not part of its state
   const Input<double> in{0.2, 5e-4, infinite};
   double dz[1];
   law.rate(in, {}, z, dz);
   CHECK(law.output(in, {}, z) == mine.output(in, {}, z));
   CHECK(dz[0] == mine.z_rate(in.v, z[0]));
-  CHECK(law.name() == "my-lugre");
+  CHECK(law.kind() == "my-lugre");
   CHECK(law.odd());
   CHECK(law.state_scale(0) == 1.5 / 1e5);
   CHECK(law.has_storage());
@@ -73,7 +71,7 @@ TEST_CASE("an own law says what its type says, and what is missing is filled in"
   CHECK_FALSE(law.knows_sliding());
 
   const auto bare = own_law(Bare{});
-  CHECK(bare.name() == "own-law");
+  CHECK(bare.kind() == "own-law");
   CHECK(bare.states() == 0);
   CHECK(bare.guards({}) == 0);
   CHECK_FALSE(bare.odd());
@@ -82,10 +80,10 @@ TEST_CASE("an own law says what its type says, and what is missing is filled in"
 }
 
 TEST_CASE("an own law is a friction law, by its own name, which no case can name") {
-  const Element<double> element = own_law(NamedLuGre{});
-  CHECK(is_friction(element));
-  CHECK(kind_of(element) == "my-lugre");
-  FrictionLaws::for_each([]<template <class> class Kind>() { CHECK(Kind<double>::kind != OwnLaw<double>::kind); });
+  const Element element = own_law(NamedLuGre{});
+  CHECK(element.is_friction());
+  CHECK(element.kind() == "my-lugre");
+  CHECK(find_kind(catalogue_of_elements().friction_laws, "own-law") == nullptr);
 }
 
 TEST_CASE("whether an own law follows its position is found out") {
@@ -113,5 +111,5 @@ TEST_CASE("an own law stands in a loop where any friction law stands") {
   const Loop loop = servo(own_law(NamedLuGre{}));
   REQUIRE(loop.elements.size() == 1);
   CHECK(loop.ports[0].rubs);
-  CHECK(kind_of(loop.elements[0]) == "my-lugre");
+  CHECK(loop.elements[0].kind() == "my-lugre");
 }

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <vector>
 
-#include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/concepts.hpp"
 
 namespace limcycle::test {
 
-/// Walks a rate-independent law with return points along a path, event by event and without any error of integration:
-/// its first state moves with the input, and all guards but the first are ways that are left.
+/// Moves a rate-independent law with return points along a path, event by event and without any error of integration:
+/// its first state moves with the input, and all guards except the first are paths left.
 template <class Law>
 struct PathWalk {
   Law law;

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/models/friction/jenkins.hpp"
-#include "limcycle/models/friction/maxwell_slip.hpp"
+#include "limcycle/models/friction/sliders/jenkins.hpp"
+#include "limcycle/models/friction/sliders/maxwell_slip.hpp"
 
 using namespace limcycle;
 
@@ -121,7 +121,7 @@ TEST_CASE("maxwell-slip: dissipation of a cycle is 4 W (A - h), element by eleme
   double work = 0.0;
   Path path(law);
   path.move(A);
-  const int steps = 4000;  // the force is piecewise linear: trapezia are exact but at the kinks
+  const int steps = 4000;  // the force is piecewise linear: trapezia are exact except at the kinks
   for (int half = 0; half < 2; ++half)
     for (int j = 0; j < steps; ++j) {
       const double dx = (half == 0 ? -2.0 : 2.0) * A / steps, before = path.force();
@@ -193,7 +193,7 @@ TEST_CASE("claim A8: its digits survive amplitudes of many yields, and its limit
                           .epsilon(1e-13 + ratio * ratio));
     CHECK(N.imag() == Approx(4.0 * ratio / std::numbers::pi * (1.0 - ratio)).epsilon(1e-15));
   }
-  // Both forms of the real part meet where they change over (h/A = sin^2(1/4)).
+  // Both forms of the real part agree at the transition between them (h/A = sin^2(1/4)).
   const double ratio = std::pow(std::sin(0.25), 2);
   CHECK(stop_gain(1.0, ratio * (1.0 - 1e-12), 1.0).real() ==
         Approx(stop_gain(1.0, ratio * (1.0 + 1e-12), 1.0).real()).epsilon(1e-11));

@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 #include <regex>
 
+#include "limcycle/models/element/quantizer.hpp"
+#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/reports/figures/block_words.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/tests/reports/markup.hpp"
@@ -38,7 +41,7 @@ LoopParts servo() {
   return parts;
 }
 
-/// Everything that a loop can have, with polynomials that do not fit on a line.
+/// A loop with all possible parts, and polynomials that do not fit on a line.
 LoopParts everything() {
   LoopParts parts = servo();
   TransferFunctionController controller;
@@ -120,7 +123,7 @@ TEST_CASE("block diagram: a servo shows each of its numbers with its unit") {
   CHECK(holds(svg,
               "<title>lugre (Fc = 1 N, Fs = 1.5 N, vs = 0.001 m/s, sigma0 = 1e+05 N/m, sigma1 = "
               "316.22776601683796 N s/m). "));
-  CHECK_FALSE(holds(svg, "ki = "));  // not written, and 0 by default
+  CHECK_FALSE(holds(svg, "ki = "));  // not written, with the default 0
   CHECK_FALSE(holds(svg, "saturation"));
   check_drawing(servo(), 3);
 }
@@ -132,7 +135,7 @@ TEST_CASE("block diagram: everything a loop can have is drawn once, and nothing 
                             ">0.9 N sgn(v)<", ">saturation<", ">±10 N<", ">lag<", ">0.01 s + 1<", ">element: relay<",
                             ">load = −0.5 N<", ">r = t × 0.001 m/s<"})
     CHECK(count(svg, words) == 1);
-  // The whole of a list that is cut stands in the title and in the label.
+  // A list that is cut is complete in the title and in the label.
   CHECK(count(svg, "3.141592653589793") == 2);
 }
 

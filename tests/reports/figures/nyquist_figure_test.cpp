@@ -10,7 +10,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// N depends on frequency: 25 members, of which -1/N = (A, w / 100). One root, at the place of one of its points.
+/// N depends on frequency: 25 members, with -1/N = (A, w / 100). One root, at one of its points.
 PredictReport walking(double root_imaginary) {
   PredictReport report = sample::hunting();
   auto& picture = report.nyquist;

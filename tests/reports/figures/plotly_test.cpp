@@ -43,7 +43,7 @@ TEST_CASE("the embedded script cannot end the element it stands in") {
   const std::string script = lower_case(limcycle::plotly_script());
   REQUIRE(script.size() > 1'000'000);
   CHECK(script.find("</script") == std::string::npos);
-  // `<!--` followed by `<script` would make the browser overlook the closing tag.
+  // `<!--` followed by `<script` would make the browser ignore the closing tag.
   CHECK(script.find("<!--") == std::string::npos);
   CHECK(script.find('\0') == std::string::npos);
 }

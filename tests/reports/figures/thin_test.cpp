@@ -25,7 +25,7 @@ TEST_CASE("a thinned trace keeps ends, extremes and corners") {
   CHECK(greatest(trace.y) > 0.995);
   CHECK(greatest(trace.rate) > 0.995);
   CHECK(greatest(trace.output) > 0.99);
-  // Linear interpolation between what is kept gives the rest back.
+  // Linear interpolation between the kept samples reproduces the others.
   double worst = 0.0;
   for (std::size_t k = 0; k + 1 < kept.index.size(); ++k) {
     const auto a = kept.index[k], b = kept.index[k + 1];

@@ -21,9 +21,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// What is left of files when the power goes: what they held when they were last made durable, and nothing of what was
-/// written since; and those that were removed, unless their folder was made durable afterwards. No file system is
-/// worse.
+/// Files after a loss of power: their content when they were last made durable, without later writes; and removed
+/// files, unless their folder was made durable afterwards. No file system is worse.
 struct PowerLoss {
   std::atomic<bool> watching{false};
   std::string folder;
@@ -48,7 +47,7 @@ void keep_as_durable(int descriptor) {
 
 }  // namespace
 
-// In place of those of the C library, for SQLite too: a program's own definitions come first.
+// Replace those of the C library, for SQLite too: a program's own definitions come first.
 extern "C" int fsync(int descriptor) {
   const auto result = static_cast<int>(syscall(SYS_fsync, descriptor));
   keep_as_durable(descriptor);
@@ -66,7 +65,7 @@ constexpr std::size_t crash_points = 12000, crash_block = 4;
 constexpr int crash_threads = 2;
 constexpr StoreOptions crash_options{.interval = 0.005, .waiting = 64};
 
-/// What a process that is killed leaves behind for the one that killed it.
+/// Counters that survive a killed process, shared with the one that killed it.
 struct Witness {
   std::atomic<int> begun{0};                     ///< computations, of this process
   std::atomic<int> computed[crash_points] = {};  ///< times that a point was begun, of all processes
@@ -88,7 +87,7 @@ class SharedWitness {
   Witness* witness_;
 };
 
-/// A sweep into a store, with --resume, each point of which takes so long.
+/// A sweep into a store, with --resume, in which each point takes `each`.
 int sweep_into(const std::string& path, const SharedWitness& witness, std::chrono::microseconds each) {
   SweepStore store(path, sweep_identity(crash_points), true, crash_options);
   const SweepTask task{crash_points, 3, crash_block, [&](std::span<const std::size_t> points, std::span<double> rows) {
@@ -108,7 +107,7 @@ int sweep_into(const std::string& path, const SharedWitness& witness, std::chron
   return status == Status::converged ? 0 : 1;
 }
 
-/// Lets it live for `life`, from its beginning or from its first computation, and kills it. False: it ended by itself.
+/// Kills the process `life` after its start or after its first computation. False: it ended by itself.
 bool kill_after(pid_t pid, std::chrono::microseconds life, bool from_computing, const SharedWitness& witness) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::seconds(20);
@@ -119,7 +118,7 @@ bool kill_after(pid_t pid, std::chrono::microseconds life, bool from_computing, 
   return end_of(pid) == 1000 + SIGKILL;
 }
 
-/// The points that are stored; none where the process was killed before there was a store.
+/// The stored points; empty if the process was killed before there was a store.
 std::vector<bool> stored_points(const std::string& path) {
   try {
     return read_store(path).known;
@@ -164,11 +163,11 @@ TEST_CASE("a sweep that is killed at random fifty times computes again only what
     most_lost = std::max(most_lost, again);
     stored = now;
   }
-  // One transaction under way, one waiting, and a block on each thread.
+  // One transaction in progress, one waiting, and a block on each thread.
   CHECK(most_lost <= 2 * (crash_options.waiting + crash_block) + crash_threads * crash_block);
   const auto known = std::count(stored.begin(), stored.end(), true);
   CHECK(known > 0);
-  CHECK(known < static_cast<long>(crash_points));  // else the last ones were not killed at work
+  CHECK(known < static_cast<long>(crash_points));  // else the last processes were not killed at work
   REQUIRE(end_of(in_child([&] { return sweep_into(path, witness, std::chrono::microseconds(0)); })) == 0);
   for (std::size_t i = 0; i < crash_points; ++i)
     if (witness->computed[i] != 1 + lost[i])
@@ -237,7 +236,7 @@ TEST_CASE("a full disk ends a sweep with what is stored, which is whole and goes
     const std::string words = scratch.get("words");
     CHECK_THAT(words, Catch::Matchers::StartsWith("failed " + path));
     if (!std::filesystem::exists(path)) {
-      CHECK(room == 2000);  // no room for an empty one: nothing is left behind
+      CHECK(room == 2000);  // no room for an empty store: nothing remains
       continue;
     }
     const StoredSweep left = read_store(path);

@@ -30,7 +30,7 @@ inline SweepIdentity sweep_identity(std::size_t points = 100) {
           .isa = "avx2"};
 }
 
-/// A row with numbers of every kind, a NaN that carries its point among them.
+/// A row with numbers of every kind, among them a NaN whose payload is its point.
 inline std::vector<double> store_row(std::size_t point) {
   switch (point % 4) {
     case 0:
@@ -57,7 +57,7 @@ inline std::vector<std::size_t> points_from(std::size_t first, std::size_t end) 
   return points;
 }
 
-/// Those points, handed over.
+/// Hands those points over to the store.
 inline void fill(SweepStore& store, std::size_t first, std::size_t end) {
   const auto points = points_from(first, end);
   store.write(points, store_rows(points));
@@ -69,7 +69,7 @@ inline std::vector<std::uint64_t> bits_of(std::span<const double> numbers) {
   return bits;
 }
 
-/// What opening that store is refused with; empty if it is not.
+/// Error on opening that store; empty if there is none.
 inline std::string store_refusal(const std::string& path, const SweepIdentity& identity, bool resume,
                                  StoreError::Kind kind = StoreError::Kind::refused) {
   try {
@@ -81,7 +81,7 @@ inline std::string store_refusal(const std::string& path, const SweepIdentity& i
   return {};
 }
 
-/// Runs `work` in a process of its own, which ends with what it returns, and without destructors.
+/// Runs `work` in a child process, whose exit code is its result, without destructors.
 template <class Work>
 pid_t in_child(const Work& work) {
   const pid_t pid = fork();
@@ -95,7 +95,7 @@ pid_t in_child(const Work& work) {
   _exit(code);
 }
 
-/// How it ended: its exit code, or 1000 + the signal.
+/// Exit code of a child process, or 1000 + the signal.
 inline int end_of(pid_t pid) {
   int status = 0;
   waitpid(pid, &status, 0);

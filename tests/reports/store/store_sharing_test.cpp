@@ -15,7 +15,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// How many points are stored, once they are so many; what there is after 20 s.
+/// Number of stored points, as soon as it reaches `wanted`; else that after 20 s.
 std::size_t stored_soon(const std::string& path, std::size_t wanted) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   for (;;) {
@@ -37,7 +37,7 @@ TEST_CASE("one writer at a time: in this process, in another one, under another 
     std::filesystem::create_symlink(path, scratch.file("link.store"));
     CHECK_THAT(store_refusal(scratch.file("link.store"), sweep_identity(), true), Contains("is being written"));
     fill(store, 0, 50);
-    store.flush();  // the refusals have cost it nothing
+    store.flush();  // the refusals did not affect it
     const pid_t other = in_child([&] {
       try {
         const SweepStore second(path, sweep_identity(), true);
@@ -59,7 +59,7 @@ TEST_CASE("a store is read while it is written, always a whole moment of it") {
   const std::string path = scratch.file("a.store");
   constexpr std::size_t points = 20000, block = 10;
   SweepStore store(path, sweep_identity(points), false, {.interval = 0.001, .waiting = 1000});
-  std::atomic<std::size_t> between{0};  // times that the reader saw a part
+  std::atomic<std::size_t> between{0};  // number of reads that saw a part
   std::jthread writer([&] {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     for (std::size_t first = 0; first < points; first += block) {
@@ -76,7 +76,7 @@ TEST_CASE("a store is read while it is written, always a whole moment of it") {
     REQUIRE(std::ranges::count(now.known, true) == static_cast<long>(now.activity.known));
     REQUIRE(now.activity.known == now.activity.session_rows);
     REQUIRE(now.activity.known % block == 0);
-    // They are written in order: what is there is the beginning.
+    // They are written in order: the stored ones are the beginning.
     const auto some = points_from(0, now.activity.known);
     REQUIRE(bits_of(std::span(now.rows).first(3 * some.size())) == bits_of(store_rows(some)));
     between += now.activity.known > 0 && now.activity.known < points ? 1U : 0U;
@@ -101,7 +101,7 @@ TEST_CASE("no more rows wait than may, however long the interval") {
   SweepStore store(path, sweep_identity(), false, {.interval = 3600.0, .waiting = 10});
   for (std::size_t first = 0; first < 95; first += 5) {
     fill(store, first, first + 5);
-    // Those that wait, and those of the transaction under way.
+    // Those waiting, and those of the transaction in progress.
     CHECK(stored_soon(path, first < 20 ? 0 : first - 20) + 20 >= first);
   }
   store.flush();

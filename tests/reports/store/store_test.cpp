@@ -64,7 +64,7 @@ TEST_CASE("a store gives back every bit and its identity, and is one file when i
   CHECK(stored.identity.columns == wanted.columns);
   CHECK(stored.identity.points == 100);
   CHECK(stored.identity.isa == wanted.isa);
-  CHECK(files_beside(path) == 1);  // reading leaves nothing behind
+  CHECK(files_beside(path) == 1);  // reading creates no file
 }
 
 TEST_CASE("a store goes on where it ended, and counts its sessions") {
@@ -74,7 +74,7 @@ TEST_CASE("a store goes on where it ended, and counts its sessions") {
   {
     SweepStore store(path, sweep_identity(), true);
     fill(store, 10, 25);
-  }  // closing stores what waits
+  }  // closing stores waiting rows
   SweepStore store(path, sweep_identity(), true);
   std::vector<bool> expected(100);
   std::fill(expected.begin() + 10, expected.begin() + 25, true);
@@ -145,7 +145,7 @@ TEST_CASE("what is not a store is refused and left alone") {
              Contains("is not a file"));
   CHECK_THAT(reading_refusal(scratch.file("none.store")), Contains("does not exist"));
   CHECK(files_beside(text) == 2);
-  // An empty file holds nothing that could be lost.
+  // An empty file holds no data to lose.
   CHECK(store_refusal(scratch.put("empty", ""), sweep_identity(), false).empty());
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("a damaged store is refused, and nothing of it is taken for a result")
   };
   refused(whole.substr(0, whole.size() / 2));
   refused(whole.substr(0, whole.size() - 4096));
-  // One bit of a number is nothing that the database notices.
+  // The database does not detect a changed bit of a number.
   const std::string third("\x55\x55\x55\x55\x55\x55\xd5\x3f", 8);
   const auto at = whole.find(third);
   REQUIRE(at != std::string::npos);

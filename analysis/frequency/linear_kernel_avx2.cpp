@@ -1,7 +1,0 @@
-#include "limcycle/analysis/frequency/linear_kernel_body.hpp"
-
-namespace limcycle {
-
-constinit const LinearKernels avx2_linear_kernels = linear_kernels<Pack<4, Isa::avx2>>();
-
-}  // namespace limcycle

@@ -1,0 +1,327 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "limcycle/analysis/dense_elimination.hpp"
+#include "limcycle/analysis/frequency/march/prescribed_motion.hpp"
+#include "limcycle/analysis/frequency/march/radau_iia.hpp"
+#include "limcycle/models/dual.hpp"
+#include "limcycle/models/element/element.hpp"
+
+namespace limcycle {
+
+/// State of an element during a march, with the derivative of z by the initial state.
+struct ElementState {
+  Mode mode;
+  std::vector<double> z;
+  std::vector<double> sensitivity;  ///< n x n, row-major
+};
+
+/// Radau IIA collocation of one element on one panel of prescribed motion, in one mode: Newton with the exact Jacobian
+/// (one iteration if the law is linear in its state) and, from the same elimination, the derivative of the final state
+/// by the initial state of the march. Cost of a panel: (s m)^3/3 multiplications for the m states that move, m s^3/3
+/// where their dependence has no cycle, and about 3 s evaluations per state.
+template <Motion M = PrescribedMotion>
+class CollocationPanel {
+ public:
+  CollocationPanel(const Element& element, const M& motion, int stages)
+      : element_(element),
+        dual_(element.on<Dual<1>>()),
+        motion_(motion),
+        table_(radau_iia(stages)),
+        s_(static_cast<std::size_t>(stages)),
+        n_(static_cast<std::size_t>(element.states())),
+        drive_is_of_rate_(drive_is_of_rate(element)) {
+    nodes_.resize(s_);
+    z_.resize(s_ * n_);
+    rates_.resize(s_ * n_);
+    jacobians_.resize(s_ * n_ * n_);
+    if (n_ > 2) wide_.emplace(element.on<Dual<width>>());
+    trial_.resize(n_);
+    trial_rate_.resize(n_);
+  }
+
+  std::size_t stages() const { return s_; }
+  double node_fraction(std::size_t stage) const { return table_.c[stage]; }
+  double weight(std::size_t stage) const { return table_.b[stage]; }
+  const MotionNode& node(std::size_t stage) const { return nodes_[stage]; }
+  std::span<const double> state(std::size_t stage) const { return {z_.data() + stage * n_, n_}; }
+  bool finite() const { return n_ == 0 || std::isfinite(rates_.front()); }
+  long evaluations() const { return evaluations_; }
+
+  /// State and sensitivity at the end of the panel.
+  void end(ElementState& state) const {
+    std::copy(z_.end() - static_cast<std::ptrdiff_t>(n_), z_.end(), state.z.begin());
+    std::copy(sensitivities_.begin(), sensitivities_.end(), state.sensitivity.begin());
+  }
+
+  /// The collocation polynomial at the part t of the panel that began in `state`.
+  void interpolate(double t, const ElementState& state, std::span<double> z) const {
+    std::array<double, RadauIIA::most_stages + 1> weights;
+    table_.interpolation(t, weights);
+    for (std::size_t p = 0; p < n_; ++p) {
+      z[p] = weights[0] * state.z[p];
+      for (std::size_t i = 0; i < s_; ++i) z[p] += weights[i + 1] * z_[i * n_ + p];
+    }
+  }
+
+  /// Motion at one phase. The drive has the sign of the acceleration if the law's signal is the rate (friction), the
+  /// sign of the direction of motion on this panel if it is the input.
+  MotionNode node_at(int anchor, double local) const {
+    MotionNode node = motion_.at(anchor, local);
+    node.in.drive = std::copysign(infinite, drive_is_of_rate_ ? node.slope : direction_);
+    return node;
+  }
+
+  /// Carries `state` from `from` to `to` in its present mode. False if Newton failed: see hold_or_relax.
+  bool solve(int anchor, double from, double to, const ElementState& state) {
+    place_nodes(anchor, from, to);
+    if (n_ == 0) return true;
+    sensitivities_ = state.sensitivity;
+    const double step = (to - from) / motion_.frequency();
+    for (std::size_t i = 0; i < s_; ++i)
+      for (std::size_t p = 0; p < n_; ++p) z_[i * n_ + p] = state.z[p];
+    double before = infinite;
+    for (int iteration = 0; iteration < 12; ++iteration) {
+      double stiffness = 0.0;
+      for (std::size_t i = 0; i < s_; ++i) linearise(i, state.mode);
+      for (const double slope : jacobians_) stiffness = std::max(stiffness, std::abs(step * slope));
+      find_moving();
+      if (!(find_order() ? correct_in_order(step, state) : correct_together(step, state))) return false;
+      evaluate_rates(state.mode);
+      double worst = 0.0;
+      for (const std::size_t p : moving_) {
+        double size = std::numeric_limits<double>::min(), defect = 0.0;
+        for (std::size_t i = 0; i < s_; ++i) {
+          size = std::max({size, std::abs(z_[i * n_ + p]), std::abs(step * rates_[i * n_ + p])});
+          defect = std::max(defect, std::abs(residual(step, state, i, p)));
+        }
+        // The rate may be a difference of forces much larger than itself, so a tolerance relative to z alone will not
+        // do.
+        size += 0.01 * stiffness / (1.0 + stiffness) * element_.state_scale(static_cast<int>(p));
+        worst = std::max(worst, defect / size);
+      }
+      if (worst <= 2e-14 * (1.0 + stiffness)) return true;
+      if (!(worst < before) || iteration > 6) return false;
+      before = worst;
+    }
+    return false;
+  }
+
+  /// For a panel on which Newton failed: a single state that rests keeps its value; with `force`, implicit Euler
+  /// carries it, its equation being monotonic in z. False: halve the panel.
+  bool hold_or_relax(double from, double to, const ElementState& state, bool force) {
+    if (n_ != 1 || !finite()) return false;
+    const double step = (to - from) / motion_.frequency(), start = state.z[0], scale = element_.state_scale(0);
+    const Input<double> in = nodes_[s_ / 2].in;
+    const auto residual_at = [&](double z) {
+      trial_[0] = z;
+      element_.rate(in, state.mode, trial_, trial_rate_);
+      ++evaluations_;
+      return z - start - step * trial_rate_[0];
+    };
+    double reach = scale * 1e-15, low = start - reach, high = start + reach;
+    while (!(residual_at(low) <= 0.0 && residual_at(high) >= 0.0)) {
+      if ((reach *= 8.0) > 1e6 * scale) return false;
+      low = start - reach;
+      high = start + reach;
+    }
+    for (int k = 0; k < 100 && high - low > 1e-17 * scale; ++k) {
+      const double middle = 0.5 * (low + high);
+      (residual_at(middle) < 0.0 ? low : high) = middle;
+    }
+    const double end = 0.5 * (low + high);
+    const bool holds = std::abs(end - start) <= 2e-13 * scale;  // ten times the tolerance of Newton
+    if (!holds && !force) return false;
+    for (std::size_t i = 0; i < s_; ++i) z_[i] = holds ? start : start + table_.c[i] * (end - start);
+    std::fill(sensitivities_.begin(), sensitivities_.end(), 0.0);
+    return true;
+  }
+
+ private:
+  void place_nodes(int anchor, double from, double to) {
+    direction_ = motion_.at(anchor, 0.5 * (from + to)).in.v < 0.0 ? -1.0 : 1.0;
+    for (std::size_t i = 0; i < s_; ++i)
+      nodes_[i] = node_at(anchor, i + 1 == s_ ? to : from + table_.c[i] * (to - from));
+  }
+
+  /// Rates and their derivatives with respect to the state at stage i, several states at a time where there are many.
+  void linearise(std::size_t i, Mode mode) {
+    if (wide_)
+      linearise_with<width>(*wide_, i, mode);
+    else
+      linearise_with<1>(dual_, i, mode);
+  }
+  template <int Columns>
+  void linearise_with(const ElementOn<Dual<Columns>>& element, std::size_t i, Mode mode) {
+    const Input<double>& in = nodes_[i].in;
+    const Input<Dual<Columns>> input{in.x, in.v, in.drive};
+    auto& [z, rate] = std::get<Scratch<Columns>>(scratch_);
+    z.assign(&z_[i * n_], &z_[i * n_] + n_);
+    rate.resize(n_);
+    for (std::size_t from = 0; from < n_; from += Columns) {
+      const std::size_t to = std::min(n_, from + Columns);
+      for (std::size_t column = from; column < to; ++column) z[column].d[column - from] = 1.0;
+      element.rate(input, mode, z, rate);
+      ++evaluations_;
+      for (std::size_t column = from; column < to; ++column) {
+        z[column].d[column - from] = 0.0;
+        for (std::size_t p = 0; p < n_; ++p) jacobians_[(i * n_ + p) * n_ + column] = rate[p].d[column - from];
+      }
+    }
+    for (std::size_t p = 0; p < n_; ++p) rates_[i * n_ + p] = rate[p].value;
+  }
+
+  void evaluate_rates(Mode mode) {
+    for (std::size_t i = 0; i < s_; ++i) element_.rate(nodes_[i].in, mode, {&z_[i * n_], n_}, {&rates_[i * n_], n_});
+    evaluations_ += static_cast<long>(s_);
+  }
+
+  /// Residual of the collocation equations at stage i, component p.
+  double residual(double step, const ElementState& state, std::size_t i, std::size_t p) const {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < s_; ++j) sum += table_.a[i * s_ + j] * rates_[j * n_ + p];
+    return z_[i * n_ + p] - state.z[p] - step * sum;
+  }
+
+  bool coupled(std::size_t p, std::size_t q) const {
+    for (std::size_t i = 0; i < s_; ++i)
+      if (jacobians_[(i * n_ + p) * n_ + q] != 0.0) return true;
+    return false;
+  }
+
+  /// Finds the states that move on this panel. The others (return points kept for later, elements that stick) have a
+  /// rate of zero whatever the state is.
+  void find_moving() {
+    moving_.clear();
+    for (std::size_t p = 0; p < n_; ++p)
+      if (moves(p)) moving_.push_back(p);
+  }
+  bool moves(std::size_t p) const {
+    for (std::size_t i = 0; i < s_; ++i) {
+      if (rates_[i * n_ + p] != 0.0) return true;
+      for (std::size_t q = 0; q < n_; ++q)
+        if (jacobians_[(i * n_ + p) * n_ + q] != 0.0) return true;
+    }
+    return false;
+  }
+
+  /// Finds an order in which the rate of every moving state depends only on itself and on states before it, if there is
+  /// one: elements in parallel are independent, a lagged level affects all others and depends on none.
+  bool find_order() {
+    order_.clear();
+    if (n_ == 1) return false;
+    depends_.assign(n_ * n_, 0);
+    placed_.assign(n_, 1);
+    for (const std::size_t p : moving_) {
+      placed_[p] = 0;
+      for (std::size_t q = 0; q < n_; ++q) depends_[p * n_ + q] = p != q && coupled(p, q) ? 1 : 0;
+    }
+    for (bool more = true; more && order_.size() < moving_.size();) {
+      more = false;
+      for (const std::size_t p : moving_) {
+        bool ready = placed_[p] == 0;
+        for (std::size_t q = 0; ready && q < n_; ++q) ready = depends_[p * n_ + q] == 0 || placed_[q] != 0;
+        if (!ready) continue;
+        placed_[p] = 1;
+        more = true;
+        order_.push_back(p);
+      }
+    }
+    return order_.size() == moving_.size();
+  }
+
+  /// One step of Newton, state by state in that order: n systems of the size of the stages instead of one of n times
+  /// that size.
+  bool correct_in_order(double step, const ElementState& state) {
+    const std::size_t length = s_ + 1 + n_, columns = 1 + n_;
+    corrections_.resize(s_ * n_ * columns);
+    for (const std::size_t p : order_) {
+      system_.assign(s_ * length, 0.0);
+      for (std::size_t i = 0; i < s_; ++i) {
+        double* row = &system_[i * length];
+        for (std::size_t j = 0; j < s_; ++j) row[j] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + p];
+        row[i] += 1.0;
+        row[s_] = -residual(step, state, i, p);
+        for (std::size_t q = 0; q < n_; ++q) row[s_ + 1 + q] = state.sensitivity[p * n_ + q];
+        for (std::size_t q = 0; q < n_; ++q)
+          if (depends_[p * n_ + q] != 0) add_coupling(step, i, p, q, state, row + s_);
+      }
+      if (!eliminate(system_, s_, columns)) return false;
+      for (std::size_t i = 0; i < s_; ++i)
+        std::copy_n(&system_[i * length + s_], columns, &corrections_[(i * n_ + p) * columns]);
+    }
+    for (const std::size_t p : order_) {
+      for (std::size_t i = 0; i < s_; ++i) z_[i * n_ + p] += corrections_[(i * n_ + p) * columns];
+      std::copy_n(&corrections_[((s_ - 1) * n_ + p) * columns + 1], n_, &sensitivities_[p * n_]);
+    }
+    return true;
+  }
+
+  /// Adds to the right-hand sides of state p at stage i the contribution of the corrections of state q, found before,
+  /// or of its derivatives alone if it stands.
+  void add_coupling(double step, std::size_t i, std::size_t p, std::size_t q, const ElementState& state,
+                    double* right) const {
+    const std::size_t columns = 1 + n_;
+    const bool stands = std::ranges::find(moving_, q) == moving_.end();
+    for (std::size_t j = 0; j < s_; ++j) {
+      const double factor = step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
+      if (stands) {
+        for (std::size_t c = 0; c < n_; ++c) right[1 + c] += factor * state.sensitivity[q * n_ + c];
+        continue;
+      }
+      for (std::size_t c = 0; c < columns; ++c) right[c] += factor * corrections_[(j * n_ + q) * columns + c];
+    }
+  }
+
+  /// One step of Newton, all states together: the first column is the step of the stages, the further ones are their
+  /// derivatives by the initial state.
+  bool correct_together(double step, const ElementState& state) {
+    const std::size_t m = s_ * n_, length = m + 1 + n_;
+    system_.assign(m * length, 0.0);
+    for (std::size_t i = 0; i < s_; ++i) {
+      for (std::size_t p = 0; p < n_; ++p) {
+        double* row = &system_[(i * n_ + p) * length];
+        for (std::size_t j = 0; j < s_; ++j)
+          for (std::size_t q = 0; q < n_; ++q)
+            row[j * n_ + q] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
+        row[i * n_ + p] += 1.0;
+        row[m] = -residual(step, state, i, p);
+        for (std::size_t q = 0; q < n_; ++q) row[m + 1 + q] = state.sensitivity[p * n_ + q];
+      }
+    }
+    if (!eliminate(system_, m, 1 + n_)) return false;
+    for (std::size_t r = 0; r < m; ++r) z_[r] += system_[r * length + m];
+    for (std::size_t p = 0; p < n_; ++p)
+      std::copy_n(&system_[((s_ - 1) * n_ + p) * length + m + 1], n_, &sensitivities_[p * n_]);
+    return true;
+  }
+
+  Element element_;
+  ElementOn<Dual<1>> dual_;
+  const M& motion_;
+  const RadauIIA& table_;
+  std::size_t s_, n_;
+  bool drive_is_of_rate_;
+  double direction_ = 1.0;
+  long evaluations_ = 0;
+  std::vector<MotionNode> nodes_;
+  std::vector<double> z_, rates_, sensitivities_, jacobians_, system_, corrections_, trial_, trial_rate_;
+  std::vector<std::size_t> moving_, order_;
+  std::vector<char> depends_, placed_;
+  static constexpr int width = 4;
+  std::optional<ElementOn<Dual<width>>> wide_;
+  template <int Columns>
+  struct Scratch {
+    std::vector<Dual<Columns>> z, rate;
+  };
+  std::tuple<Scratch<1>, Scratch<width>> scratch_;
+};
+
+}  // namespace limcycle

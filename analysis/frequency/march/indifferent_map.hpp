@@ -1,0 +1,12 @@
+#pragma once
+#include <Eigen/Core>
+
+namespace limcycle {
+
+/// (1 - M)^-1 r for `m` = M - 1 and `right` = -r, in units of the states; where M has indifferent directions, the group
+/// inverse of 1 - M, which leaves them alone, if `near` the end, else zero. `amplification`: largest row sum of the
+/// inverse, 1 where there is none. Cost O(n^3).
+Eigen::VectorXd indifferent_correction(const Eigen::MatrixXd& m, const Eigen::VectorXd& right, bool near,
+                                       double& amplification);
+
+}  // namespace limcycle

@@ -1,7 +1,0 @@
-#include "limcycle/analysis/frequency/march_kernel_body.hpp"
-
-namespace limcycle {
-
-constinit const MarchKernels avx2_march_kernels = march_kernels<Pack<4, Isa::avx2>>();
-
-}  // namespace limcycle

@@ -1,0 +1,41 @@
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <vector>
+
+#include "limcycle/analysis/motion/field/loop_field.hpp"
+
+namespace limcycle {
+
+/// Exact flow of a loop of piecewise affine elements (Coulomb with stiction, relay, saturation, dead zone, backlash,
+/// ...) in fixed modes: with [x; 1]' = M [x; 1], x(t + h) is the upper part of exp(M h) [x; 1]. Error: that of the
+/// matrix exponential, a few roundings (scaling and squaring with Pade approximants, Higham 2005, in Eigen).
+class AffineFlow {
+ public:
+  explicit AffineFlow(LoopField& field) : field_(&field) {}
+
+  /// True if every element of the loop is piecewise affine, so that this flow is its motion.
+  static bool applies(const Loop& loop);
+
+  /// exp(M h) in the field's present modes, (n+1) x (n+1). Cost O(n^3).
+  Eigen::MatrixXd over(double h);
+  /// exp(M 2^k s), cached.
+  const Eigen::MatrixXd& over_power(int k);
+  /// exp(M h), from the cache if h is a power of two up to the rounding of the times at its ends.
+  Eigen::MatrixXd over_step(double h);
+
+  /// The motion from x by a matrix of the above.
+  static void apply(const Eigen::MatrixXd& exponential, const State& x, State& out);
+
+ private:
+  struct InMode {
+    Eigen::MatrixXd generator;
+    std::map<int, Eigen::MatrixXd> powers;
+  };
+  InMode& present();
+
+  LoopField* field_;
+  std::map<std::vector<std::int64_t>, InMode> modes_;
+};
+
+}  // namespace limcycle

@@ -1,0 +1,144 @@
+#include "limcycle/analysis/orbit/settle/irregular.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "limcycle/analysis/orbit/settle/outcome_watch.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr std::size_t part_count = 4;
+constexpr double range_scatter = 0.15, spread_scatter = 0.15, returns_scatter = 0.2;  // largest scatter of the parts
+constexpr double one_way = 0.02;    // upper limit of a monotonic change of the spread
+constexpr long fewest_returns = 8;  // in a part
+
+/// One part of a motion.
+struct Part {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  double sum = 0.0, square = 0.0, time = 0.0;  ///< integrals of y, y^2 and 1
+  long returns = 0;
+
+  /// Adds a step of length h, with y linear over it.
+  void add(double h, double y0, double y1) {
+    low = std::min(low, y1);
+    high = std::max(high, y1);
+    sum += 0.5 * h * (y0 + y1);
+    square += h * (y0 * y0 + y0 * y1 + y1 * y1) / 3.0;
+    time += h;
+  }
+  double spread() const { return std::sqrt(std::max(0.0, square / time - (sum / time) * (sum / time))); }
+};
+
+/// Largest over least of a number of the parts, less 1.
+template <class F>
+double scatter(const std::array<Part, part_count>& all, const F& number) {
+  const auto [least, most] = std::ranges::minmax(all, {}, number);
+  return std::invoke(number, most) / std::invoke(number, least) - 1.0;
+}
+
+bool goes_one_way(const std::array<Part, part_count>& all) {
+  const bool falls = std::ranges::is_sorted(all, std::ranges::greater{}, &Part::spread);
+  const bool rises = std::ranges::is_sorted(all, std::ranges::less{}, &Part::spread);
+  return (falls || rises) && scatter(all, &Part::spread) > one_way;
+}
+
+/// Upward crossings of a level, and the largest y between each and the next.
+struct Returns {
+  std::vector<double> times, peaks;
+  double mean() const { return (times.back() - times.front()) / static_cast<double>(times.size() - 1); }
+};
+
+Returns returns_to(double level, const Trace& trace, std::size_t from) {
+  Returns found;
+  for (std::size_t i = from; i < trace.t.size(); ++i) {
+    const OutputStep step =
+        OutputStep::through(trace.t[i - 1], trace.t[i], trace.y[i - 1], trace.y[i], trace.rate[i - 1], trace.rate[i]);
+    if (step.y0 < level && step.y1 >= level) {
+      found.times.push_back(step.crossing(level));
+      found.peaks.push_back(step.y1);
+    } else if (!found.peaks.empty()) {
+      const bool turns = trace.rate[i - 1] > 0.0 && trace.rate[i] <= 0.0;
+      found.peaks.back() = std::max(found.peaks.back(), turns ? step.turning().y : step.y1);
+    }
+  }
+  return found;
+}
+
+/// True if the returns repeat themselves after some number of them. Then the motion is periodic, though shooting did
+/// not find the cycle.
+bool repeats(const Returns& returns, double range) {
+  constexpr double same = 3e-4;                    // resolution of the steps of a run
+  const std::size_t n = returns.times.size() - 1;  // the last peak may not be complete
+  const double mean = returns.mean();
+  for (std::size_t lag = 1; lag <= n / 3; ++lag) {
+    bool all = true;
+    for (std::size_t i = 0; i + lag < n && all; ++i)
+      all = std::abs(returns.peaks[i + lag] - returns.peaks[i]) <= same * range &&
+            std::abs(returns.times[i + lag + 1] - returns.times[i + lag] - returns.times[i + 1] + returns.times[i]) <=
+                same * mean;
+    if (all) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<IrregularMotion> permanent_motion(const Trace& trace) {
+  if (trace.t.size() < 1000) return std::nullopt;
+  const double end = trace.t.back(), begin = trace.t.front() + (end - trace.t.front()) / 3.0;
+  std::array<Part, part_count> all;
+  const auto part_at = [&](double t) -> Part& {
+    const auto k = static_cast<std::size_t>(static_cast<double>(part_count) * (t - begin) / (end - begin));
+    return all[std::min(k, part_count - 1)];
+  };
+  const auto from =
+      static_cast<std::size_t>(std::ranges::lower_bound(trace.t, begin) - trace.t.begin()) + 1;  // first whole step
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t i = from; i < trace.t.size(); ++i) {
+    part_at(trace.t[i]).add(trace.t[i] - trace.t[i - 1], trace.y[i - 1], trace.y[i]);
+    low = std::min(low, trace.y[i]);
+    high = std::max(high, trace.y[i]);
+  }
+  const Returns returns = returns_to(0.5 * (low + high), trace, from);
+  for (const double t : returns.times) ++part_at(t).returns;
+  if (std::ranges::any_of(all, [](const Part& part) { return part.returns < fewest_returns || !(part.time > 0.0); }))
+    return std::nullopt;
+  const auto range = [](const Part& part) { return part.high - part.low; };
+  const auto count = [](const Part& part) { return static_cast<double>(part.returns); };
+  if (scatter(all, range) > range_scatter || scatter(all, &Part::spread) > spread_scatter ||
+      scatter(all, count) > returns_scatter)
+    return std::nullopt;
+  if (goes_one_way(all) || repeats(returns, high - low)) return std::nullopt;
+  return IrregularMotion{0.5 * (high - low), returns.mean()};
+}
+
+bool agree(const IrregularMotion& one, const IrregularMotion& other) {
+  constexpr double enough = 0.05;
+  return std::abs(one.half_range / other.half_range - 1.0) <= enough &&
+         std::abs(one.mean_period / other.mean_period - 1.0) <= enough;
+}
+
+bool grows_like_a_power(const TurningPoints& turning) {
+  constexpr std::size_t few = 64, averaged = 4;
+  constexpr double least_growth = 1.3, alike = 0.2;
+  const std::size_t count = turning.points().size();
+  if (count < few) return false;
+  const auto size = [&](std::size_t swings) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < averaged; ++k) sum += turning.swing(count - 1 - swings + k);
+    return sum;
+  };
+  const std::size_t all = count - 1;
+  const double last = size(all) / size(all / 2), before = size(all / 2) / size(all / 4),
+               first = size(all / 4) / size(all / 8);
+  const auto like = [](double one, double other) { return std::abs(one / other - 1.0) < alike; };
+  return std::min({last, before, first}) > least_growth && like(last, before) && like(before, first);
+}
+
+}  // namespace limcycle

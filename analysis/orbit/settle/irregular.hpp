@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/orbit/settle/turning_points.hpp"
+
+namespace limcycle {
+
+/// Numbers of a permanent bounded motion that has no period.
+struct IrregularMotion {
+  double half_range = 0.0;   ///< half of the difference of largest and least y
+  double mean_period = 0.0;  ///< mean time between upward crossings of the middle of that range, s
+};
+
+/// The numbers of a recorded motion without its first third, if it looks permanent: over four equal parts of the rest
+/// its range, its spread and its returns stay the same within the scatter of such numbers, its spread neither falls nor
+/// rises from each part to the next (a slow decay, a slow approach), and the returns do not repeat themselves. agree()
+/// decides if the numbers belong to the loop or to the tolerance.
+std::optional<IrregularMotion> permanent_motion(const Trace& trace);
+
+/// True if two runs at different tolerances give the same numbers. Chaotic motions part after a while.
+bool agree(const IrregularMotion& one, const IrregularMotion& other);
+
+/// True if the swings grow like a power of time, as a limited command allows an unstable loop, and not towards a cycle:
+/// each doubling of their number increases them by about the same factor. On the way to a cycle that factor falls
+/// towards 1; in an exponential growth, which may end in a cycle, it rises. Needs 64 swings.
+bool grows_like_a_power(const TurningPoints& turning);
+
+}  // namespace limcycle

@@ -1,0 +1,337 @@
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/cycle/measure.hpp"
+#include "limcycle/analysis/orbit/settle/irregular.hpp"
+#include "limcycle/analysis/orbit/settle/switching_watch.hpp"
+#include "limcycle/analysis/orbit/settle/turning_points.hpp"
+
+namespace limcycle {
+namespace {
+
+/// Step limit of shooting before a motion is decided: this constant, plus a multiple of the motion's own steps.
+constexpr long steps_of_tries = 500'000, tries_per_step = 6;
+
+/// One run: simulation, and shooting whenever the swings look steady.
+class Settling {
+ public:
+  Settling(const Loop& loop, LoopState start, const SettleOptions& options)
+      : loop_(loop),
+        options_(options),
+        start_(std::move(start)),
+        field_(loop),
+        march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
+        stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol),
+        switching_(loop, loop_sizes(loop)) {}
+
+  Settled run() {
+    field_.modes() = start_.modes;
+    march_.begin(start_.x, 0.0);
+    note();
+    while (!decided_) step();
+    result_.time = march_.t();
+    result_.steps = march_.steps();
+    result_.work = tried_ + march_.steps();
+    return std::move(result_);
+  }
+
+ private:
+  void decide(Outcome outcome, std::string why) {
+    result_.outcome = outcome;
+    result_.why = std::move(why);
+    decided_ = true;
+  }
+
+  void note() {
+    append(result_.trace, field_, march_);
+    field_.rate(march_.x(), dx_, march_.t());
+  }
+
+  void step() {
+    if (options_.stop && options_.stop()) return decide(Outcome::undecided, "interrupted");
+    if (march_.steps() > options_.max_steps) {
+      if (grows_like_a_power(turning_))
+        return decide(Outcome::divergence, "y grows without bound, like a power of time");
+      return look_for_irregular();
+    }
+    const Status status = march_.step(1e15);
+    if (status == Status::not_finite) return decide(Outcome::divergence, "the state left the range of numbers");
+    if (status == Status::chattering) {
+      field_.rate(march_.x(), dx_, march_.t());
+      if (auto still = stillness_.within_rounding(dx_)) return come_to(*still);
+    }
+    if (status != Status::converged)
+      return decide(Outcome::undecided, "the simulation ended with status " + std::string(to_string(status)));
+    note();
+    const double y = result_.trace.y.back();
+    if (std::abs(y) > options_.amplitude_ceiling) return decide(Outcome::divergence, "y grows without bound");
+    if (march_.t() >= 1e15) return decide(Outcome::undecided, "undecided after 1e15 s");
+    if (turning_.feed(march_.t(), y)) look_at_swings();
+    if (decided_) return;
+    if (auto still = stillness_.look(march_.t(), march_.x(), dx_, field_.modes())) come_to(*still);
+    if (decided_ || !march_.last().switched) return;
+    if (auto still = stillness_.switched(dx_)) return come_to(*still);
+    if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
+  }
+
+  /// For neither rest nor a cycle within the step limit: permanent nevertheless, if two tolerances give the same
+  /// numbers.
+  void look_for_irregular() {
+    const auto motion = permanent_motion(result_.trace);
+    const auto again = motion ? permanent_motion(repeated(march_.t())) : std::nullopt;
+    if (!motion || !again || !agree(*motion, *again))
+      return decide(Outcome::undecided, motion ? "bounded, but its range differs between two tolerances"
+                                               : "step limit reached before rest or a cycle was recognised");
+    result_.half_range = again->half_range;
+    result_.mean_period = again->mean_period;
+    decide(Outcome::irregular, "bounded without a period; a second tolerance gives the same range");
+  }
+
+  /// The same run with a tolerance a hundred times tighter.
+  Trace repeated(double until) const {
+    constexpr double tighter = 0.01, tightest = 1e-12;
+    constexpr long longer = 10;  // limit of the steps, relative to those of the first run
+    LoopField field(loop_);
+    field.modes() = start_.modes;
+    March march(field, march_.kind(), loop_weights(loop_, std::max(tightest, tighter * options_.rtol)));
+    march.begin(start_.x, 0.0);
+    Trace trace;
+    while (march.t() < until && march.steps() < longer * options_.max_steps) {
+      if (options_.stop && options_.stop()) break;
+      if (march.step(until) != Status::converged) break;
+      trace.t.push_back(march.t());
+      trace.y.push_back(field.y(march.x()));
+      trace.rate.push_back(field.y_rate(march.last().dx1));
+    }
+    return trace;
+  }
+
+  void come_to(Stillness& still) {
+    result_.by = std::move(still.by);
+    decide(still.outcome, std::move(still.why));
+  }
+
+  void look_at_swings() {
+    const auto& points = turning_.points();
+    if (points.size() < 5) return;
+    bool exact = false;
+    const double rest = loop_.C_y.dot(loop_.rest_point(exact).transpose());
+    if (exact && died_out(turning_, rest, options_.amplitude_floor)) {
+      return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest,
+                    "the oscillation decayed below the smallest amplitude of interest");
+    }
+    if (points.size() < next_try_) return;
+    for (std::size_t order : {2U, 4U, 6U})  // turning points per period
+      if (points.size() > 2 * order && steady(order) && try_cycle(order)) return;
+  }
+
+  /// True if the last swings repeat those one period (of `order` turning points) before, to within 5 %.
+  bool steady(std::size_t order) const {
+    for (std::size_t k = 0; k < order; ++k)
+      if (std::abs(turning_.swing(k) / turning_.swing(k + order) - 1.0) > 0.05) return false;
+    return true;
+  }
+
+  /// The part of the trace since the turning point `count` back.
+  Trace recent(std::size_t count) const {
+    const auto& points = turning_.points();
+    const double since = points[points.size() - 1 - count].t;
+    Trace part;
+    for (std::size_t i = 0; i < result_.trace.t.size(); ++i) {
+      if (result_.trace.t[i] < since) continue;
+      part.t.push_back(result_.trace.t[i]);
+      part.y.push_back(result_.trace.y[i]);
+      part.rate.push_back(result_.trace.rate[i]);
+    }
+    return part;
+  }
+
+  /// The known cycle of this swing with whose period the motion from here returns, if any.
+  std::optional<std::size_t> recognised(const LoopState& here, double swing) {
+    for (std::size_t i = 0; i < options_.known.size(); ++i) {
+      const Cycle& cycle = options_.known[i];
+      if (std::abs(2.0 * cycle.amplitude / swing - 1.0) > 0.02) continue;
+      const Section section = choose_section(loop_, cycle.trace);
+      ReturnMap map(loop_, section, std::nullopt,
+                    {options_.rtol, options_.shooting.max_steps_per_map, options_.stop, false, infinite,
+                     returns_of(section, cycle.trace)});
+      auto at = map.approach(here);
+      for (int k = 0; k < 4 && at.status == Status::converged; ++k) {
+        at = map(at.state);
+        if (at.status != Status::converged || std::abs(at.time / cycle.period - 1.0) > 1e-4) continue;
+        Trace again;
+        if (record(loop_, at.state, cycle.period, options_.rtol, 200, again) != Status::converged) break;
+        const auto [low, high] = extremes(again);
+        if (std::abs((high - low) / (2.0 * cycle.amplitude) - 1.0) < 1e-4) {
+          tried_ += map.steps();
+          return i;
+        }
+      }
+      tried_ += map.steps();
+    }
+    return std::nullopt;
+  }
+
+  /// Swings that are still uneven may show several periods as one: finds the shortest period of the orbit.
+  void shorten(ShootingResult& shot, const Section& section, bool half, const ShootingOptions& options) {
+    for (int fewer = 1; fewer < options.returns; ++fewer) {
+      if (options.returns % fewer != 0) continue;
+      ShootingOptions shorter = options;
+      shorter.returns = fewer;
+      shorter.warm_maps = 0;
+      auto found = shoot(loop_, shot.cycle.start, section, half, shorter);
+      tried_ += found.steps;
+      const double times = static_cast<double>(options.returns) / fewer;
+      if (found.status != Status::converged || std::abs(times * found.cycle.period / shot.cycle.period - 1.0) > 1e-6)
+        continue;
+      shot = std::move(found);
+      return;
+    }
+  }
+
+  /// Start of the cycle, moved away from the rest point of the linear part by a factor; elements keep their states.
+  LoopState beside(const Cycle& cycle, double factor) const {
+    bool exact = false;
+    const Eigen::VectorXd rest = loop_.rest_point(exact);
+    LoopState other = cycle.start;
+    Eigen::Map<Eigen::VectorXd> X(other.x.data(), rest.size());
+    X = rest + factor * (X - rest);
+    return other;
+  }
+
+  /// True if another periodic motion lies close to this one: shooting from 2 % farther out finds it.
+  bool has_neighbour(const Cycle& cycle, const Section& section, bool half, const ShootingOptions& options) const {
+    constexpr double farther = 1.02, apart = 0.005;
+    ShootingOptions there = options;
+    there.warm_maps = 0;
+    const auto found = shoot(loop_, beside(cycle, farther), section, half, there);
+    const double larger = found.cycle.amplitude / cycle.amplitude - 1.0;
+    return found.status == Status::converged && std::abs(larger) > apart && std::abs(larger) < 10.0 * (farther - 1.0);
+  }
+
+  /// True if motions that begin 1 % farther out and 1 % nearer return to this cycle within a few periods. Decides if
+  /// its multipliers do not, as for a Stribeck curve that begins with infinite slope.
+  bool attracts(const Cycle& cycle, const Section& section) {
+    constexpr double aside = 0.01, left = 0.05;
+    constexpr int periods = 8;
+    const State sizes = typical_sizes(loop_);
+    const auto distance = [&](const State& x) {
+      double largest = 0.0;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        largest = std::max(largest, std::abs(x[i] - cycle.start.x[i]) / sizes[i]);
+      return largest;
+    };
+    ReturnMap map(loop_, section, std::nullopt,
+                  {options_.rtol, options_.shooting.max_steps_per_map, options_.stop, false, infinite,
+                   returns_of(section, cycle.trace)});
+    bool back = true;
+    for (const double side : {1.0 + aside, 1.0 - aside}) {
+      const LoopState other = beside(cycle, side);
+      const double before = distance(other.x);
+      auto at = map.approach(other);
+      for (int k = 0; k < periods && at.status == Status::converged; ++k) at = map(at.state);
+      back = back && at.status == Status::converged && distance(at.state.x) < left * before;
+    }
+    tried_ += map.steps();
+    return back;
+  }
+
+  bool try_cycle(std::size_t order) {
+    if (tried_ > steps_of_tries + tries_per_step * march_.steps()) return false;
+    next_try_ = turning_.points().size() + turning_.points().size() / 2 + 1;
+    const Trace period = recent(order);
+    const auto [low, high] = extremes(period);
+    const double swing = high - low;
+    const LoopState here{march_.x(), field_.modes()};
+    result_.known = recognised(here, swing);
+    if (result_.known) {
+      decide(Outcome::cycle, "converges to cycle " + std::to_string(*result_.known));
+      return true;
+    }
+    const auto reflection = symmetry(loop_);
+    const double middle = reflection ? (loop_.C_y * reflection->centre).value() : 0.0;
+    const bool half = reflection && order % 4 == 2 && std::abs(0.5 * (low + high) - middle) < 0.02 * swing;
+    ShootingOptions shooting = options_.shooting;
+    shooting.max_maps = std::min(shooting.max_maps, 80);
+    shooting.longest_map = 10.0 * (period.t.back() - period.t.front());
+    const Section section = choose_section(loop_, period);
+    shooting.returns = returns_of(section, period);
+    auto shot = shoot(loop_, here, section, half, shooting);
+    tried_ += shot.steps;
+    if (shot.status == Status::converged) shorten(shot, section, half, shooting);
+    if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
+    if (shot.status != Status::converged || shot.cycle.stable == false) return false;
+    const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);
+    if (!shot.cycle.stable && mismatch < 0.01 && attracts(shot.cycle, section)) shot.cycle.stable = true;
+    if (!shot.cycle.stable && mismatch < 0.01) {
+      if (has_neighbour(shot.cycle, section, half, shooting))
+        decide(Outcome::family, "periodic, one of a family of periodic motions whose size depends on the start");
+      else
+        decide(Outcome::undecided, "periodic, but its stability was not determined (multiplier 1)");
+      return true;
+    }
+    // Still far from the cycle, but nearer to it than at the last try: a slow approach.
+    const bool nearer =
+        candidate_ && std::abs(candidate_->period / shot.cycle.period - 1.0) < 1e-6 && mismatch < 0.8 * mismatch_;
+    if (!shot.cycle.stable || (mismatch > 0.1 && !nearer)) {
+      candidate_ = shot.cycle;
+      mismatch_ = mismatch;
+      return false;
+    }
+    result_.shot = std::move(shot);
+    decide(Outcome::cycle, nearer ? "approaches a cycle, confirmed by shooting" : "periodic, confirmed by shooting");
+    return true;
+  }
+
+  const Loop& loop_;
+  const SettleOptions& options_;
+  LoopState start_;
+  LoopField field_;
+  March march_;
+  StillnessWatch stillness_;
+  SwitchingWatch switching_;
+  TurningPoints turning_;
+  Settled result_;
+  State dx_;
+  std::optional<Cycle> candidate_;
+  double mismatch_ = 0.0;
+  std::size_t next_try_ = 5;
+  long tried_ = 0;  ///< steps of return maps
+  bool decided_ = false;
+};
+
+}  // namespace
+
+std::string_view to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::rest:
+      return "rest";
+    case Outcome::sliding:
+      return "sliding";
+    case Outcome::cycle:
+      return "cycle";
+    case Outcome::divergence:
+      return "divergence";
+    case Outcome::family:
+      return "family";
+    case Outcome::irregular:
+      return "irregular";
+    default:
+      return "undecided";
+  }
+}
+
+Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options) {
+  if (loop.delay > 0.0)
+    throw std::invalid_argument(
+        "settle: the loop has a dead time, which a simulation from a state does not know; take "
+        "in_time_domain() of it");
+  return Settling(loop, start, options).run();
+}
+
+}  // namespace limcycle

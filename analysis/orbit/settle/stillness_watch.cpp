@@ -1,0 +1,67 @@
+#include "limcycle/analysis/orbit/settle/stillness_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/short_number.hpp"
+
+namespace limcycle {
+namespace {
+
+/// Most motions at rest are recognised earlier; only then is the algebra of a slow decay worth its cost.
+constexpr int patience = 12;
+constexpr double drift = 1e-6;  ///< rates below this are rounding, in sizes per slowest time constant
+
+}  // namespace
+
+StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, double rtol)
+    : loop_(loop), scale_{sizes, slow}, rest_(std::move(sizes), slow, rtol) {}
+
+std::optional<Stillness> StillnessWatch::look(double t, const State& x, const State& dx,
+                                              const std::vector<Mode>& modes) {
+  if (t < rest_.next()) return std::nullopt;
+  const auto verdict = rest_.look(t, x, dx);
+  ++looks_;
+  if (verdict == RestWatch::Verdict::moving && looks_ < patience) return std::nullopt;
+  LoopField field(loop_);
+  field.modes() = modes;
+  if (verdict == RestWatch::Verdict::at_rest) return at_rest(field, x, dx);
+  if (verdict == RestWatch::Verdict::steady && slides_steadily(field, x, dx, scale_))
+    return Stillness{Outcome::sliding, "slides at constant speed"};
+  if (verdict == RestWatch::Verdict::steady && held_while_winding_up(field, x, dx, scale_))
+    return Stillness{Outcome::rest, rest_.rate(dx) > drift ? "held at rest for ever, although the controller winds up"
+                                                           : "came to rest, but for a drift within rounding"};
+  if (looks_ < patience) return std::nullopt;
+  const auto approach = approach_from(field, x, scale_);
+  if (!approach) return std::nullopt;
+  return Stillness{approach->to.slides ? Outcome::sliding : Outcome::rest,
+                   "the motion decays linearly, at a rate of at least " + short_number(approach->decay, 3) + " 1/s"};
+}
+
+std::optional<Stillness> StillnessWatch::switched(const State& dx) {
+  constexpr int many = 50;
+  const auto still = within_rounding(dx);
+  idle_ = still ? idle_ + 1 : 0;
+  return idle_ >= many ? still : std::nullopt;
+}
+
+std::optional<Stillness> StillnessWatch::within_rounding(const State& dx) const {
+  if (!(rest_.rate(dx) <= rest_.noise())) return std::nullopt;
+  if (slides_at_rest(loop_))
+    return Stillness{Outcome::sliding, "slides at constant speed, but for switching within rounding"};
+  return Stillness{Outcome::rest, "came to rest, but for switching within rounding"};
+}
+
+std::optional<Stillness> StillnessWatch::at_rest(LoopField& field, const State& x, const State& dx) const {
+  constexpr double near = 0.01, fades = 1e-6;
+  const auto still = [](bool slides) {
+    return slides ? Stillness{Outcome::sliding, "slides at constant speed"} : Stillness{Outcome::rest, "came to rest"};
+  };
+  const auto found = standstill_near(field, x, scale_);
+  if (found && found->moved <= near) return still(found->slides);
+  // Newton's method fails for a law whose slope jumps at the point of rest: then the rates themselves must vanish.
+  if (!(rest_.rate(dx) <= fades)) return std::nullopt;
+  return still(slides_at_rest(loop_));
+}
+
+}  // namespace limcycle

@@ -1,0 +1,46 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/orbit/settle/rest_watch.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/orbit/settle/standstill.hpp"
+
+namespace limcycle {
+
+/// A motion that has come to rest or to steady sliding.
+struct Stillness {
+  Outcome outcome = Outcome::rest;
+  std::string why;   ///< one sentence
+  std::string by{};  ///< "switching": through ever faster switching; else empty
+};
+
+/// Watches if a motion comes to rest or slides for ever, by samples as for RestWatch. A verdict from the rates counts
+/// only once the equations of the loop hold: a state of rest near the motion solves dx/dt = 0 with every set-valued
+/// output within its interval, and a steady slide keeps its rates (J dx = 0). A decay too slow for its rates to die out
+/// counts as rest once the motion can no longer leave the linear decay (see approach_from).
+class StillnessWatch {
+ public:
+  /// The loop must outlive the watch.
+  StillnessWatch(const Loop& loop, State sizes, double slow, double rtol);
+
+  double next() const { return rest_.next(); }
+  /// The state, its rates and the modes at a time not before next(), or after every step.
+  std::optional<Stillness> look(double t, const State& x, const State& dx, const std::vector<Mode>& modes);
+  /// The rates after a switch. A body that creeps to rest at the edge of stiction finally sticks and breaks away by
+  /// rounding: it rests once the rates vanish after many switches in a row.
+  std::optional<Stillness> switched(const State& dx);
+  /// The same if the march itself stopped because its switches accumulate.
+  std::optional<Stillness> within_rounding(const State& dx) const;
+
+ private:
+  std::optional<Stillness> at_rest(LoopField& field, const State& x, const State& dx) const;
+
+  const Loop& loop_;
+  LoopSizes scale_;
+  RestWatch rest_;
+  int looks_ = 0, idle_ = 0;
+};
+
+}  // namespace limcycle

@@ -1,0 +1,247 @@
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/steppers/stepper_limits.hpp"
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/settle/outcome_watch.hpp"
+#include "limcycle/models/linear/dense.hpp"
+
+namespace limcycle {
+namespace {
+
+State initial_state(const Loop& loop, const std::map<std::string, double>& named) {
+  const auto names = state_names(loop);
+  State x(names.size(), 0.0);
+  for (const auto& [name, value] : named) {
+    const auto at = std::ranges::find(names, name);
+    if (at == names.end()) {
+      std::string valid;
+      for (const auto& n : names) valid += (valid.empty() ? "" : ", ") + n;
+      throw std::invalid_argument("simulate.initial." + name + ": there is no such state; the states are " + valid);
+    }
+    x[static_cast<std::size_t>(at - names.begin())] = value;
+  }
+  return state_of(loop, std::move(x));
+}
+
+/// External signals of a run: the loop's constants, replaced or supplemented by the case's signals. Up to the next
+/// break they are continued smoothly, so that a step that ends there is not affected by the jump.
+ExternalSignals external(const Loop& loop, const SimulateOptions& options, const double& next_break) {
+  return [constants = loop.external, origin = loop.external_origin, options, &next_break](double time, External& value,
+                                                                                          External& rate) {
+    const double t = std::min(time, std::nextafter(next_break, 0.0));
+    value = constants;
+    rate.setZero();
+    if (options.reference) {
+      rate(reference_value) = options.reference->slope(t);
+      value(reference_value) = options.reference->at(t) - origin(reference_value);
+      value(reference_slope) = rate(reference_value) - origin(reference_slope);
+      if (options.reference->kind == Signal::Kind::sine && t >= options.reference->start)
+        rate(reference_slope) = -options.reference->at(t) * options.reference->frequency * options.reference->frequency;
+    }
+    if (options.force) {
+      value(external_force) += options.force->at(t);
+      rate(external_force) = options.force->slope(t);
+    }
+  };
+}
+
+std::vector<std::string> columns(const Loop& loop) {
+  std::vector<std::string> names{"t"};
+  for (const auto& name : state_names(loop)) names.push_back("state." + name);
+  names.insert(names.end(), {"y", "dy_dt"});
+  for (const auto& port : loop.ports)
+    for (const char* what : {".input", ".rate", ".output"}) names.push_back(port.path + what);
+  return names;
+}
+
+/// Times at which a step must end: samples and breaks of the signals, in order.
+std::vector<std::pair<double, bool>> stops(const SimulateOptions& options, double sample) {
+  std::vector<std::pair<double, bool>> times;
+  const auto count = static_cast<long>(std::floor(options.duration / sample + 1e-9));
+  for (long i = 1; i <= count; ++i)
+    times.emplace_back(std::min(sample * static_cast<double>(i), options.duration), true);
+  if (times.empty() || times.back().first < options.duration) times.emplace_back(options.duration, true);
+  for (const auto* signal : {&options.force, &options.reference})
+    if (*signal)
+      for (const double t : (*signal)->breaks(options.duration)) times.emplace_back(t, false);
+  std::ranges::sort(times);
+  return times;
+}
+
+void check(const SimulateOptions& options) {
+  if (!(options.duration > 0.0 && std::isfinite(options.duration)))
+    throw std::invalid_argument("simulate.duration must be > 0 s, got " + std::to_string(options.duration));
+  if (!(options.sample >= 0.0) || options.sample > options.duration)
+    throw std::invalid_argument("simulate.sample must lie between 0 and the duration, got " +
+                                std::to_string(options.sample));
+  if (options.sample > 0.0 && options.duration / options.sample > 1e7)
+    throw std::invalid_argument("simulate.sample asks for more than 1e7 rows");
+}
+
+/// One run: rows at the samples, and after every step the data for the watch of the motion.
+class Running {
+ public:
+  Running(const Loop& loop, const SimulateOptions& options)
+      : loop_(loop),
+        options_(options),
+        times_(stops(options, options.sample > 0.0 ? options.sample : options.duration / 1000.0)),
+        next_break_(break_after(0.0)),
+        field_(loop) {
+    run_.columns = columns(loop);
+    field_.set_external(external(loop, options, next_break_));
+    if (!options.force && !options.reference && !loop.elements.empty())
+      // Tighter tolerances do not improve turning points beyond the cubic through each step.
+      watch_.emplace(loop, OutcomeOptions{std::max(options.rtol, 1e-7), 1e-9, cycle_accuracy}, typical_sizes(loop),
+                     slow_time(loop));
+  }
+
+  Simulation operator()() {
+    State x = initial_state(loop_, options_.initial);
+    const State given = x;
+    field_.start(x, 0.0);
+    for (auto i = static_cast<std::size_t>(loop_.states()); i < x.size(); ++i)
+      if (given[i] != 0.0) x[i] = given[i];  // an element's own state named in the case
+    March march(field_, stepper_kind(options_.stepper), loop_weights(loop_, options_.rtol));
+    run_.stepper = to_string(march.kind());
+    run_.notes = stepper_notes(loop_, march.kind(), options_.rtol);
+    march.begin(x, 0.0);
+    begin(x);
+    for (const auto& [until, is_sample] : times_) {
+      while (march.t() < until && run_.status == Status::converged) step(march, until);
+      if (run_.status != Status::converged) break;
+      if (is_sample) {
+        add_row(march.x(), march.t());
+      } else {
+        next_break_ = break_after(until);
+        march.begin(march.x(), march.t());
+      }
+      if (options_.progress) options_.progress(march.t() / options_.duration);
+    }
+    conclude(march);
+    return std::move(run_);
+  }
+
+ private:
+  double break_after(double t) const {
+    const auto next = std::ranges::find_if(times_, [t](const auto& stop) { return !stop.second && stop.first > t; });
+    return next == times_.end() ? infinite : next->first;
+  }
+
+  void begin(const State& x) {
+    add_row(x, 0.0);
+    trace(x, 0.0);
+    if (watch_) watch_->begin(0.0, field_.y(x));
+  }
+
+  void step(March& march, double until) {
+    if (options_.stop && options_.stop()) run_.status = Status::interrupted;
+    if (options_.watch) modes_ = field_.modes();
+    if (run_.status == Status::converged) run_.status = march.step(until);
+    if (run_.status != Status::converged) return;
+    if (options_.watch) options_.watch(field_, march, modes_);
+    if (march.last().switched && march.last().t1 == march.t())
+      run_.events.push_back({march.t(), loop_.ports[*march.last().switched].path});
+    trace(march.x(), march.t());
+    if (watch_) look(march);
+  }
+
+  void look(const March& march) {
+    const OutputStep step = OutputStep::through(loop_, march.last());
+    const double level = watch_->level();
+    if (step.y0 < level && step.y1 >= level) watch_->crossed(step);
+    if ((field_.y_rate(march.last().dx0) < 0.0) != (field_.y_rate(march.last().dx1) < 0.0)) watch_->turned(step);
+    if (march.last().switched) watch_->switched(field_, march.x(), march.t(), *march.last().switched);
+    if (march.t() >= watch_->next_look()) watch_->look(march.t(), march.x(), dx_, field_.modes());
+  }
+
+  void trace(const State& x, double t) {
+    field_.rate(x, dx_, t);
+    run_.trace.t.push_back(t);
+    run_.trace.y.push_back(field_.y(x));
+    run_.trace.y_origin = loop_.output_origin;
+    run_.trace.rate.push_back(field_.y_rate(dx_));
+  }
+
+  void add_row(const State& x, double t) {
+    field_.rate(x, dx_, t);
+    std::vector<double> row{t};
+    const State values = own_values(loop_, x);
+    row.insert(row.end(), values.begin(), values.end());
+    row.push_back(loop_.output_origin + field_.y(x));
+    row.push_back(field_.y_rate(dx_));
+    for (std::size_t i = 0; i < loop_.elements.size(); ++i) {
+      row.push_back(field_.input(i).x);
+      row.push_back(field_.input(i).v);
+      row.push_back(field_.output(i));
+    }
+    run_.rows.push_back(std::move(row));
+  }
+
+  void conclude(const March& march) {
+    run_.steps = march.steps();
+    if (run_.status != Status::converged)
+      run_.why =
+          "the run ended at t = " + std::to_string(march.t()) + " s with status " + std::string(to_string(run_.status));
+    if (run_.status == Status::not_finite) run_.outcome = Outcome::divergence;
+    if (!watch_) return;
+    if (watch_->decided()) run_.outcome = watch_->outcome();
+    if (run_.outcome != Outcome::cycle) return;
+    run_.period = watch_->period();
+    run_.amplitude = watch_->amplitude();
+    if (!watch_->doubtful()) return;
+    SettleOptions settling;
+    settling.stop = settling.shooting.stop = options_.stop;
+    settling.shooting.rtol = settling.shooting.derivative_rtol = 1e-9;
+    const Outcome outcome = settle(loop_, {march.x(), field_.modes()}, settling).outcome;
+    if (outcome == Outcome::family) run_.outcome = outcome;
+  }
+
+  const Loop& loop_;
+  const SimulateOptions& options_;
+  std::vector<std::pair<double, bool>> times_;
+  double next_break_;  ///< read by the external signals of the field
+  LoopField field_;
+  std::optional<OutcomeWatch> watch_;
+  Simulation run_;
+  State dx_;
+  std::vector<Mode> modes_;  ///< before a step, for the watch function
+};
+
+}  // namespace
+
+std::vector<std::string> state_names(const Loop& loop) {
+  auto names = loop.state_names;
+  for (std::size_t i = 0; i < loop.elements.size(); ++i) {
+    const int count = loop.elements[i].states();
+    const std::string base = loop.ports[i].path == "loop.friction" ? "z" : "z_element";
+    for (int k = 0; k < count; ++k) names.push_back(count == 1 ? base : base + std::to_string(k + 1));
+  }
+  return names;
+}
+
+State own_values(const Loop& loop, State x) {
+  Eigen::Map<Eigen::VectorXd> X(x.data(), loop.states());
+  if (loop.origin.size() > 0) X += loop.origin;
+  if (loop.own_states.size() > 0) X = (loop.own_states * X).eval();
+  return x;
+}
+
+State state_of(const Loop& loop, State values) {
+  Eigen::Map<Eigen::VectorXd> X(values.data(), loop.states());
+  if (loop.own_states.size() > 0) X = solve(loop.own_states, Eigen::VectorXd(X));
+  if (loop.origin.size() > 0) X -= loop.origin;
+  return values;
+}
+
+Simulation simulate(const Loop& loop, const SimulateOptions& options) {
+  check(options);
+  if (loop.delay > 0.0) throw std::invalid_argument("loop.plant.delay: simulate does not treat a delay yet");
+  return Running(loop, options)();
+}
+
+}  // namespace limcycle

@@ -1,0 +1,47 @@
+#pragma once
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "limcycle/analysis/study/adequacy/scene_answer.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// True for laws of the same kind with the same parameters. False for a law without a table of parameters.
+bool same_law(const Element& a, const Element& b);
+
+/// The loop with that law as every method receives it. A delay is approximated for all of them alike, so that the
+/// comparison is of methods and not of treatments of the delay.
+Loop scene_loop(const LoopParts& parts, const Element& law);
+
+/// The answers of methods for a case with other laws and other parameters, each computed once: a parameter that a law
+/// does not have can be varied without changing its answer.
+class AskedScenes {
+ public:
+  /// `patience`: CPU seconds for one answer.
+  AskedScenes(PredictOptions options, double patience);
+
+  /// `place`: a number that identifies everything in `parts` except the friction.
+  const SceneAnswer& ask(const std::string& method, std::size_t place, const LoopParts& parts, const Element& law);
+  /// Stores an answer computed elsewhere.
+  void keep(const std::string& method, std::size_t place, const LoopParts& parts, const Element& law,
+            SceneAnswer answer);
+
+ private:
+  struct Scene {
+    std::size_t place;
+    Element law;
+    std::optional<SceneQuestions> questions;  ///< empty: the plant does not take this law
+    std::string why;                          ///< the reason in that case
+    std::map<std::string, SceneAnswer> answers;
+  };
+  Scene& scene(std::size_t place, const LoopParts& parts, const Element& law);
+
+  PredictOptions options_;
+  double patience_;
+  std::deque<Scene> scenes_;
+};
+
+}  // namespace limcycle

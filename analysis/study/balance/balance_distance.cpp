@@ -1,0 +1,85 @@
+#include "limcycle/analysis/study/balance/balance_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace limcycle {
+namespace {
+
+constexpr int cells = 40;  ///< cells over each side of the box
+constexpr int seeds = 4;   ///< best points of the grid that are refined
+constexpr double finest = 1e-6;
+
+struct Place {
+  double a, w;  ///< ln A, ln w
+  double value;
+};
+
+class Search {
+ public:
+  Search(const Loop& loop, const SearchBox& box) : balance_(loop), box_(box) {}
+
+  double value(double a, double w, double accuracy) const {
+    const auto f = balance_(std::exp(a), std::exp(w), accuracy);
+    const double size = std::abs(f - 1.0);
+    return std::isfinite(f.real()) && std::isfinite(f.imag()) && size > 0.0 ? std::abs(f) / size : infinite;
+  }
+  Place place(double a, double w, double accuracy) const { return {a, w, value(a, w, accuracy)}; }
+
+  bool inside(double a, double w) const {
+    return a >= std::log(box_.amplitude_min) && a <= std::log(box_.amplitude_max) &&
+           w >= std::log(box_.frequency_min) && w <= std::log(box_.frequency_max);
+  }
+
+  /// Moves along the axes and the diagonals as long as the distance falls, then with half the step.
+  Place refined(Place best, double step) const {
+    best.value = value(best.a, best.w, 1e-9);
+    while (step > finest) {
+      Place next = best;
+      for (const auto& [da, dw] : std::vector<std::pair<double, double>>{
+               {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}) {
+        if (!inside(best.a + step * da, best.w + step * dw)) continue;
+        const Place trial = place(best.a + step * da, best.w + step * dw, 1e-9);
+        if (trial.value < next.value) next = trial;
+      }
+      if (next.value < best.value)
+        best = next;
+      else
+        step *= 0.5;
+    }
+    return best;
+  }
+
+ private:
+  LoopBalance balance_;
+  SearchBox box_;
+};
+
+}  // namespace
+
+std::optional<BalanceDistance> balance_distance(const Loop& loop, const SearchBox& box,
+                                                const std::function<bool()>& stop) {
+  if (LoopBalance::not_applicable(loop)) return std::nullopt;
+  const Search search(loop, box);
+  const double a0 = std::log(box.amplitude_min), w0 = std::log(box.frequency_min);
+  const double da = (std::log(box.amplitude_max) - a0) / cells, dw = (std::log(box.frequency_max) - w0) / cells;
+  std::vector<Place> places;
+  for (int i = 0; i <= cells; ++i)
+    for (int k = 0; k <= cells; ++k) {
+      if (stop && stop()) return std::nullopt;
+      places.push_back(search.place(a0 + da * i, w0 + dw * k, 1e-4));
+    }
+  std::ranges::sort(places, {}, &Place::value);
+  if (!std::isfinite(places.front().value)) return std::nullopt;
+  Place best = places.front();
+  best.value = infinite;
+  for (int i = 0; i < seeds && std::isfinite(places[static_cast<std::size_t>(i)].value); ++i) {
+    if (stop && stop()) return std::nullopt;
+    const Place found = search.refined(places[static_cast<std::size_t>(i)], 0.5 * std::max(da, dw));
+    if (found.value < best.value) best = found;
+  }
+  return BalanceDistance{best.value, std::exp(best.a), std::exp(best.w)};
+}
+
+}  // namespace limcycle

@@ -1,0 +1,42 @@
+#include "limcycle/analysis/study/composite/composite_predictions.hpp"
+
+#include <stdexcept>
+
+#include "limcycle/analysis/study/predict/failure_note.hpp"
+#include "limcycle/analysis/study/predict/method_names.hpp"
+
+namespace limcycle {
+
+CompositePredictions composite_predictions(CompositeBalance& balance, const SearchBox& box, long max_steps,
+                                           const std::function<bool()>& stop) {
+  CompositeSearchOptions options;
+  options.frequency_min = box.frequency_min;
+  options.frequency_max = box.frequency_max;
+  options.max_steps = max_steps;
+  options.stop = stop;
+  CompositePredictions result;
+  CompositeSearch found;
+  try {
+    found = balance.find(options);
+  } catch (const std::invalid_argument& refused) {  // numbers of the loop beyond the range of the method
+    found.notes.push_back(failure_note(refused.what()));
+    found.status = Status::incomplete;
+  }
+  for (const CompositeRoot& root : found.roots) {
+    Prediction p;
+    p.method = composite_name;
+    p.input_amplitude = root.input_amplitude;
+    p.amplitude = root.amplitude;
+    p.frequency = root.frequency;
+    p.residual = root.residual;
+    p.stable = root.stable;
+    result.predictions.push_back(std::move(p));
+  }
+  result.roots = std::move(found.roots);
+  result.notes = std::move(found.notes);
+  result.effort = {std::string(composite_name), found.evaluations, "periods of mass and friction"};
+  result.status = found.status;
+  return result;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,99 @@
+#include "limcycle/analysis/study/predict/between_starts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limcycle {
+namespace {
+
+constexpr int bisections = 6;             ///< of one border
+constexpr double close_enough = 1.1;      ///< ratio of two starts between which the search ends
+constexpr long steps_of_a_trend = 6'000;  ///< of one of the fifty motions along a border
+constexpr double step_aside = 0.01;       ///< relative distance from an unstable cycle
+
+/// The state moved away from the rest point of the linear part by a factor; elements keep their states.
+LoopState scaled(const Loop& loop, const LoopState& state, double factor) {
+  bool exact = false;
+  const Eigen::VectorXd rest = loop.rest_point(exact);
+  LoopState moved = state;
+  for (Eigen::Index i = 0; i < rest.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    moved.x[k] = rest(i) + factor * (state.x[k] - rest(i));
+  }
+  return moved;
+}
+
+/// The time between the third and the fifth turn of y: a motion that begins near an unstable cycle first follows it.
+std::optional<double> first_period(const Trace& trace) {
+  std::vector<double> turns;
+  for (std::size_t i = 0; i + 1 < trace.t.size() && turns.size() < 5; ++i)
+    if (trace.rate[i] * trace.rate[i + 1] < 0.0) turns.push_back(trace.t[i + 1]);
+  if (turns.size() < 5) return std::nullopt;
+  return turns[4] - turns[2];
+}
+
+}  // namespace
+
+BetweenStarts::BetweenStarts(const Loop& loop, CycleHunt& hunt, long max_steps, const std::function<bool()>& stop)
+    : loop_(loop), hunt_(hunt), left_(max_steps), stop_(stop) {}
+
+OutcomeOfStart BetweenStarts::probe(const LoopState& start, std::string name) {
+  const long before = hunt_.steps();
+  OutcomeOfStart outcome = hunt_.probe_from(start, std::move(name));
+  left_ -= hunt_.steps() - before;
+  return outcome;
+}
+
+void BetweenStarts::find_borders() {
+  const auto unstable = [](const Cycle& cycle) { return cycle.stable == false; };
+  for (const Border& border : borders_) {
+    if (over() || std::ranges::any_of(hunt_.cycles(), unstable)) return;
+    const long before = hunt_.steps();
+    hunt_.edge_along(border.ray, border.period, steps_of_a_trend);
+    left_ -= hunt_.steps() - before;
+  }
+}
+
+void BetweenStarts::look_inside_divergence(std::vector<Start> starts, const std::function<LoopState(double place)>& ray,
+                                           const std::function<std::string(double place)>& name) {
+  std::ranges::sort(starts, {}, &Start::place);
+  const auto diverges = [&](const Start& start) {
+    return hunt_.outcomes()[start.outcome].outcome == Outcome::divergence;
+  };
+  for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
+    if (diverges(starts[i]) == diverges(starts[i + 1])) continue;
+    const bool below = diverges(starts[i]);
+    double low = starts[i].place, high = starts[i + 1].place;
+    Trace diverging = hunt_.outcomes()[starts[below ? i : i + 1].outcome].trace;
+    for (int k = 0; k < bisections && high > close_enough * low && !over(); ++k) {
+      const double middle = std::sqrt(low * high);
+      OutcomeOfStart outcome = probe(ray(middle), name(middle));
+      const bool also = outcome.outcome == Outcome::divergence;
+      (also == below ? low : high) = middle;
+      if (also) diverging = std::move(outcome.trace);
+    }
+    const double place = below ? high : low;
+    if (const auto period = first_period(diverging))
+      borders_.push_back({[ray, place](double scale) { return ray(scale * place); }, *period});
+  }
+}
+
+std::vector<std::size_t> BetweenStarts::look_beside_unstable_cycles() {
+  std::vector<std::size_t> undecided;
+  for (; looked_at_ < hunt_.cycles().size() && !over(); ++looked_at_) {
+    const Cycle cycle = hunt_.cycles()[looked_at_];  // a copy: the list grows
+    if (cycle.stable != false) continue;
+    const std::string which = "the unstable cycle " + std::to_string(looked_at_);
+    bool decided = false;
+    for (const bool inside : {true, false}) {
+      if (over()) return undecided;
+      const LoopState start = scaled(loop_, cycle.start, inside ? 1.0 - step_aside : 1.0 + step_aside);
+      const auto outcome = probe(start, std::string(inside ? "just inside " : "just outside ") + which);
+      decided = decided || outcome.outcome != Outcome::undecided;
+    }
+    if (!decided) undecided.push_back(looked_at_);
+  }
+  return undecided;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,53 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "limcycle/analysis/study/predict/cycle_hunt.hpp"
+
+namespace limcycle {
+
+/// Searches for cycles between the starts of a hunt, if it is known that the starts of a loop end differently. Keeps
+/// references to its arguments. Cost: some simulations for each border.
+class BetweenStarts {
+ public:
+  /// `max_steps`: of the integrator, for all calls of this object; a simulation that has begun is finished.
+  BetweenStarts(const Loop& loop, CycleHunt& hunt, long max_steps, const std::function<bool()>& stop);
+
+  /// Starts along one ray of initial states, by their position on it (positive), and the index of their outcome.
+  struct Start {
+    double place;
+    std::size_t outcome;
+  };
+  /// Between neighbouring starts of which one diverges and the other does not, the border is bisected (in the logarithm
+  /// of the position) and every motion on the way followed to its end. `name`: text for a start at a position.
+  void look_inside_divergence(std::vector<Start> starts, const std::function<LoopState(double place)>& ray,
+                              const std::function<std::string(double place)>& name);
+
+  /// The unstable cycles at the borders found, if no other method has found any: they join the cycles of the hunt.
+  /// Cost: some fifty short simulations for each border.
+  void find_borders();
+
+  /// Simulates from just inside and just outside every unstable cycle not treated before (1 % nearer to the rest point
+  /// of the linear part and 1 % farther from it): the cycle is the border between the outcomes of these two. Returns
+  /// the cycles from which neither was decided.
+  std::vector<std::size_t> look_beside_unstable_cycles();
+
+ private:
+  bool over() const { return left_ <= 0 || (stop_ && stop_()); }
+  OutcomeOfStart probe(const LoopState& start, std::string name);
+
+  /// Border at which motions begin to diverge, and the period of one of them there.
+  struct Border {
+    std::function<LoopState(double scale)> ray;  ///< 1: at the border
+    double period;                               ///< s
+  };
+
+  const Loop& loop_;
+  CycleHunt& hunt_;
+  long left_;  ///< steps
+  const std::function<bool()>& stop_;
+  std::size_t looked_at_ = 0;  ///< number of cycles treated
+  std::vector<Border> borders_;
+};
+
+}  // namespace limcycle

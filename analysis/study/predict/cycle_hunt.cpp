@@ -1,0 +1,80 @@
+#include "limcycle/analysis/study/predict/cycle_hunt.hpp"
+
+#include <algorithm>
+
+#include "limcycle/analysis/orbit/settle/edge.hpp"
+#include "limcycle/analysis/study/predict/cycle_search.hpp"
+#include "limcycle/analysis/study/predict/verdicts.hpp"
+
+namespace limcycle {
+
+CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box)
+    : loop_(loop), settle_(cycle_search(loop, box, options.accuracy, options.stop)) {}
+
+OutcomeOfStart CycleHunt::simulate(const LoopState& start, std::string name) {
+  settle_.known = cycles_;
+  Settled settled = settle(loop_, start, settle_);
+  OutcomeOfStart outcome{std::move(name),          settled.outcome, std::move(settled.why), {},
+                         std::move(settled.trace), settled.time,    settled.steps};
+  outcome.cycle = settled.known;
+  steps_ += settled.work;
+  outcome.by = std::move(settled.by);
+  outcome.half_range = settled.half_range;
+  outcome.mean_period = settled.mean_period;
+  if (settled.shot) {
+    maps_ += settled.shot->maps;
+    outcome.cycle = merge(cycles_, settled.shot->cycle);
+  }
+  return outcome;
+}
+
+const OutcomeOfStart& CycleHunt::settle_from(const LoopState& start, std::string name) {
+  outcomes_.push_back(simulate(start, std::move(name)));
+  return outcomes_.back();
+}
+
+bool CycleHunt::is_news(const OutcomeOfStart& outcome) const {
+  if (outcome.outcome == Outcome::undecided) return false;
+  return std::ranges::none_of(outcomes_, [&](const OutcomeOfStart& one) {
+    return one.outcome == outcome.outcome && one.cycle == outcome.cycle;
+  });
+}
+
+OutcomeOfStart CycleHunt::probe_from(const LoopState& start, std::string name) {
+  OutcomeOfStart outcome = simulate(start, std::move(name));
+  if (is_news(outcome)) outcomes_.push_back(outcome);
+  return outcome;
+}
+
+std::optional<std::size_t> CycleHunt::keep(const ShootingResult& shot) {
+  maps_ += shot.maps;
+  steps_ += shot.steps;
+  if (shot.status != Status::converged || !shot.cycle.stable) return std::nullopt;
+  if (shot.cycle.amplitude < settle_.amplitude_floor) return std::nullopt;
+  return merge(cycles_, shot.cycle);
+}
+
+std::optional<std::size_t> CycleHunt::shoot_from(const OrbitGuess& guess) {
+  ShootingOptions options = settle_.shooting;
+  options.max_maps = 60;
+  return keep(shoot_multiple(loop_, guess, options));
+}
+
+std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(double scale)>& ray, double period,
+                                                 long max_steps) {
+  settle_.known = cycles_;
+  // If small and large oscillations end in the same outcome there is no border between them.
+  const Settled small = settle(loop_, ray(smallest_edge_scale), settle_),
+                large = settle(loop_, ray(largest_edge_scale), settle_);
+  steps_ += small.work + large.work;
+  const bool same = small.outcome == large.outcome && small.outcome != Outcome::undecided && small.known == large.known;
+  if (same && !small.shot && !large.shot) return std::nullopt;
+  for (const Settled* end : {&small, &large})
+    if (end->shot) merge(cycles_, end->shot->cycle);
+  settle_.known = cycles_;
+  SettleOptions along = settle_;
+  if (max_steps > 0) along.max_steps = max_steps;
+  return keep(edge_cycle(loop_, ray, period, along));
+}
+
+}  // namespace limcycle

@@ -1,0 +1,25 @@
+#include "limcycle/analysis/study/predict/cycle_search.hpp"
+
+#include <algorithm>
+
+#include "limcycle/analysis/motion/steppers/stepper_limits.hpp"
+#include "limcycle/analysis/study/balance/output_per_input.hpp"
+
+namespace limcycle {
+
+SettleOptions cycle_search(const Loop& loop, const SearchBox& box, double accuracy, std::function<bool()> stop) {
+  const double unit = output_per_input(loop);
+  SettleOptions options;
+  options.amplitude_floor = unit * box.amplitude_min;
+  options.amplitude_ceiling = 1e4 * unit * box.amplitude_max;
+  options.rtol = std::clamp(0.1 * loosest_stiff_tolerance(loop), 1e-12, options.rtol);
+  options.shooting.accuracy = accuracy;
+  options.shooting.rtol = std::clamp(accuracy, 1e-13, 1e-8);
+  options.shooting.tolerance = 0.1 * options.shooting.rtol;
+  options.shooting.derivative_rtol = std::clamp(accuracy, 1e-10, 1e-8);
+  options.shooting.stop = stop;
+  options.stop = std::move(stop);
+  return options;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,38 @@
+#include "limcycle/analysis/study/predict/loop_in_time.hpp"
+
+#include <algorithm>
+
+#include "limcycle/analysis/orbit/cycle/measure.hpp"
+#include "limcycle/analysis/short_number.hpp"
+
+namespace limcycle {
+
+bool exact_in_time(const Loop& loop) {
+  return loop.delay == 0.0 || in_time_domain(loop, lowest_pade_order).pade_order == 0;
+}
+
+LoopInTime loop_in_time(const Loop& loop, double highest) {
+  if (loop.delay == 0.0) return {{loop, 0, 0}, {}};
+  const double up_to = std::min(highest > 0.0 ? 7.0 * highest : 7.0 / loop.delay, 40.0 / loop.delay);
+  int order = lowest_pade_order;
+  while (order < highest_pade_order && pade_error(up_to, loop.delay, order) > 1e-9) ++order;
+  LoopInTime made{in_time_domain(loop, order), {}};
+  made.note =
+      made.treated.pade_order == 0
+          ? "the delay is exact in the frequency domain and, acting on a relay's switches, in the time domain too"
+          : "the delay is exact in the frequency domain; in the time domain it is a Pade approximation of order " +
+                std::to_string(order) + "/" + std::to_string(order) + ", off by at most " +
+                short_number(pade_error(up_to, loop.delay, order)) + " of the delayed signal up to " +
+                short_number(up_to) + " rad/s";
+  return made;
+}
+
+double delay_error(const Loop& loop, int pade_order, const Cycle& cycle) {
+  if (pade_order == 0) return 0.0;
+  const Eigen::VectorXcd X = input_harmonics(cycle, 199);
+  double sum = 0.0;
+  for (int n = 1; n < X.size(); ++n) sum += std::abs(X(n)) * pade_error(n * cycle.frequency(), loop.delay, pade_order);
+  return sum / std::abs(X(1));
+}
+
+}  // namespace limcycle

@@ -1,0 +1,271 @@
+#include "limcycle/analysis/study/predict/predict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+
+#include "limcycle/analysis/derivative_notes.hpp"
+#include "limcycle/analysis/orbit/settle/load_step.hpp"
+#include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/balance/balance_predictions.hpp"
+#include "limcycle/analysis/study/balance/df_predictions.hpp"
+#include "limcycle/analysis/study/balance/output_per_input.hpp"
+#include "limcycle/analysis/study/composite/composite_predictions.hpp"
+#include "limcycle/analysis/study/predict/between_starts.hpp"
+#include "limcycle/analysis/study/predict/cycle_hunt.hpp"
+#include "limcycle/analysis/study/predict/interest.hpp"
+#include "limcycle/analysis/study/predict/loop_in_time.hpp"
+#include "limcycle/analysis/study/predict/method_names.hpp"
+#include "limcycle/analysis/study/predict/prediction_check.hpp"
+#include "limcycle/analysis/study/predict/verdicts.hpp"
+#include "limcycle/analysis/study/predict/work_share.hpp"
+
+namespace limcycle {
+namespace {
+
+/// The work of one prediction in order of importance: first the outcomes of the loop from every start, then the
+/// predictions of the methods within their share of the work, then the verdict on each prediction. Finished parts stay
+/// when the user interrupts.
+class PredictionStudy {
+ public:
+  PredictionStudy(const Loop& loop, const PredictOptions& options)
+      : loop_(loop), options_(options), box_(options.search.value_or(default_search_box(loop))) {
+    report_.search = box_;
+  }
+
+  PredictReport run() {
+    // If a dead time is approximated, the predictions determine the accuracy required.
+    if (!exact_in_time(loop_)) predict_by_df(work_share(0));
+    enter_time();
+    run_starts();
+    const WorkShare share = work_share(hunt_->steps());
+    look_between_starts(share);
+    begin_composite(share);
+    if (exact_in_time(loop_)) predict_by_df(share);
+    end_composite();
+    check_predictions(share);
+    between_->find_borders();
+    look_beside_unstable_cycles();
+    balance_harmonics(share);
+    look_beside_unstable_cycles();
+    finish();
+    return std::move(report_);
+  }
+
+ private:
+  bool stopped() const { return options_.stop && options_.stop(); }
+  void tell(double fraction, std::string_view what) const {
+    if (options_.progress) options_.progress(fraction, what);
+  }
+  void note(std::string text) { report_.notes.push_back(std::move(text)); }
+
+  void enter_time() {
+    double highest = 0.0;
+    for (const Prediction& p : report_.predictions) highest = std::max(highest, p.frequency);
+    LoopInTime made = loop_in_time(loop_, highest);
+    time_ = std::move(made.treated.loop);
+    pade_order_ = made.treated.pade_order;
+    if (!made.note.empty()) note(std::move(made.note));
+    hunt_.emplace(time_, options_, box_);
+    if (hunt_->rtol() < SettleOptions{}.rtol)
+      note("bristles of this stiffness need a tolerance of " + short_number(hunt_->rtol(), 2) +
+           " in simulations (usual is " + short_number(SettleOptions{}.rtol) + "): a looser one breaks stiction early");
+  }
+
+  void run_starts() {
+    settle_from(start_displacements(output_per_input(time_), box_, options_.starts));
+    if (!options_.search && all_diverge() && !stopped()) look_further_down();
+    if (!options_.load_step || stopped()) return;
+    if (const auto step = load_step(time_)) hunt_->settle_from(step->start, "load step of " + short_number(step->load));
+  }
+
+  void settle_from(const std::vector<double>& displacements) {
+    double done = 0.0;
+    for (const double displacement : displacements) {
+      if (stopped()) return;
+      tell(0.4 * done++ / static_cast<double>(displacements.size()), "simulation");
+      starts_.push_back({displacement, hunt_->outcomes().size()});
+      hunt_->settle_from(displaced(time_, displacement), start_name(displacement));
+    }
+  }
+
+  bool all_diverge() const {
+    return !hunt_->outcomes().empty() && std::ranges::all_of(hunt_->outcomes(), [](const OutcomeOfStart& one) {
+      return one.outcome == Outcome::divergence;
+    });
+  }
+
+  /// For a box in which every start diverges: extends it downwards and simulates from smaller displacements.
+  void look_further_down() {
+    constexpr double decades = 1e-6, between = 0.01;
+    const int more = std::min(options_.starts, 3);
+    std::vector<double> displacements;
+    for (const auto& start : starts_) displacements.push_back(start.place);
+    for (int i = 0; i < more; ++i) displacements.push_back(between * displacements.back());
+    box_.amplitude_min *= decades;
+    report_.search = box_;
+    note("every start in the search box diverges: the box was extended down to an amplitude of " +
+         short_number(box_.amplitude_min, 3));
+    starts_.clear();
+    hunt_.emplace(time_, options_, box_);
+    settle_from(displacements);
+  }
+
+  /// "y(0) = 0.1", or "y(0) = rest + 0.1" of a loop that does not rest at y = 0.
+  std::string start_name(double displacement) const {
+    bool exact = false;
+    const double rest = time_.output_origin + (time_.C_y * time_.rest_point(exact)).value();
+    const bool elsewhere = std::abs(rest) > 1e-9 * std::abs(displacement);
+    return (elsewhere ? "y(0) = rest + " : "y(0) = ") + short_number(displacement);
+  }
+
+  /// Searches for cycles between the starts if some of them diverge.
+  void look_between_starts(const WorkShare& share) {
+    between_.emplace(time_, *hunt_, share.between_steps, options_.stop);
+    between_->look_inside_divergence(
+        starts_, [&](double displacement) { return displaced(time_, displacement); },
+        [&](double displacement) { return start_name(displacement); });
+  }
+
+  void look_beside_unstable_cycles() {
+    for (const std::size_t cycle : between_->look_beside_unstable_cycles())
+      note("the behaviour just inside and just outside the unstable cycle " + std::to_string(cycle) +
+           " was not determined");
+  }
+
+  void predict_by_df(const WorkShare& share) {
+    if (!options_.methods.describing_function || stopped()) return;
+    if (const auto why = LoopBalance::not_applicable(loop_)) return note(*why);
+    tell(0.6, "roots of 1 + N G");
+    balance_.emplace(loop_);
+    DfPredictions found = df_predictions(loop_, *balance_, box_, options_, share.df_evaluations);
+    report_.notes.insert(report_.notes.begin(), found.notes.begin(), found.notes.end());
+    if (found.status != Status::converged) report_.status = found.status;
+    if (found.status == Status::incomplete || found.status == Status::not_finite)
+      report_.incomplete.emplace_back(df_name);
+    report_.predictions = std::move(found.predictions);
+    report_.absence = std::move(found.absence);
+    report_.nyquist = std::move(found.nyquist);
+    report_.efforts.push_back({std::string(df_name), 0, {}});
+    (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(df_name);
+  }
+
+  /// The search with mass and friction as one element runs in parallel to that for roots of 1 + N G: they are
+  /// independent.
+  void begin_composite(const WorkShare& share) {
+    if (!options_.methods.composite || loop_.delay > 0.0 || CompositeBalance::not_applicable(loop_) || stopped())
+      return;
+    composite_.emplace(loop_);
+    composite_search_ = std::async(std::launch::async, [this, most = share.composite_steps] {
+      return composite_predictions(*composite_, box_, most, options_.stop);
+    });
+  }
+
+  void end_composite() {
+    if (!composite_search_.valid()) return;
+    tell(0.65, "mass and friction as one element");
+    CompositePredictions found = composite_search_.get();
+    first_composite_ = report_.predictions.size();
+    composite_roots_ = std::move(found.roots);
+    std::ranges::move(found.predictions, std::back_inserter(report_.predictions));
+    std::ranges::move(found.notes, std::back_inserter(report_.notes));
+    report_.efforts.push_back(std::move(found.effort));
+    if (found.status == Status::incomplete) report_.incomplete.emplace_back(composite_name);
+    (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(composite_name);
+  }
+
+  LoopState start_of(std::size_t index) {
+    const Prediction& p = report_.predictions[index];
+    if (p.method == composite_name) return composite_->state(composite_roots_[index - first_composite_]);
+    return LoopBalance(time_).state(p.input_amplitude, p.frequency);
+  }
+
+  /// Verdicts on the predictions: simulates from each predicted oscillation.
+  void check_predictions(const WorkShare& share) {
+    PredictionCheck check(time_, *hunt_, share.check_steps, options_.stop);
+    const std::size_t count = report_.predictions.size();
+    for (std::size_t i = 0; i < count && !stopped(); ++i) {
+      tell(0.7 + 0.2 * static_cast<double>(i) / static_cast<double>(count), "checking predictions");
+      check.check(report_.predictions[i], start_of(i), "prediction " + std::to_string(i));
+    }
+    if (check.unchecked() > 0)
+      note("step limit reached: " + std::to_string(check.unchecked()) +
+           " of the predictions were not checked by simulation");
+  }
+
+  void balance_harmonics(const WorkShare& share) {
+    if (!options_.methods.harmonic_balance || stopped()) return;
+    tell(0.9, "harmonic balance");
+    BalancePredictions found = balance_predictions(
+        {loop_, time_, balance_ ? &*balance_ : nullptr, report_.predictions, share.balance_evaluations, options_.stop},
+        *hunt_);
+    std::ranges::move(found.predictions, std::back_inserter(report_.predictions));
+    std::ranges::move(found.notes, std::back_inserter(report_.notes));
+    if (found.interrupted) return;
+    if (found.cut_short) {
+      note("harmonic balance: step limit reached, not every start was tried");
+      report_.incomplete.emplace_back(balance_name);
+    }
+    report_.efforts.push_back(std::move(found.effort));
+    used_.emplace_back(balance_name);
+  }
+
+  void note_memory() {
+    for (std::size_t i = 0; i < report_.cycles.size(); ++i) {
+      if (report_.cycles[i].remembered == 0) continue;
+      note("cycle " + std::to_string(i) + " is one of a family of neighbouring cycles: the law keeps " +
+           std::to_string(report_.cycles[i].remembered) + (report_.cycles[i].remembered == 1 ? " number" : " numbers") +
+           " of its history, which the cycle neither changes nor forgets (their multipliers, 1, are left out; "
+           "stability holds for a given history)");
+    }
+  }
+
+  void finish() {
+    report_.cycles = hunt_->cycles();
+    for (Cycle& cycle : report_.cycles) cycle.error = std::max(cycle.error, delay_error(loop_, pade_order_, cycle));
+    report_.outcomes = hunt_->outcomes();
+    report_.efforts.push_back({"shooting", hunt_->maps(), "return maps"});
+    note_memory();
+    std::ranges::move(compare_with_interest(report_.cycles, options_.search.has_value(), report_.search),
+                      std::back_inserter(report_.notes));
+    std::ranges::move(derivative_notes(loop_), std::back_inserter(report_.notes));
+    for (const auto& method : used_) {
+      const auto missed = missed_by(method, report_.cycles, report_.predictions);
+      report_.missed.insert(report_.missed.end(), missed.begin(), missed.end());
+    }
+    if (stopped()) report_.status = Status::interrupted;
+    tell(1.0, "done");
+  }
+
+  const Loop& loop_;
+  const PredictOptions& options_;
+  PredictReport report_;
+  SearchBox box_;
+  Loop time_;  ///< the same loop for the time domain
+  int pade_order_ = 0;
+  std::optional<CycleHunt> hunt_;
+  std::vector<BetweenStarts::Start> starts_;  ///< displacements of y
+  std::optional<BetweenStarts> between_;
+  std::optional<LoopBalance> balance_;
+  std::optional<CompositeBalance> composite_;
+  std::future<CompositePredictions> composite_search_;
+  std::size_t first_composite_ = 0;  ///< index of its first prediction
+  std::vector<CompositeRoot> composite_roots_;
+  std::vector<std::string> used_;
+};
+
+}  // namespace
+
+std::vector<double> start_displacements(double unit, const SearchBox& box, int starts) {
+  std::vector<double> list;
+  double displacement = unit * box.amplitude_max;
+  for (int i = 0; i < starts && displacement >= unit * box.amplitude_min; ++i) {
+    list.push_back(displacement);
+    displacement *= i == 0 ? 0.1 : 0.01;
+  }
+  return list;
+}
+
+PredictReport predict(const Loop& loop, const PredictOptions& options) { return PredictionStudy(loop, options).run(); }
+
+}  // namespace limcycle

@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/study/balance/output_per_input.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/models/element/quantizer.hpp"
+#include "limcycle/models/element/saturation.hpp"
+
+namespace limcycle {
+namespace {
+
+/// rad; at 2.4 the mean of gravity over a sinusoidal swing vanishes (J0), and with it the balance of the means.
+double widest_swing(const Loop& loop) {
+  const bool gravity =
+      std::ranges::any_of(loop.elements, [](const auto& element) { return element.pull(0.0, 0.0).has_value(); });
+  return gravity ? 2.0 / output_per_input(loop) : infinite;
+}
+
+/// Gain of an element for swings far beyond its own size, or within its limit; 0: it has none.
+double gain_beyond(const Element& element) { return element.as<Quantizer<double>>() != nullptr ? 1.0 : 0.0; }
+double gain_within(const Element& element) {
+  const auto* limit = element.as<Saturation<double>>();
+  return limit ? limit->slope : gain_beyond(element);
+}
+
+/// The loop with elements before the main one replaced by their gain.
+Loop with_gains(Loop loop, double (*gain_of)(const Element&)) {
+  Port& main = loop.ports.back();
+  for (std::size_t k = 0; k + 1 < loop.elements.size(); ++k) {
+    const double gain = gain_of(loop.elements[k]);
+    if (gain == 0.0) continue;
+    const Port& port = loop.ports[k];
+    const auto column = static_cast<Eigen::Index>(k);
+    loop.A += gain * loop.B.col(column) * port.C;
+    if (loop.A_delayed.size() > 0 && port.C_delayed.size() > 0)
+      loop.A_delayed += gain * loop.B.col(column) * port.C_delayed;
+    main.C += gain * main.D(column) * port.C;
+  }
+  return loop;
+}
+
+/// Largest response of the main element's input to `level` at its output, from w = from to 10 fast, at
+/// s = (0.1 + j) w, so that an undamped resonance does not count as infinite.
+double largest_response(const Loop& loop, double level, double from, double fast) {
+  const auto main = std::ssize(loop.elements) - 1;
+  double largest = 0.0;
+  for (int i = 0; i <= 200; ++i) {
+    const double w = from * std::pow(10.0 * fast / from, i / 200.0);
+    const double size = std::abs(loop.element_response(std::complex<double>(0.1 * w, w))(main, main)) * level;
+    if (std::isfinite(size)) largest = std::max(largest, size);
+  }
+  return largest;
+}
+
+/// Largest amplitude that the main element's input may reach: within the limits of the command by the response of the
+/// closed loop; beyond them the loop is open, and the response to the limited command counts, at the open loop's own
+/// frequencies.
+double reach(const Loop& loop, double slow, double fast) {
+  const double level = output_level(loop, loop.elements.size() - 1);
+  const Loop beyond_limits = with_gains(loop, gain_beyond);
+  const double open = largest_response(beyond_limits, level, 0.1 * slow, fast);
+  double limit = 0.0;
+  for (std::size_t k = 0; k + 1 < loop.elements.size(); ++k)
+    if (const auto* element = loop.elements[k].as<Saturation<double>>()) limit = std::max(limit, element->limit);
+  if (limit == 0.0 || !loop.ports.back().rubs) return open;
+  const double beyond = largest_response(beyond_limits, std::max(level, limit), slow, fast);
+  return std::min(open, std::max(beyond, largest_response(with_gains(loop, gain_within), level, 0.1 * slow, fast)));
+}
+
+}  // namespace
+
+/// Two decades around the loop's poles; amplitudes up to three times the largest response to the element's level there,
+/// six decades down.
+SearchBox default_search_box(const Loop& loop) {
+  const auto moduli = pole_moduli(loop);
+  const double slow = moduli.empty() ? 1.0 : moduli.front(), fast = moduli.empty() ? 1.0 : moduli.back();
+  SearchBox box{0.0, 0.0, 0.01 * slow, 100.0 * fast};
+  // A delay gives infinitely many roots, one at every turn of its phase: only the first few turns can matter.
+  if (loop.delay > 0.0) box.frequency_max = std::min(box.frequency_max, std::max(10.0 * fast, 30.0 / loop.delay));
+  double largest = reach(loop, slow, fast);
+  if (!(largest > 0.0)) largest = 1.0;
+  box.amplitude_max = std::min(3.0 * largest, widest_swing(loop));
+  box.amplitude_min = 1e-6 * box.amplitude_max;
+  return box;
+}
+
+}  // namespace limcycle

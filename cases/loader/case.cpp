@@ -1,0 +1,87 @@
+#include "limcycle/cases/loader/case.hpp"
+
+#include <filesystem>
+
+#include "limcycle/cases/loader/sections.hpp"
+
+namespace limcycle {
+namespace {
+
+Case read_document(const case_file::Document& document) {
+  const case_file::Section top(document, document.root, "");
+  top.allow({"title", "loop", "search", "df", "simulate", "predict", "sensitivity", "dissipativity", "claim"});
+  Case result;
+  result.file = document.file;
+  result.overrides = document.overrides;
+  result.title = std::filesystem::path(document.file).stem().string();
+  if (const auto title = top.find("title")) result.title = case_file::read_string(*title);
+
+  const auto loop = top.section("loop");
+  if (!loop) throw top.error("loop", "is required: a case needs [loop]");
+  case_file::read_loop(*loop, result);
+  if (const auto search = top.section("search")) result.predict.search = case_file::read_search(*search);
+  if (const auto df = top.section("df")) result.df = case_file::read_df(*df);
+  if (const auto predict = top.section("predict")) case_file::read_predict(*predict, result);
+  if (const auto simulate = top.section("simulate")) {
+    if (!result.loop) throw simulate->document().error_at("simulate", "needs a loop: add [loop.plant]");
+    result.simulate = case_file::read_simulate(*simulate, state_names(build_loop(*result.loop)));
+  }
+  if (const auto energy = top.section("dissipativity")) result.dissipativity = case_file::read_dissipativity(*energy);
+  if (const auto sensitivity = top.section("sensitivity"))
+    result.sensitivity = case_file::read_sensitivity(*sensitivity, result);
+  if (const auto claims = top.find("claim")) result.claims = case_file::read_claims(*claims, result);
+  return result;
+}
+
+InputError missing(const Case& from, const std::string& key, const std::string& rule) {
+  return InputError(
+      {.file = from.file, .line = 0, .override = {}, .key = key, .value = {}, .rule = rule, .suggestion = {}});
+}
+
+}  // namespace
+
+std::vector<DfPoint> DfSection::points() const {
+  std::vector<DfPoint> all;
+  all.reserve(size());
+  for (const double a : amplitude)
+    for (const double w : frequency)
+      for (const double b : bias) all.push_back({.amplitude = a, .frequency = w, .bias = b});
+  return all;
+}
+
+Case read_case(std::string_view text, const std::string& file, const std::vector<std::string>& overrides) {
+  case_file::check_text(text, file);
+  case_file::Document document = case_file::parse(text, file);
+  for (const auto& override : overrides) case_file::apply_override(document, override);
+  Case result = read_document(document);
+  result.text = text;
+  result.sha256 = sha256(text);
+  return result;
+}
+
+Case load_case(const std::string& file, const std::vector<std::string>& overrides) {
+  return read_case(case_file::read_text(file), file, overrides);
+}
+
+const LoopParts& need_loop(const Case& from) {
+  if (!from.loop) throw missing(from, "loop.plant", "is required by this command: the case holds a lone element");
+  return *from.loop;
+}
+
+const DfSection& need_df(const Case& from) {
+  if (!from.df) throw missing(from, "df", "is required by this command: add [df] with amplitude and frequency");
+  return *from.df;
+}
+
+const SimulateOptions& need_simulate(const Case& from) {
+  if (!from.simulate) throw missing(from, "simulate", "is required by this command: add [simulate] with duration");
+  return *from.simulate;
+}
+
+const Element& df_element(const Case& from) {
+  if (!from.loop) return *from.element;
+  const LoopParts& parts = *from.loop;
+  return parts.friction ? *parts.friction : parts.element ? *parts.element : *parts.error;
+}
+
+}  // namespace limcycle

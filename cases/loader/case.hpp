@@ -1,0 +1,85 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
+#include "limcycle/analysis/study/claims/user_claim.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/analysis/study/sensitivity/parameter_spread.hpp"
+#include "limcycle/cases/loader/input_error.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// [df]: points and options of describing functions. Lists are expanded.
+struct DfSection {
+  std::vector<double> amplitude, frequency, bias{0.0};
+  DfOptions options;
+
+  std::size_t size() const { return amplitude.size() * frequency.size() * bias.size(); }
+
+  /// The whole product, amplitude slowest, then frequency, then bias.
+  std::vector<DfPoint> points() const;
+};
+
+/// [dissipativity]: speeds for questions of energy.
+struct DissipativitySection {
+  double speed = 1.0;           ///< |v| up to which the force is bounded, m/s
+  double top_speed = infinite;  ///< largest |v| of the motions from which energy may be extracted, m/s
+};
+
+/// A case file, read and validated.
+struct Case {
+  std::string title;                   ///< default: name of the file without folder and extension
+  std::string file;                    ///< as named on the command line
+  std::string text;                    ///< bytes of the file
+  std::string sha256;                  ///< of these bytes, 64 hexadecimal digits
+  std::vector<std::string> overrides;  ///< "PATH=VALUE" in the order in which they were applied
+
+  std::optional<LoopParts> loop;   ///< empty: a case for describing functions of a lone element
+  std::optional<Element> element;  ///< the lone element; empty if there is a loop
+  std::string element_path;        ///< "loop.friction", "loop.element" or "loop.error": the subject of `df`
+
+  std::optional<DfSection> df;
+  std::optional<SimulateOptions> simulate;  ///< duration, initial, force, reference, stepper, rtol, sample are set
+  std::optional<ParameterSpread> sensitivity;
+  DissipativitySection dissipativity;
+  std::vector<UserClaim> claims;
+  PredictOptions predict;  ///< search (from [search]), starts and accuracy are set
+};
+
+/// Largest size of a case file, bytes.
+inline constexpr std::size_t largest_case_file = std::size_t{1} << 20;
+
+/// Reads and validates a case file, with `overrides` ("PATH=VALUE", VALUE in TOML syntax) applied in order. All of it
+/// is checked before this returns, against the parameter tables of the models, their own rules and those of the loop.
+/// Throws InputError for anything wrong with the file, its contents or an override.
+Case load_case(const std::string& file, const std::vector<std::string>& overrides = {});
+
+/// The same from text; `file` is used in messages only.
+Case read_case(std::string_view text, const std::string& file, const std::vector<std::string>& overrides = {});
+
+/// Parts of a case that a command needs; each throws an InputError that names the missing section.
+const LoopParts& need_loop(const Case& from);
+const DfSection& need_df(const Case& from);
+const SimulateOptions& need_simulate(const Case& from);
+
+/// The element whose describing function `df` computes: the lone element, else the friction, else the forward element,
+/// else the one on the error.
+const Element& df_element(const Case& from);
+
+/// The case's own claims, ready to be tested.
+std::vector<Claim> claims_of(const Case& from);
+
+/// Kind of a law, element, plant or controller as written in a case file.
+template <class... Kinds>
+std::string_view kind_of(const std::variant<Kinds...>& any) {
+  return std::visit([]<class K>(const K&) { return K::kind; }, any);
+}
+
+/// SHA-256 of some bytes (FIPS 180-4), 64 lower-case hexadecimal digits.
+std::string sha256(std::string_view bytes);
+
+}  // namespace limcycle

@@ -1,0 +1,159 @@
+#include "limcycle/cases/loader/loop_variation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "limcycle/cases/loader/case_numbers.hpp"
+#include "limcycle/cases/loader/sections.hpp"
+#include "limcycle/cases/loader/value.hpp"
+
+namespace limcycle {
+namespace {
+
+using case_file::Value;
+
+constexpr Range no_number{infinite, -infinite};
+
+/// A part of a loop that has parameters, of any type.
+struct Part {
+  const char* section;
+  const std::vector<ParameterRow>& (*rows)(const LoopParts& parts);
+  std::vector<ParameterValue> (*values)(const LoopParts& parts);
+  void (*set)(LoopParts& parts, const std::vector<ParameterValue>& values);
+  bool (*valid)(const LoopParts& parts);
+};
+
+/// Part for a plant or controller: `member` is a variant of kinds.
+template <auto member>
+Part part_of_kinds(const char* section) {
+  return {section,
+          [](const LoopParts& parts) -> const std::vector<ParameterRow>& {
+            return std::visit(
+                []<class Owner>(const Owner&) -> const auto& { return rows_of<Owner>(); }, parts.*member);
+          },
+          [](const LoopParts& parts) {
+            return std::visit([](const auto& owner) { return values_of(owner); }, parts.*member);
+          },
+          [](LoopParts& parts, const std::vector<ParameterValue>& values) {
+            std::visit([&](auto& owner) { set_values(owner, values); }, parts.*member);
+          },
+          [](const LoopParts& parts) {
+            return std::visit([](const auto& owner) { return !owner.validate(); }, parts.*member);
+          }};
+}
+
+/// Part for an element that is present.
+template <auto member>
+Part part_of_element(const char* section) {
+  return {section,
+          [](const LoopParts& parts) -> const std::vector<ParameterRow>& { return (parts.*member)->parameters(); },
+          [](const LoopParts& parts) { return (parts.*member)->values(); },
+          [](LoopParts& parts, const std::vector<ParameterValue>& values) {
+            parts.*member = (parts.*member)->with(values);
+          },
+          [](const LoopParts& parts) { return !(parts.*member)->validate(); }};
+}
+
+std::vector<Part> parts_of(const LoopParts& parts) {
+  std::vector<Part> list{part_of_kinds<&LoopParts::plant>("loop.plant"),
+                         part_of_kinds<&LoopParts::controller>("loop.controller")};
+  if (parts.friction) list.push_back(part_of_element<&LoopParts::friction>("loop.friction"));
+  if (parts.element) list.push_back(part_of_element<&LoopParts::element>("loop.element"));
+  if (parts.error) list.push_back(part_of_element<&LoopParts::error>("loop.error"));
+  return list;
+}
+
+/// The value at a dotted path, or null.
+const Value* value_at(const Value& root, std::string_view path) {
+  const Value* at = &root;
+  while (at != nullptr && !path.empty()) {
+    const std::size_t dot = std::min(path.find('.'), path.size());
+    at = at->find(path.substr(0, dot));
+    path.remove_prefix(std::min(dot + 1, path.size()));
+  }
+  return at;
+}
+
+/// True if every part obeys its own rules.
+bool parts_are_valid(const LoopParts& parts) {
+  return std::ranges::all_of(parts_of(parts), [&](const Part& part) { return part.valid(parts); });
+}
+
+}  // namespace
+
+LoopVariation::LoopVariation(const Case& from, const std::string& flag, std::span<const std::string> paths)
+    : parts_(need_loop(from)) {
+  case_file::Document document = case_file::parse(from.text, from.file);
+  for (const auto& override : from.overrides) case_file::apply_override(document, override);
+  const auto written = [&](const std::string& path) {
+    return value_at(document.root, path) != nullptr || std::ranges::find(paths, path) != paths.end();
+  };
+  numbers_.resize(paths.size());
+  const auto found = [&](const std::string& path, const Range& range,
+                         const std::function<void(LoopParts&, double)>& set) {
+    for (std::size_t i = 0; i < paths.size(); ++i)
+      if (paths[i] == path) numbers_[i] = {set, range};
+  };
+  for (const Part& part : parts_of(parts_)) {
+    const std::string section(part.section);
+    const bool there = value_at(document.root, section) != nullptr;  // a loop without a controller has none to change
+    const auto& rows = part.rows(parts_);
+    const auto values = part.values(parts_);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!std::holds_alternative<double>(values[i])) continue;
+      found(section + "." + std::string(rows[i].key), there ? rows[i].range : no_number,
+            [part, i](LoopParts& p, double value) {
+              auto changed = part.values(p);
+              changed[i] = value;
+              part.set(p, changed);
+            });
+    }
+    std::vector<std::string_view> kept;  // keys with a value of their own
+    bool all = true;
+    for (const auto& row : rows) {
+      const bool own = row.default_from.empty() || written(section + "." + std::string(row.key));
+      if (own) kept.push_back(row.key);
+      all = all && own;
+    }
+    if (all) continue;
+    not_written_.emplace_back([part, kept](LoopParts& p) {
+      auto changed = part.values(p);
+      follow_defaults(part.rows(p), changed,
+                      [&](std::string_view key) { return std::ranges::find(kept, key) != kept.end(); });
+      part.set(p, changed);
+    });
+  }
+  if (parts_.reference_rate != 0.0)
+    found("loop.reference.rate", any_number, [](LoopParts& p, double value) { p.reference_rate = value; });
+  else
+    found("loop.reference", any_number, [](LoopParts& p, double value) { p.reference = value; });
+  found("loop.load", any_number, [](LoopParts& p, double value) { p.load = value; });
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    if (!numbers_[i].set) static_cast<void>(number_at(from, flag, paths[i]));  // throws
+}
+
+std::optional<LoopParts> LoopVariation::changed(std::span<const double> values) const {
+  if (values.size() != numbers_.size()) throw std::invalid_argument("as many values as paths are needed");
+  LoopParts parts = parts_;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]) || !numbers_[i].range.contains(values[i])) return std::nullopt;
+    numbers_[i].set(parts, values[i]);
+  }
+  for (const auto& follow : not_written_) follow(parts);
+  if (!parts_are_valid(parts)) return std::nullopt;
+  return parts;
+}
+
+std::optional<LoopParts> LoopVariation::parts(std::span<const double> values) const {
+  auto parts = changed(values);
+  if (!parts || !case_file::finite_loop(*parts)) return std::nullopt;
+  return parts;
+}
+
+std::optional<Loop> LoopVariation::loop(std::span<const double> values) const {
+  const auto parts = changed(values);
+  return parts ? case_file::finite_loop(*parts) : std::nullopt;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,36 @@
+#pragma once
+#include "limcycle/cases/loader/case.hpp"
+#include "limcycle/cases/loader/case_numbers.hpp"
+#include "limcycle/cases/loader/section.hpp"
+
+namespace limcycle::case_file {
+
+// Readers of the sections of a case file; each throws InputError.
+
+/// [loop]: either all parts of a loop, or one lone element.
+void read_loop(const Section& section, Case& into);
+
+/// The parts joined; empty if they do not fit together and read_loop() would reject them.
+std::optional<Loop> finite_loop(const LoopParts& parts);
+
+SearchBox read_search(const Section& section);
+DfSection read_df(const Section& section);
+void read_predict(const Section& section, Case& into);
+DissipativitySection read_dissipativity(const Section& section);
+
+/// [simulate]; `states`: valid names in `initial`.
+SimulateOptions read_simulate(const Section& section, const std::vector<std::string>& states);
+
+/// [sensitivity]; `from`: the case, whose loop is already read.
+ParameterSpread read_sensitivity(const Section& section, const Case& from);
+
+/// A list of {path, distribution, ...}: the distributions of some of these numbers.
+std::vector<SpreadParameter> read_spread_list(const Place& list, const std::vector<CaseNumber>& numbers);
+
+/// [[claim]]; `from`: the case, whose loop is already read.
+std::vector<UserClaim> read_claims(const Place& list, const Case& from);
+
+/// A signal in time: a number (constant) or {kind = "step"|"ramp"|"sine"|"zigzag"|"table", ...}.
+Signal read_signal(const Place& place);
+
+}  // namespace limcycle::case_file

@@ -1,0 +1,81 @@
+#include "limcycle/reports/case_files/check.hpp"
+
+#include <fmt/format.h>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/models/linear/dense.hpp"
+
+namespace limcycle {
+namespace {
+
+/// Poles of the linear part without its elements; none are listed with a delay, which makes them infinitely many.
+void describe_poles(const Loop& loop, CheckSummary& summary) {
+  summary.order = static_cast<int>(loop.states());
+  summary.delay = loop.delay;
+  if (loop.delay > 0.0) return;
+  if (loop.states() == 0) {
+    summary.stable = true;
+    return;
+  }
+  const Eigen::VectorXcd poles = eigenvalues(loop.A);
+  summary.slowest_pole = poles.real().maxCoeff();
+  // A pole at zero is computed as rounding of the others, a repeated one as the square root of that.
+  const double fastest = poles.cwiseAbs().maxCoeff();
+  const bool repeated = (poles.array().abs() <= 1e-7 * fastest).count() > 1;
+  if (std::abs(*summary.slowest_pole) <= (repeated ? 1e-7 : 1e-12) * fastest) summary.slowest_pole = 0.0;
+  summary.stable = *summary.slowest_pole < 0.0;
+}
+
+CheckSummary summary_of(const Case& from) {
+  CheckSummary summary;
+  if (from.loop) {
+    const Loop loop = build_loop(*from.loop);
+    summary.plant = kind_of(from.loop->plant);
+    summary.controller = kind_of(from.loop->controller);
+    for (std::size_t i = 0; i < loop.elements.size(); ++i)
+      summary.elements.push_back({loop.ports[i].path, std::string(loop.elements[i].kind())});
+    summary.states = state_names(loop);
+    describe_poles(loop, summary);
+    summary.search = from.predict.search ? from.predict.search : default_search_box(loop);
+    summary.search_from_case = from.predict.search.has_value();
+  } else {
+    summary.elements.push_back({from.element_path, std::string(from.element->kind())});
+    const int states = from.element->states();
+    for (int i = 0; i < states; ++i)
+      summary.states.push_back(states == 1 ? std::string("z") : fmt::format("z{}", i + 1));
+  }
+  if (from.df)
+    summary.sections.push_back(fmt::format("df: {} x {} x {} points", from.df->amplitude.size(),
+                                           from.df->frequency.size(), from.df->bias.size()));
+  if (from.simulate) summary.sections.push_back(fmt::format("simulate: {} s", from.simulate->duration));
+  if (!from.claims.empty()) summary.sections.push_back(fmt::format("claims: {} of the case's own", from.claims.size()));
+  if (from.sensitivity)
+    summary.sections.push_back(fmt::format("sensitivity: {} parameters, {} samples",
+                                           from.sensitivity->parameters.size(), from.sensitivity->samples));
+  return summary;
+}
+
+int check(const CommonFlags& flags) {
+  const Case from = load_case(flags);
+  const auto summary = summary_of(from);
+  const auto made = provenance(flags, &from);
+  Output output(flags);
+  Provenance shown = made;
+  shown.file = one_line(made.file);
+  output.text(check_text(shown, summary));
+  if (output.wants_json()) output.json(check_json(made, summary));
+  if (output.wants_csv()) output.csv(check_csv(made, summary));
+  output.finish();
+  return exit_done;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<CommonFlags>();
+  add_command(program, action, "check", "Validate a case file and print a summary", true, flags,
+              [flags] { return check(*flags); });
+}
+
+}  // namespace limcycle

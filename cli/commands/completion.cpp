@@ -1,0 +1,36 @@
+#include <CLI/CLI.hpp>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/help/completion_script.hpp"
+#include "limcycle/cli/output.hpp"
+
+namespace limcycle {
+namespace {
+
+std::string completion(const CLI::App& program, const std::string& shell) {
+  const auto commands = facts_of(program);
+  if (shell == "bash") return bash_completion(commands);
+  if (shell == "zsh") return zsh_completion(commands);
+  if (shell == "fish") return fish_completion(commands);
+  throw refusal("completion", "unknown shell '" + shell + "'",
+                suggest(shell, std::vector<std::string>{"bash", "zsh", "fish"}));
+}
+
+}  // namespace
+
+void add_completion(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<CommonFlags>();
+  const auto shell = std::make_shared<std::string>();
+  CLI::App* command =
+      add_plain_command(program, action, "completion", "Print a script that completes commands and options in a shell",
+                        flags, [&program, flags, shell] {
+                          flags->color = "never";
+                          Output output(*flags);
+                          output.text(completion(program, *shell));
+                          output.finish();
+                          return static_cast<int>(exit_done);
+                        });
+  command->add_option("SHELL", *shell, "bash, zsh or fish")->type_name("SHELL")->required();
+}
+
+}  // namespace limcycle

@@ -1,0 +1,84 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "limcycle/cases/loader/case_numbers.hpp"
+#include "limcycle/cases/loader/loop_variation.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/parameter_range.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/units_of.hpp"
+#include "limcycle/reports/continuation/continue.hpp"
+
+namespace limcycle {
+namespace {
+
+struct ContinueFlags : CommonFlags {
+  std::string parameter;  ///< --parameter PATH=FROM:TO
+  std::string html;       ///< --html
+  std::string picture;    ///< --svg
+};
+
+int exit_code(const FollowReport& found) {
+  const bool answered = found.status == Status::converged || found.status == Status::no_cycle;
+  return found.status == Status::interrupted || (found.branches.empty() && !answered) ? exit_no_answer : exit_done;
+}
+
+int run(ContinueFlags flags) {
+  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  const ParameterRange range = parameter_range("--parameter", flags.parameter);
+  const Case from = load_case(flags);
+  const Units units = units_of(need_loop(from));
+  const CaseNumber number = number_at(from, "--parameter", range.path);
+  Output output(flags);
+  output.check_file("--html", flags.html);
+  output.check_file("--svg", flags.picture);
+
+  ContinueReport report{range.path, number.unit, {}};
+  {
+    Progress progress(flags.quiet, flags.verbose);
+    FollowOptions options;
+    options.continuation.from = range.from;
+    options.continuation.to = range.to;
+    options.predict = from.predict;
+    options.predict.stop = interrupted;
+    options.predict.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
+    if (std::isfinite(number.value)) options.own = number.value;
+    catch_interrupts();
+    report.found = follow(LoopVariation(from, "--parameter", range.path), options);
+  }
+  const auto made = provenance(flags, &from);
+  std::string text = continue_text(from.title, report, units);
+  if (!flags.html.empty()) {
+    output.file(flags.html, continue_page(report, made, from.text, units));
+    text += page_line(flags.html);
+  }
+  if (!flags.picture.empty()) output.file(flags.picture, continue_picture(report, units));
+  output.text(first_line(flags, report.found.status) + text);
+  if (output.wants_json()) output.json(continue_json(made, report));
+  if (output.wants_csv()) output.csv(continue_csv(report));
+  output.finish();
+  tell_cut_short(flags, report.found.status);
+  return exit_code(report.found);
+}
+
+}  // namespace
+
+void add_continue(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<ContinueFlags>();
+  CLI::App* command = add_command(program, action, "continue",
+                                  "Follow the limit cycles over a parameter: folds, changes of stability, ends", true,
+                                  flags, [flags] { return run(*flags); });
+  command->add_option("--parameter", flags->parameter, "Parameter and its range, such as loop.controller.kd=1:50")
+      ->type_name("PATH=FROM:TO")
+      ->required();
+  command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
+      ->type_name("FILE");
+  command->add_option("--svg", flags->picture, "Write the bifurcation diagram to FILE (so does -o FILE.svg)")
+      ->type_name("FILE");
+}
+
+}  // namespace limcycle

@@ -1,0 +1,120 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "limcycle/cases/loader/case_numbers.hpp"
+#include "limcycle/cases/loader/loop_variation.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
+#include "limcycle/cli/option_values.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/units_of.hpp"
+#include "limcycle/reports/continuation/margin.hpp"
+
+namespace limcycle {
+namespace {
+
+struct MarginFlags : CommonFlags {
+  std::string html;                     ///< --html
+  double factor = 10.0;                 ///< --factor
+  std::vector<std::string> parameters;  ///< --parameter PATH, repeatable; empty: all
+};
+
+MarginParameter parameter_of(const Case& from, const CaseNumber& number) {
+  return {number.path, number.unit, number.value, number.path.starts_with("loop.friction."),
+          LoopVariation(from, "--parameter", number.path)};
+}
+
+/// The requested parameters, or all that a factor can change; those left out go into `notes`.
+std::vector<MarginParameter> parameters_of(const Case& from, const MarginFlags& flags,
+                                           std::vector<std::string>& notes) {
+  std::vector<MarginParameter> chosen;
+  for (const auto& path : flags.parameters) {
+    const CaseNumber number = number_at(from, "--parameter", path);
+    if (number.value == 0.0 || !std::isfinite(number.value))
+      throw InputError({.file = {},
+                        .line = 0,
+                        .override = {},
+                        .key = "--parameter " + path,
+                        .value = {},
+                        .rule = "is zero or absent: no factor changes it",
+                        .suggestion = {}});
+    chosen.push_back(parameter_of(from, number));
+  }
+  if (!chosen.empty()) return chosen;
+  std::string zero;
+  for (const auto& number : numbers_of(from)) {
+    if (number.follows || !std::isfinite(number.value)) continue;
+    if (number.value != 0.0)
+      chosen.push_back(parameter_of(from, number));
+    else
+      zero += (zero.empty() ? "" : ", ") + number.path;
+  }
+  if (!zero.empty()) notes.push_back("skipped, because the value is 0: " + zero);
+  return chosen;
+}
+
+int exit_code(const MarginReport& report) {
+  const bool nothing = report.parameters.empty() && !report.balance;
+  return !report.refused.empty() || report.status == Status::interrupted ||
+                 (nothing && report.status != Status::converged)
+             ? exit_no_answer
+             : exit_done;
+}
+
+int run(MarginFlags flags) {
+  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  const Case from = load_case(flags);
+  const LoopParts& parts = need_loop(from);
+  const Units units = units_of(parts);
+  std::vector<std::string> notes;
+  const auto parameters = parameters_of(from, flags, notes);
+  Output output(flags);
+  output.check_file("--html", flags.html);
+
+  MarginReport report;
+  {
+    Progress progress(flags.quiet, flags.verbose);
+    MarginOptions options;
+    options.factor = flags.factor;
+    options.predict = from.predict;
+    options.predict.stop = interrupted;
+    options.predict.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
+    catch_interrupts();
+    report = answer_of([&] { return margin(build_loop(parts), parameters, options); });
+  }
+  report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+  const auto made = provenance(flags, &from);
+  std::string text = margin_text(from.title, report, units);
+  if (!flags.html.empty()) {
+    output.file(flags.html, margin_page(report, made, from.text, units));
+    text += page_line(flags.html);
+  }
+  output.text(first_line(flags, report.status) + text);
+  if (output.wants_json()) output.json(margin_json(made, report));
+  if (output.wants_csv()) output.csv(margin_csv(report));
+  output.finish();
+  tell_cut_short(flags, report.status);
+  return exit_code(report);
+}
+
+}  // namespace
+
+void add_margin(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<MarginFlags>();
+  CLI::App* command =
+      add_command(program, action, "margin", "Distance of each parameter from the onset or end of hunting", true, flags,
+                  [flags] { return run(*flags); });
+  command->add_option("--factor", flags->factor, "Largest factor, up and down")
+      ->type_name("X")
+      ->check(number_in(1.01, 1000.0))
+      ->capture_default_str();
+  command->add_option("--parameter", flags->parameters, "Only this parameter; repeatable")
+      ->type_name("PATH")
+      ->allow_extra_args(false);
+  command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
+      ->type_name("FILE");
+}
+
+}  // namespace limcycle

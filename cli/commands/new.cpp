@@ -1,0 +1,82 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/message.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
+#include "limcycle/reports/case_files/new_case.hpp"
+
+namespace limcycle {
+namespace {
+
+struct NewFlags : CommonFlags {
+  std::string plant, controller, friction, element, error;  ///< empty: not given; "none": none
+  bool all = false, force = false;
+};
+
+/// The requested case: without friction and element the servo with LuGre friction; an element alone replaces the
+/// friction, in front of three equal lags.
+NewCase wanted_case(const NewFlags& flags) {
+  const auto given = [](const std::string& kind) { return kind == "none" ? std::string() : kind; };
+  NewCase wanted;
+  wanted.all = flags.all;
+  wanted.element = given(flags.element);
+  wanted.error = given(flags.error);
+  const bool alone = flags.friction.empty() && !wanted.element.empty();
+  wanted.friction = alone ? "" : flags.friction.empty() ? wanted.friction : given(flags.friction);
+  wanted.plant = !flags.plant.empty() ? flags.plant : alone ? "transfer-function" : wanted.plant;
+  wanted.controller = !flags.controller.empty() ? flags.controller : alone ? "none" : wanted.controller;
+  return wanted;
+}
+
+/// Rejects a kind that is not allowed in the section of the flag's name.
+void check_kind(const std::string& flag, const std::string& kind) {
+  auto kinds = kinds_for("loop." + flag.substr(2));
+  if (flag != "--plant" && flag != "--controller") kinds.emplace_back("none");
+  if (kind.empty() || std::ranges::find(kinds, kind) != kinds.end()) return;
+  throw refusal(flag, "unknown kind '" + kind + "'", suggest(kind, kinds));
+}
+
+int run(NewFlags flags) {
+  flags.color = "never";  // the output may be copied into a file
+  check_kind("--plant", flags.plant);
+  check_kind("--controller", flags.controller);
+  check_kind("--friction", flags.friction);
+  check_kind("--element", flags.element);
+  check_kind("--error", flags.error);
+  const std::string text = new_case(wanted_case(flags));
+  try {
+    read_case(text, "the new case");
+  } catch (const InputError& error) {  // each part is valid by itself
+    throw refusal("new", "these parts do not fit together: " + error.fault().key + " " + error.fault().rule);
+  }
+  std::error_code ignored;
+  if (!flags.output.empty() && !flags.force && std::filesystem::exists(flags.output, ignored))
+    throw refusal("--output " + flags.output, "exists already and is not overwritten", "--force replaces it");
+  Output output(flags);
+  output.text(text);
+  output.finish();
+  if (!flags.output.empty())
+    tell(flags, flags.output + " is written; replace the numbers by your own, then: limcycle predict " + flags.output);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_new(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<NewFlags>();
+  CLI::App* command =
+      add_plain_command(program, action, "new", "Write a commented case file, to be filled with your numbers", flags,
+                        [flags] { return run(*flags); });
+  command->add_option("--plant", flags->plant, "Kind of the plant")->type_name("KIND");
+  command->add_option("--controller", flags->controller, "Kind of the controller")->type_name("KIND");
+  command->add_option("--friction", flags->friction, "Friction law, or none")->type_name("KIND");
+  command->add_option("--element", flags->element, "Element between controller and plant")->type_name("KIND");
+  command->add_option("--error", flags->error, "Element on the error")->type_name("KIND");
+  command->add_flag("--all", flags->all, "Write the optional sections too, not as comments");
+  command->add_flag("--force", flags->force, "Replace a file that exists");
+}
+
+}  // namespace limcycle

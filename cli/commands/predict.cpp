@@ -1,0 +1,102 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/decided.hpp"
+#include "limcycle/cli/from_page.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/units_of.hpp"
+#include "limcycle/reports/csv.hpp"
+#include "limcycle/reports/figures/picture.hpp"
+#include "limcycle/reports/html.hpp"
+#include "limcycle/reports/json.hpp"
+#include "limcycle/reports/text.hpp"
+
+namespace limcycle {
+namespace {
+
+struct PredictFlags : CommonFlags {
+  std::string html;      ///< --html
+  std::string pictures;  ///< --svg
+  std::string from;      ///< --from
+  bool require_agreement = false;
+};
+
+/// The ending of the -o file selects a page or a picture; the text then stays on stdout.
+void sort_out(PredictFlags& flags) {
+  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  if (flags.pictures.empty() && flags.output.ends_with(".svg")) flags.pictures = std::exchange(flags.output, {});
+}
+
+int exit_code(const PredictReport& report, bool require_agreement) {
+  const bool answered = report.status == Status::converged || report.status == Status::no_cycle;
+  const bool by_user = report.status == Status::interrupted && !interrupted_by_time();
+  if (report.status == Status::not_finite || by_user || !decided(report)) return exit_no_answer;
+  if (!require_agreement) return exit_done;
+  const auto any = [&](Verdict verdict) {
+    return std::any_of(report.predictions.begin(), report.predictions.end(),
+                       [&](const auto& one) { return one.verdict == verdict; });
+  };
+  if (any(Verdict::wrong) || any(Verdict::biased) || !report.missed.empty()) return exit_disagreed;
+  // An undecided verdict is no agreement.
+  return any(Verdict::undecided) || !answered ? exit_no_answer : exit_done;
+}
+
+int run(PredictFlags flags) {
+  sort_out(flags);
+  const CaseWithPage loaded = load_case_or_page(flags, flags.from);
+  const Case& from = loaded.from;
+  const LoopParts& parts = need_loop(from);
+  const Units units = units_of(parts);
+  Output output(flags);
+  output.keep("the page to be made again", flags.from);
+  output.check_file("--html", flags.html);
+  output.check_file("--svg", flags.pictures);
+
+  PredictReport report;
+  {
+    Progress progress(flags.quiet, flags.verbose);
+    PredictOptions options = from.predict;
+    options.stop = interrupted;
+    options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
+    catch_interrupts();
+    report = answer_of([&] { return predict(build_loop(parts), options); });
+  }
+  const auto made = provenance(flags, &from);
+  std::string text = predict_text(from.title, report, units);
+  if (flags.verbose) text += predict_efforts(report, from.predict.methods, units);
+  if (!flags.html.empty()) {
+    output.file(flags.html, predict_page(report, made, from.text, units));
+    text += page_line(flags.html);
+  }
+  if (!flags.pictures.empty()) output.file(flags.pictures, predict_picture(report, units));
+  output.text(first_line(flags, report.status) + text);
+  const std::string document = predict_json(made, report);
+  if (output.wants_json()) output.json(document);
+  if (output.wants_csv()) output.csv(predict_csv(report));
+  output.finish();
+  if (report.status != Status::interrupted) compare_with_page(flags, loaded, document);
+  tell_cut_short(flags, report.status);
+  return exit_code(report, flags.require_agreement);
+}
+
+}  // namespace
+
+void add_predict(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<PredictFlags>();
+  flags->time_limit = 60.0;
+  CLI::App* command = add_command(program, action, "predict",
+                                  "Every limit cycle, predicted and checked in the time domain, with a verdict", true,
+                                  flags, [flags] { return run(*flags); });
+  add_from_flag(*command, flags->from);
+  command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
+      ->type_name("FILE");
+  command->add_option("--svg", flags->pictures, "Write a picture to FILE (so does -o FILE.svg)")->type_name("FILE");
+  command->add_flag("--require-agreement", flags->require_agreement,
+                    "Exit with 1 if a prediction is false or biased, or a limit cycle is missed");
+}
+
+}  // namespace limcycle

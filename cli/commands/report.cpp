@@ -1,0 +1,106 @@
+#include "limcycle/reports/page/report.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <sstream>
+
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/decided.hpp"
+#include "limcycle/cli/from_page.hpp"
+#include "limcycle/cli/interrupt.hpp"
+#include "limcycle/cli/message.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/report_parts.hpp"
+#include "limcycle/cli/units_of.hpp"
+#include "limcycle/reports/csv.hpp"
+#include "limcycle/reports/json.hpp"
+#include "limcycle/reports/text.hpp"
+
+namespace limcycle {
+namespace {
+
+struct ReportFlags : CommonFlags {
+  std::string from;  ///< --from
+  ReportWishes wishes;
+};
+
+/// Settings of the page, for those that the command line does not give.
+void take_over(ReportFlags& flags, const CaseInPage& page) {
+  if (page.command != "report") return;
+  std::istringstream words(page.flags);
+  for (std::string word, value; words >> word;) {
+    if (word == "--quick") flags.wishes.quick = true;
+    if (word == "--x" && words >> value && flags.wishes.x.empty()) flags.wishes.x = value;
+    if (word == "--y" && words >> value && flags.wishes.y.empty()) flags.wishes.y = value;
+    if (word == "--seed" && words >> value && flags.seed == 0) std::istringstream(value) >> flags.seed;
+  }
+}
+
+std::string flags_text(const ReportFlags& flags) {
+  std::string text;
+  if (flags.wishes.quick) text += " --quick";
+  if (!flags.wishes.x.empty()) text += " --x " + flags.wishes.x + " --y " + flags.wishes.y;
+  if (flags.seed != 0) text += " --seed " + std::to_string(flags.seed);
+  return text.empty() ? text : text.substr(1);
+}
+
+/// File of the page: -o, or the name of the case in the current folder.
+std::string page_file(const ReportFlags& flags, const Case& from) {
+  std::string file = flags.output;
+  if (file.empty()) file = std::filesystem::path(from.file).stem().string() + ".html";
+  return file;
+}
+
+int exit_code(const LoopReport& report) {
+  const bool failed = report.interrupted || report.predict.status == Status::not_finite;
+  return failed || !decided(report.predict) ? exit_no_answer : exit_done;
+}
+
+int run(ReportFlags flags) {
+  const CaseWithPage loaded = load_case_or_page(flags, flags.from);
+  const Case& from = loaded.from;
+  if (loaded.page) take_over(flags, *loaded.page);
+  const Units units = units_of(need_loop(from));
+  check_wishes(from, flags.wishes);
+  const std::string page = page_file(flags, from);
+  if (page == "-" && (flags.json == "-" || flags.csv == "-")) throw refusal("-o -", "stdout holds one document only");
+  flags.output = page == "-" ? "/dev/null" : "";
+  Output output(flags);
+  output.keep("the page to be made again", flags.from);
+  output.check_file("-o", page);
+
+  const LoopReport report = [&] {
+    Progress progress(flags.quiet);
+    catch_interrupts();
+    return report_parts(from, flags.wishes, flags, progress);
+  }();
+  const auto made = provenance(flags, &from);
+  output.file(page, report_page(report, made, from.text, units, flags_text(flags)));
+  output.text(first_line(flags, report.predict.status) + predict_text(from.title, report.predict, units) +
+              page_line(page));
+  const std::string document = predict_json(made, report.predict);
+  if (output.wants_json()) output.json(document);
+  if (output.wants_csv()) output.csv(predict_csv(report.predict));
+  output.finish();
+  if (!report.interrupted) compare_with_page(flags, loaded, document);
+  tell_cut_short(flags, report.predict.status, "the page holds the results computed so far");
+  return exit_code(report);
+}
+
+}  // namespace
+
+void add_report(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<ReportFlags>();
+  CLI::App* command = add_command(program, action, "report", "One self-contained page with all results for the loop",
+                                  true, flags, [flags] { return run(*flags); });
+  command->get_option("--output")
+      ->description("Write the page to FILE, or to stdout alone with - (default: the name of the case, .html)");
+  add_from_flag(*command, flags->from);
+  command->add_flag("--quick", flags->wishes.quick, "Omit sensitivity, dissipativity, and accuracy and cost");
+  for (const auto& [name, into] : {std::pair("--x", &flags->wishes.x), std::pair("--y", &flags->wishes.y)})
+    command->add_option(name, *into, "With a hunting map: a parameter and its values, as for limcycle map")
+        ->type_name("PATH=FROM:TO:N[:log]");
+}
+
+}  // namespace limcycle

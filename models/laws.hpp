@@ -1,0 +1,54 @@
+#pragma once
+#include <type_traits>
+
+#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/compensation.hpp"
+#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/delayed_relay.hpp"
+#include "limcycle/models/element/gravity.hpp"
+#include "limcycle/models/element/output_rate.hpp"
+#include "limcycle/models/element/quantizer.hpp"
+#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/friction/bristle/bouc_wen.hpp"
+#include "limcycle/models/friction/bristle/dahl.hpp"
+#include "limcycle/models/friction/bristle/elasto_plastic.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/bristle/lugre_spline.hpp"
+#include "limcycle/models/friction/bristle/non_drift.hpp"
+#include "limcycle/models/friction/bristle/two_state.hpp"
+#include "limcycle/models/friction/dry/awrejcewicz.hpp"
+#include "limcycle/models/friction/dry/coulomb.hpp"
+#include "limcycle/models/friction/dry/karnopp.hpp"
+#include "limcycle/models/friction/dry/kikuuwe.hpp"
+#include "limcycle/models/friction/dry/quinn.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
+#include "limcycle/models/friction/dry/wojewoda.hpp"
+#include "limcycle/models/friction/sliders/gms.hpp"
+#include "limcycle/models/friction/sliders/iwan.hpp"
+#include "limcycle/models/friction/sliders/jenkins.hpp"
+#include "limcycle/models/friction/sliders/leuven.hpp"
+#include "limcycle/models/friction/sliders/maxwell_slip.hpp"
+#include "limcycle/models/friction/sliders/xiong.hpp"
+
+namespace limcycle {
+
+/// A list of class templates.
+template <template <class> class... Kinds>
+struct KindList {
+  /// Calls `visit.template operator()<Kind>()` for each kind.
+  static void for_each(auto&& visit) { (visit.template operator()<Kinds>(), ...); }
+};
+
+/// Kinds of friction laws, of elements in series after the controller, of elements on the error before it, and of those
+/// that a loop makes from its other parts, which no case names. A new law is one pair of files and one word here;
+/// everything else uses catalogue.hpp.
+using FrictionLaws =
+    KindList<Coulomb, Stribeck, Karnopp, Quinn, Kikuuwe, Awrejcewicz, Wojewoda, Dahl, BoucWen, LuGre, LuGreSpline,
+             ElastoPlastic, Leuven, Jenkins, MaxwellSlip, Iwan, Gms, Xiong, TwoState, NonDrift>;
+using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic>;
+using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
+using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity>;
+
+}  // namespace limcycle

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+
+#include "limcycle/analysis/study/continuation/margin.hpp"
+#include "limcycle/reports/provenance.hpp"
+#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/units.hpp"
+
+namespace limcycle {
+
+/// One sentence that answers "what must I change?", and one on the describing function.
+std::string margin_answer(const MarginReport& report, const Units& units);
+
+/// For a terminal: the answer, a table of plant and controller, one of friction, the sentences on their details.
+std::string margin_text(const std::string& title, const MarginReport& report, const Units& units);
+
+std::string margin_json(const Provenance& provenance, const MarginReport& report);
+
+/// One row a side of a parameter.
+std::string margin_csv(const MarginReport& report);
+
+std::string margin_page(const MarginReport& report, const Provenance& provenance, const std::string& case_text,
+                        const Units& units);
+
+/// Parameters of the friction law, or of plant and controller.
+Table margin_table(const MarginReport& report, bool friction);
+
+}  // namespace limcycle

@@ -1,0 +1,32 @@
+#include "limcycle/reports/continuation/margin.hpp"
+#include "limcycle/reports/page/html_parts.hpp"
+
+namespace limcycle {
+
+std::string margin_page(const MarginReport& report, const Provenance& provenance, const std::string& case_text,
+                        const Units& units) {
+  std::string body;
+  for (const bool friction : {false, true}) {
+    Table table = margin_table(report, friction);
+    if (table.rows.empty()) continue;
+    table.columns.push_back({"above: why", "", Align::left});
+    table.columns.push_back({"below: why", "", Align::left});
+    std::size_t row = 0;
+    for (const auto& one : report.parameters) {
+      if (one.parameter.friction != friction) continue;
+      table.rows[row].push_back(one.up.why);
+      table.rows[row++].push_back(one.down.why);
+    }
+    const std::string heading = friction ? "Friction" : "Plant and controller";
+    body += "<h2>" + heading + "</h2>\n" +
+            html_table(table, heading + ": where hunting " + (report.hunts ? "ends" : "begins"));
+  }
+  body += html_notes(report.notes);
+  return html_page({.provenance = provenance,
+                    .answer = margin_answer(report, units),
+                    .body = body,
+                    .command = "margin",
+                    .case_text = case_text});
+}
+
+}  // namespace limcycle

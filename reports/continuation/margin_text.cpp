@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/reports/continuation/margin.hpp"
+#include "limcycle/reports/number.hpp"
+
+namespace limcycle {
+namespace {
+
+std::string unit_of(const ParameterMargin& one) { return one.parameter.unit == "1" ? "" : one.parameter.unit; }
+
+/// Value with its accurate digits, at most six.
+std::string side_place(const MarginSide& side) {
+  if (std::isnan(side.error)) return with_digits(side.value, 3);
+  return with_error(side.value, std::max(side.error, 0.6e-5));
+}
+
+/// "-27 %"; "x 6.0" from a doubling on.
+std::string change(double value, double own) {
+  const double ratio = value / own;
+  if (ratio >= 2.0) return fmt::format("x {}", with_digits(ratio, 3));
+  return fmt::format("{}{} %", ratio >= 1.0 ? "+" : "-", with_digits(std::abs(100.0 * (ratio - 1.0)), 3));
+}
+
+std::string cell(const MarginSide& side, double own) {
+  switch (side.what) {
+    case MarginSide::What::none:
+      return "none";
+    case MarginSide::What::unknown:
+      return "?";
+    default:
+      return fmt::format("{} ({})", side_place(side), change(side.value, own));
+  }
+}
+
+/// "lower loop.friction.Fs from 1.5 N to 1.04 N (-31 %)".
+std::string step(const ParameterMargin& one) {
+  const MarginSide& side = *one.nearest();
+  const bool raise = std::abs(side.value) > std::abs(one.parameter.value);
+  return fmt::format("{} {} from {} to {} ({}{})", raise ? "raise" : "lower", one.parameter.path,
+                     with_digits(one.parameter.value, 4), Units::attach(side_place(side), unit_of(one)),
+                     change(side.value, one.parameter.value), side.diverges ? ", but it diverges beyond" : "");
+}
+
+const ParameterMargin* nearest(const MarginReport& report, bool friction) {
+  for (const auto& one : report.parameters)
+    if (one.parameter.friction == friction && one.nearest()) return &one;
+  return nullptr;
+}
+
+std::string of_balance(const MarginReport& report) {
+  if (!report.balance) return "";
+  const auto& [distance, amplitude, frequency] = *report.balance;
+  const std::string where =
+      fmt::format("amplitude {} and {} rad/s", with_digits(amplitude, 3), with_digits(frequency, 3));
+  if (distance < 1e-4) return " The describing function's -1/N meets the Nyquist curve at " + where + ".";
+  return fmt::format(
+      " The describing function finds no cycle: -1/N comes within {} of the Nyquist curve (nearest at {}).",
+      as_percent(distance), where);
+}
+
+std::string reasons(const MarginReport& report, bool friction) {
+  std::string out;
+  for (const auto& one : report.parameters) {
+    if (one.parameter.friction != friction) continue;
+    for (const auto* side : {&one.up, &one.down})
+      if (side->what != MarginSide::What::none || side->why.find("none") == 0)
+        out +=
+            wrapped(fmt::format("{} {}: {}.", one.parameter.path, side == &one.up ? "up" : "down", side->why), 80, 2);
+  }
+  return out;
+}
+
+bool has_unknown_side(const MarginReport& report) {
+  return std::ranges::any_of(report.parameters, [](const ParameterMargin& one) {
+    return one.up.what == MarginSide::What::unknown || one.down.what == MarginSide::What::unknown;
+  });
+}
+
+}  // namespace
+
+Table margin_table(const MarginReport& report, bool friction) {
+  const std::string verb = report.hunts ? "ends" : "begins";
+  Table table{
+      {{"parameter", "", Align::left}, {"value", ""}, {verb + " above", ""}, {verb + " below", ""}, {"distance", ""}},
+      {}};
+  for (const auto& one : report.parameters) {
+    if (one.parameter.friction != friction) continue;
+    const double own = one.parameter.value;
+    table.rows.push_back({short_path(one.parameter.path),  // 80 columns
+                          Units::attach(with_digits(own, 4), unit_of(one)), cell(one.up, own), cell(one.down, own),
+                          std::isfinite(one.distance()) ? as_percent(one.distance()) : "-"});
+  }
+  return table;
+}
+
+std::string margin_answer(const MarginReport& report, const Units& units) {
+  std::string out = report.status == Status::interrupted ? "Interrupted; partial result: " : "";
+  if (!report.refused.empty()) {
+    out += "Not answered: " + report.refused +
+           " over a parameter. `limcycle map` answers over a plane of parameters, with the dead time approximated.";
+    return out + of_balance(report);
+  }
+  if (report.hunts) {
+    const auto stable = std::ranges::find(report.cycles, std::optional<bool>(true), &Cycle::stable);
+    out += fmt::format("This loop has a stable limit cycle (period {} s, amplitude {}).",
+                       with_digits(stable->period, 4), Units::attach(with_digits(stable->amplitude, 4), units.y));
+  } else {
+    out += "No stable limit cycle was found.";
+  }
+  const ParameterMargin* design = nearest(report, false);
+  const ParameterMargin* law = nearest(report, true);
+  const std::string verb = report.hunts ? "ends it" : "starts one";
+  if (design)
+    out += fmt::format(" The smallest change of plant or controller that {}: {}.", verb, step(*design));
+  else if (std::ranges::any_of(report.parameters, [](const auto& one) { return !one.parameter.friction; }))
+    out += fmt::format(" No single change of plant or controller within a factor of {:g} {}{}.", report.factor, verb,
+                       has_unknown_side(report) ? " (some directions are undetermined)" : "");
+  if (law) out += fmt::format(" The smallest change of the friction: {}.", step(*law));
+  return out + of_balance(report);
+}
+
+std::string margin_text(const std::string& title, const MarginReport& report, const Units& units) {
+  std::string out = wrapped(title) + "\n" + wrapped(margin_answer(report, units));
+  for (const bool friction : {false, true}) {
+    const Table table = margin_table(report, friction);
+    if (table.rows.empty()) continue;
+    out += fmt::format("\n{}: where hunting {}\n", friction ? "Friction" : "Plant and controller",
+                       report.hunts ? "ends" : "begins") +
+           table.text() + reasons(report, friction);
+  }
+  out += notes_text(report.notes);
+  if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
+  return out;
+}
+
+}  // namespace limcycle

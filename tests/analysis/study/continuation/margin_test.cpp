@@ -1,0 +1,144 @@
+#include "limcycle/analysis/study/continuation/margin.hpp"
+
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using namespace limcycle::test;
+
+namespace {
+
+constexpr double fold = 0.08187508078;  ///< dead zone of a relay of level 1 driving 1/(s+1)^3 (see continuation_test)
+
+Loop relay_loop(double level, double dead_zone) {
+  return forward(relay(level, 0.0, dead_zone), {1.0}, {1.0, 3.0, 3.0, 1.0});
+}
+
+std::vector<MarginParameter> relay_parameters(double level, double dead_zone) {
+  return {{"loop.element.level", "1", level, false,
+           [=](double p) -> std::optional<Loop> { return relay_loop(p, dead_zone); }},
+          {"loop.element.dead_zone", "1", dead_zone, false,
+           [=](double p) -> std::optional<Loop> { return relay_loop(level, p); }}};
+}
+
+const ParameterMargin& named(const MarginReport& report, const std::string& path) {
+  const auto found =
+      std::ranges::find_if(report.parameters, [&](const auto& one) { return one.parameter.path == path; });
+  REQUIRE(found != report.parameters.end());
+  return *found;
+}
+
+}  // namespace
+
+TEST_CASE("margin: a loop that oscillates, to where its cycle folds (only the ratio of dead zone and level counts)") {
+  const auto report = margin(relay_loop(1.0, 0.05), relay_parameters(1.0, 0.05), {});
+  CHECK(report.status == Status::converged);
+  CHECK(report.hunts);
+  const auto& zone = named(report, "loop.element.dead_zone");
+  CHECK(zone.up.what == MarginSide::What::ends);
+  CHECK(zone.up.value == Approx(fold).epsilon(1e-6));
+  CHECK(zone.down.what == MarginSide::What::none);
+  CHECK(zone.nearest() == &zone.up);
+  const auto& level = named(report, "loop.element.level");
+  CHECK(level.down.what == MarginSide::What::ends);
+  CHECK(level.down.value == Approx(0.05 / fold).epsilon(1e-6));
+  CHECK(level.up.what == MarginSide::What::none);
+  // Nearest first: -39 % of the level, +64 % of the dead zone.
+  CHECK(report.parameters.front().parameter.path == "loop.element.level");
+  CHECK(report.parameters.front().distance() < report.parameters.back().distance());
+  REQUIRE(report.balance);
+  CHECK(report.balance->distance < 1e-4);  // the describing function finds it too
+}
+
+TEST_CASE("margin: a loop that rests, to where a cycle appears") {
+  const auto report = margin(relay_loop(1.0, 0.1), relay_parameters(1.0, 0.1), {});
+  CHECK_FALSE(report.hunts);
+  const auto& zone = named(report, "loop.element.dead_zone");
+  CHECK(zone.down.what == MarginSide::What::begins);
+  CHECK(zone.down.value == Approx(fold).epsilon(1e-6));
+  CHECK(zone.up.what == MarginSide::What::none);
+  const auto& level = named(report, "loop.element.level");
+  CHECK(level.up.what == MarginSide::What::begins);
+  CHECK(level.up.value == Approx(0.1 / fold).epsilon(1e-6));
+}
+
+TEST_CASE("margin: hunting begins where the last of the cycles that take over from each other appears") {
+  // From 1 down the cycle folds at 0.5; just below, the dead zone falls again, and the cycle exists again down to 0.45.
+  const LoopFamily family = [](double p) -> std::optional<Loop> {
+    return relay_loop(1.0, fold * ((p > 0.4975 ? 1.5 : 1.45) - p));
+  };
+  const auto report = margin(*family(0.1), {{"p", "1", 0.1, false, family}}, {});
+  CHECK_FALSE(report.hunts);
+  const auto& up = named(report, "p").up;
+  CHECK(up.what == MarginSide::What::begins);
+  CHECK(up.value == Approx(0.45).epsilon(1e-6));
+}
+
+TEST_CASE("margin: stick-slip with ideal stiction lasts until break-away and sliding level are equal") {
+  const LoopFamily of_Fs = [](double p) -> std::optional<Loop> {
+    if (p < 1.0) return std::nullopt;
+    return servo(coulomb(p, 1.0, 0.4));
+  };
+  const LoopFamily of_Fc = [](double p) -> std::optional<Loop> {
+    if (p > 1.5) return std::nullopt;
+    return servo(coulomb(1.5, p, 0.4));
+  };
+  const auto report =
+      margin(servo(coulomb(1.5, 1.0, 0.4)),
+             {{"loop.friction.Fs", "N", 1.5, true, of_Fs}, {"loop.friction.Fc", "N", 1.0, true, of_Fc}}, {});
+  CHECK(report.hunts);
+  const auto &Fs = named(report, "loop.friction.Fs"), &Fc = named(report, "loop.friction.Fc");
+  CHECK(Fs.down.what == MarginSide::What::ends);
+  CHECK(Fs.down.value == Approx(1.0).epsilon(1e-6));
+  CHECK(Fs.up.what == MarginSide::What::none);
+  CHECK(Fc.up.what == MarginSide::What::ends);
+  CHECK(Fc.up.value == Approx(1.5).epsilon(1e-6));
+  CHECK(Fc.down.what == MarginSide::What::none);
+}
+
+TEST_CASE("margin: where a cycle lasts to the end of the range, hunting does not end there") {
+  // Beyond an integral gain of 60400 the axis is unstable without friction; with it, it still hunts near the set-point.
+  LoopParts parts;
+  parts.plant = Mass{5.0, 2.0, 0.0};
+  parts.friction = coulomb(12.0, 8.0);
+  const auto with = [parts](double ki) mutable -> std::optional<Loop> {
+    Pid controller = pid(2000.0, ki, 150.0);
+    controller.tf = 1e-3;
+    parts.controller = controller;
+    return build_loop(parts);
+  };
+  MarginOptions options;
+  options.predict.search = SearchBox{1e-6, 0.1, 0.01, 1000.0};
+  const auto report =
+      margin(*LoopFamily(with)(8000.0), {{"loop.controller.ki", "N/(m s)", 8000.0, false, with}}, options);
+  const auto& up = named(report, "loop.controller.ki").up;
+  CHECK(up.what == MarginSide::What::none);
+  CHECK_FALSE(up.diverges);
+}
+
+TEST_CASE("margin: distance of -1/N from the Nyquist curve against a scan of the closed form") {
+  // N of a relay with dead zone is real, at most 2 M/(pi d); G = 1/(1 + jw)^3: |1 + 1/(N G)| = |1 + (1 + jw)^3/N|.
+  const double smallest = 0.5 * std::numbers::pi * 0.1;  // of 1/N
+  double least = infinite;
+  for (double c = smallest; c < 3.0 * smallest; c += 0.002 * smallest)
+    for (double w = 0.5; w < 3.0; w += 0.0005)
+      least = std::min(least, std::abs(1.0 + c * std::pow(std::complex<double>(1.0, w), 3)));
+  const auto found = balance_distance(relay_loop(1.0, 0.1), default_search_box(relay_loop(1.0, 0.1)));
+  REQUIRE(found);
+  CHECK(found->distance == Approx(least).epsilon(1e-5));
+  CHECK(found->amplitude == Approx(0.1 * std::sqrt(2.0)).epsilon(1e-2));  // where N is largest
+  CHECK_FALSE(balance_distance(relay_loop(1.0, 0.1), default_search_box(relay_loop(1.0, 0.1)), [] { return true; }));
+}
+
+TEST_CASE("margin: a stop keeps the parameters that are done") {
+  MarginOptions options;
+  std::string seen;
+  options.predict.progress = [&](double, std::string_view what) { seen = what; };
+  options.predict.stop = [&seen] { return seen == "loop.element.dead_zone"; };
+  const auto report = margin(relay_loop(1.0, 0.05), relay_parameters(1.0, 0.05), options);
+  CHECK(report.status == Status::interrupted);
+  REQUIRE(report.parameters.size() == 1);
+  CHECK(report.parameters[0].down.value == Approx(0.05 / fold).epsilon(1e-6));
+}

@@ -1,0 +1,51 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
+#include "limcycle/analysis/study/predict/cycle_search.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using namespace limcycle::test;
+
+namespace {
+
+/// A drive in N, m, s whose measured Stribeck curve begins with infinite slope, under PID with a filtered derivative.
+Loop drive(double delta) {
+  auto law = stribeck(820.333, 330.341, 2.15214);
+  law.delta = delta;
+  LoopParts parts;
+  parts.plant = Mass{0.0326939, 0.0, 0.0};
+  Pid controller = pid(1133.85, 19998.2, 8.43127);
+  controller.tf = 0.000327048;
+  parts.controller = controller;
+  parts.friction = law;
+  return build_loop(parts);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "stribeck: hunting on a curve with infinite slope at rest is a stable cycle, also where no multiplier tells") {
+  for (const double delta : {0.5, 0.8}) {
+    const Loop loop = drive(delta);
+    const SettleOptions options = cycle_search(loop, default_search_box(loop), 1e-8);
+    const Settled found = settle(loop, displaced(loop, 0.2), options);
+    REQUIRE(found.outcome == Outcome::cycle);
+    REQUIRE(found.shot);
+    CHECK(found.shot->cycle.stable == true);
+    // A long run by another stepper, from another start, at another tolerance.
+    SimulateOptions run;
+    run.stepper = "fehlberg78";
+    run.rtol = 1e-9;
+    run.duration = 20.0;
+    run.initial = {{"y", 0.4}};
+    const Simulation simulated = simulate(loop, run);
+    REQUIRE(simulated.outcome == Outcome::cycle);
+    const double periods = simulated.period / found.shot->cycle.period;
+    CHECK(periods == Approx(std::round(periods)).epsilon(2e-4));
+    CHECK(simulated.amplitude == Approx(found.shot->cycle.amplitude).epsilon(2e-4));
+  }
+}

@@ -1,0 +1,187 @@
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "limcycle/cases/loader/case.hpp"
+#include "limcycle/reports/case_files/catalogue.hpp"
+#include "limcycle/reports/case_files/new_case.hpp"
+#include "limcycle/reports/table.hpp"
+#include "limcycle/tests/cli/program.hpp"
+
+using limcycle::Case;
+using limcycle::NewCase;
+using limcycle::read_case;
+using limcycle::test::run;
+using limcycle::test::Scratch;
+using Kinds = std::vector<std::string>;
+
+namespace {
+
+Kinds kinds_in(const std::string& group) {
+  Kinds kinds;
+  for (const auto& entry : limcycle::catalogue())
+    if (entry.group == group) kinds.push_back(entry.kind);
+  return kinds;
+}
+
+/// Error of the reader for a case; empty if there is none.
+std::string complaint(const std::string& text) {
+  try {
+    read_case(text, "new");
+    return {};
+  } catch (const limcycle::InputError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("new: every plant with every controller and every friction law is a valid case") {
+  int cases = 0;
+  for (const auto& plant : kinds_in("plant"))
+    for (const auto& controller : kinds_in("controller"))
+      for (const auto& friction : kinds_in("friction"))
+        for (const bool all : {false, true}) {
+          INFO(plant << ' ' << controller << ' ' << friction << ' ' << all);
+          const Case made = read_case(limcycle::new_case({plant, controller, friction, {}, {}, all}), "new");
+          REQUIRE(made.loop);
+          CHECK(kind_of(made.loop->plant) == plant);
+          CHECK(kind_of(made.loop->controller) == controller);
+          CHECK(made.loop->friction->kind() == friction);
+          // Lists have no single number to spread.
+          if (friction != "maxwell-slip") CHECK(made.sensitivity.has_value() == all);
+          CHECK(made.simulate.has_value() == all);
+          ++cases;
+        }
+  CHECK(cases == 2 * 7 * 4 * 20);
+}
+
+TEST_CASE("new: every element, alone and beside friction, before every plant and behind every controller") {
+  for (const auto& plant : kinds_in("plant"))
+    for (const auto& controller : kinds_in("controller"))
+      for (const auto& friction : {"", "lugre", "coulomb"})
+        for (const auto& element : kinds_in("element")) {
+          INFO(plant << ' ' << controller << ' ' << friction << ' ' << element);
+          CHECK(complaint(limcycle::new_case({plant, controller, friction, element, {}, true})) == "");
+        }
+}
+
+TEST_CASE("new: the kinds that are told beside the chosen one are those that may stand there") {
+  const auto others = [](const std::string& text, const std::string& section) {
+    const auto at = text.find("# others", text.find("\n[" + section + "]\n"));
+    return limcycle::test::squeezed(text.substr(at, text.find("kind =", at) - at));
+  };
+  const auto text = limcycle::new_case({"mass", "pid", {}, "relay", "dead-zone", false});
+  CHECK(others(text, "loop.error") == "# others quantizer, saturation ");
+  CHECK(others(text, "loop.element").starts_with("# others saturation, dead-zone, backlash, cubic, or a friction law"));
+}
+
+TEST_CASE("new: every element on the error, and every friction law as an element, where the format has it") {
+  for (const auto& plant : kinds_in("plant"))
+    for (const auto& controller : kinds_in("controller")) {
+      for (const auto& error : {"dead-zone", "saturation", "quantizer"}) {
+        INFO(plant << ' ' << controller << ' ' << error);
+        const auto why = complaint(limcycle::new_case({plant, controller, "lugre", {}, error}));
+        // A controller that does not use the error cannot have an element on it.
+        CHECK((controller == "none" ? why.find("needs a controller") != std::string::npos : why.empty()));
+      }
+      for (const auto& law : kinds_in("friction")) {
+        INFO(plant << ' ' << controller << ' ' << law);
+        const auto why = complaint(limcycle::new_case({plant, controller, {}, law, {}}));
+        const bool needs_force = law == "karnopp" || law == "quinn" || law == "awrejcewicz" || law == "wojewoda";
+        CHECK(needs_force == (why.find("needs the applied force") != std::string::npos));
+        CHECK(needs_force == !why.empty());
+      }
+    }
+}
+
+TEST_CASE("new: every key that stands as a comment is valid without the #") {
+  const auto tried = [](const NewCase& wanted) {
+    const std::string text = limcycle::new_case(wanted);
+    int keys = 0;
+    std::istringstream lines(text);
+    std::size_t at = 0;
+    for (std::string line; std::getline(lines, line); at += line.size() + 1) {
+      const auto equals = line.find(" = ");
+      if (!line.starts_with("# ") || equals == std::string::npos || line.find(' ', 2) != equals) continue;
+      std::string active = text;
+      active.erase(at, 2);
+      INFO(line);
+      CHECK(complaint(active) == "");
+      ++keys;
+    }
+    return keys;
+  };
+  for (const auto& friction : kinds_in("friction")) CHECK(tried({.friction = friction, .all = true}) > 15);
+  for (const auto& plant : kinds_in("plant")) CHECK(tried({.plant = plant, .all = true}) > 15);
+  for (const auto& controller : kinds_in("controller")) CHECK(tried({.controller = controller, .all = true}) > 15);
+  for (const auto& element : kinds_in("element")) {
+    CHECK(tried({.plant = "state-space", .element = element, .all = true}) > 15);
+    CHECK(tried({.plant = "zpk", .element = element, .all = true}) > 15);
+  }
+}
+
+TEST_CASE("new: a case tells every key of its parts with unit and meaning, in 80 columns") {
+  for (const auto& entry : limcycle::catalogue()) {
+    if (entry.group != "friction") continue;
+    INFO(entry.kind);
+    const std::string text = limcycle::new_case({.friction = entry.kind});
+    for (const auto& parameter : entry.parameters) {
+      CHECK((text.find("\n" + parameter.key + " = ") != std::string::npos ||
+             text.find("\n# " + parameter.key + " = ") != std::string::npos));
+      CHECK(text.find(parameter.meaning.substr(0, 12)) != std::string::npos);
+    }
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      INFO(line);
+      CHECK((limcycle::display_width(line) <= 80 || line.find(" = [") != std::string::npos));
+    }
+  }
+}
+
+TEST_CASE("new: the program writes, refuses and suggests") {
+  const Scratch scratch;
+  const std::string file = scratch.file("servo.toml");
+  const auto first = run({"new", "-o", file});
+  CHECK(first.code == 0);
+  CHECK(first.out.empty());
+  CHECK(first.err.find("limcycle predict " + file) != std::string::npos);
+  CHECK(scratch.get("servo.toml") == limcycle::new_case({}));
+  CHECK(run({"new"}).out == limcycle::new_case({}));
+  CHECK(run({"new", "--element", "relay"}).out ==
+        limcycle::new_case({.plant = "transfer-function", .controller = "none", .friction = "", .element = "relay"}));
+
+  const auto again = run({"new", "--plant", "belt", "-o", file});
+  CHECK(again.code == 2);
+  CHECK(again.err.find("exists already") != std::string::npos);
+  CHECK(scratch.get("servo.toml") == limcycle::new_case({}));
+  CHECK(run({"new", "--plant", "belt", "-o", file, "--force", "--quiet"}).err.empty());
+  CHECK(scratch.get("servo.toml") == limcycle::new_case({.plant = "belt"}));
+
+  CHECK(run({"new", "--friction", "lugree"}).err.find("did you mean lugre?") != std::string::npos);
+  CHECK(run({"new", "--plant", "two_mass"}).err.find("did you mean two-mass?") != std::string::npos);
+  for (const auto* flag : {"--plant", "--controller", "--friction", "--element", "--error"})
+    CHECK(run({"new", flag, "nothing-like-it"}).code == 2);
+  const auto apart = run({"new", "--element", "karnopp"});
+  CHECK(apart.code == 2);
+  CHECK(apart.err.find("do not fit together") != std::string::npos);
+  CHECK(run({"new", "--friction", "none"}).code == 2);  // all parts would be linear
+}
+
+TEST_CASE("new: predict answers on new cases") {
+  const Scratch scratch;
+  const auto answers = [&](std::vector<std::string> kinds) {
+    kinds.insert(kinds.begin(), "new");
+    kinds.insert(kinds.end(), {"--quiet", "--force", "-o", scratch.file("case.toml")});
+    CAPTURE(kinds);
+    REQUIRE(run(kinds).code == 0);
+    const auto ran = run({"predict", scratch.file("case.toml"), "--set", "predict.starts=2"});
+    CHECK(ran.code == 0);
+    CHECK(ran.out.find("This loop ") != std::string::npos);
+  };
+  for (const auto& plant : kinds_in("plant")) answers({"--plant", plant, "--friction", "coulomb"});
+  for (const auto* controller : {"none", "state-space"})
+    answers({"--controller", controller, "--friction", "stribeck"});
+  for (const auto& element : kinds_in("element")) answers({"--element", element});
+  answers({"--friction", "lugre"});
+  answers({"--error", "quantizer", "--friction", "coulomb"});
+}
