@@ -8,6 +8,7 @@ namespace {
 
 constexpr int bisections = 6;             ///< of one border
 constexpr double close_enough = 1.1;      ///< ratio of two starts between which the search ends
+constexpr double apart = 5.0;             ///< ratio of neighbouring starts if those of a user come to rest
 constexpr long steps_of_a_trend = 6'000;  ///< of one of the fifty motions along a border
 constexpr double step_aside = 0.01;       ///< relative distance from an unstable cycle
 
@@ -37,9 +38,9 @@ std::optional<double> first_period(const Trace& trace) {
 BetweenStarts::BetweenStarts(const Loop& loop, CycleHunt& hunt, long max_steps, const std::function<bool()>& stop)
     : loop_(loop), hunt_(hunt), left_(max_steps), stop_(stop) {}
 
-OutcomeOfStart BetweenStarts::probe(const LoopState& start, std::string name) {
+OutcomeOfStart BetweenStarts::probe(const LoopState& start, std::string name, double smallest_swing) {
   const long before = hunt_.steps();
-  OutcomeOfStart outcome = hunt_.probe_from(start, std::move(name));
+  OutcomeOfStart outcome = hunt_.probe_from(start, std::move(name), smallest_swing);
   left_ -= hunt_.steps() - before;
   return outcome;
 }
@@ -54,27 +55,39 @@ void BetweenStarts::find_borders() {
   }
 }
 
-void BetweenStarts::look_inside_divergence(std::vector<Start> starts, const std::function<LoopState(double place)>& ray,
-                                           const std::function<std::string(double place)>& name) {
+void BetweenStarts::bisect_divergence(const Start& low_start, const Start& high_start, const Ray& ray) {
+  const bool below = hunt_.outcomes()[low_start.outcome].outcome == Outcome::divergence;
+  double low = low_start.place, high = high_start.place;
+  Trace diverging = hunt_.outcomes()[(below ? low_start : high_start).outcome].trace;
+  for (int k = 0; k < bisections && high > close_enough * low && !over(); ++k) {
+    const double middle = std::sqrt(low * high);
+    OutcomeOfStart outcome = probe(ray.state(middle), ray.name(middle));
+    const bool also = outcome.outcome == Outcome::divergence;
+    (also == below ? low : high) = middle;
+    if (also) diverging = std::move(outcome.trace);
+  }
+  const double place = below ? high : low;
+  if (const auto period = first_period(diverging))
+    borders_.push_back({[state = ray.state, place](double scale) { return state(scale * place); }, *period});
+}
+
+void BetweenStarts::look_between(std::vector<Start> starts, const Ray& ray) {
   std::ranges::sort(starts, {}, &Start::place);
-  const auto diverges = [&](const Start& start) {
-    return hunt_.outcomes()[start.outcome].outcome == Outcome::divergence;
+  const auto outcome = [&](const Start& start) { return hunt_.outcomes()[start.outcome].outcome; };
+  const auto diverges = [&](const Start& start) { return outcome(start) == Outcome::divergence; };
+  const auto calm = [&](const Start& start) {
+    return outcome(start) == Outcome::rest || outcome(start) == Outcome::sliding;
   };
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
-    if (diverges(starts[i]) == diverges(starts[i + 1])) continue;
-    const bool below = diverges(starts[i]);
-    double low = starts[i].place, high = starts[i + 1].place;
-    Trace diverging = hunt_.outcomes()[starts[below ? i : i + 1].outcome].trace;
-    for (int k = 0; k < bisections && high > close_enough * low && !over(); ++k) {
-      const double middle = std::sqrt(low * high);
-      OutcomeOfStart outcome = probe(ray(middle), name(middle));
-      const bool also = outcome.outcome == Outcome::divergence;
-      (also == below ? low : high) = middle;
-      if (also) diverging = std::move(outcome.trace);
+    const Start &low = starts[i], &high = starts[i + 1];
+    if (diverges(low) != diverges(high)) bisect_divergence(low, high, ray);
+    if (!calm(low) || !calm(high)) continue;
+    const double ratio = high.place / low.place;
+    const int parts = std::max(1, static_cast<int>(std::lround(std::log(ratio) / std::log(apart))));
+    for (int part = parts - 1; part > 0 && !over(); --part) {
+      const double place = low.place * std::pow(ratio, static_cast<double>(part) / parts);
+      probe(ray.state(place), ray.name(place), low.place);
     }
-    const double place = below ? high : low;
-    if (const auto period = first_period(diverging))
-      borders_.push_back({[ray, place](double scale) { return ray(scale * place); }, *period});
   }
 }
 

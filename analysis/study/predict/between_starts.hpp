@@ -18,10 +18,16 @@ class BetweenStarts {
     double place;
     std::size_t outcome;
   };
+  /// A place on the ray of the starts as a state, and its text.
+  struct Ray {
+    std::function<LoopState(double place)> state;
+    std::function<std::string(double place)> name;
+  };
   /// Between neighbouring starts of which one diverges and the other does not, the border is bisected (in the logarithm
-  /// of the position) and every motion on the way followed to its end. `name`: text for a start at a position.
-  void look_inside_divergence(std::vector<Start> starts, const std::function<LoopState(double place)>& ray,
-                              const std::function<std::string(double place)>& name);
+  /// of the position) and every motion on the way followed to its end. Between neighbours that both come to rest or
+  /// slide, motions begin at a ratio of about five and are followed until they swing less than the lower neighbour: a
+  /// stable cycle may lie between.
+  void look_between(std::vector<Start> starts, const Ray& ray);
 
   /// The unstable cycles at the borders found, if no other method has found any: they join the cycles of the hunt.
   /// Cost: some fifty short simulations for each border.
@@ -34,7 +40,8 @@ class BetweenStarts {
 
  private:
   bool over() const { return left_ <= 0 || (stop_ && stop_()); }
-  OutcomeOfStart probe(const LoopState& start, std::string name);
+  OutcomeOfStart probe(const LoopState& start, std::string name, double smallest_swing = 0.0);
+  void bisect_divergence(const Start& low, const Start& high, const Ray& ray);
 
   /// Border at which motions begin to diverge, and the period of one of them there.
   struct Border {

@@ -1,6 +1,7 @@
 #include "limcycle/analysis/study/predict/cycle_hunt.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "limcycle/analysis/orbit/settle/edge.hpp"
 #include "limcycle/analysis/study/predict/cycle_search.hpp"
@@ -40,8 +41,10 @@ bool CycleHunt::is_news(const OutcomeOfStart& outcome) const {
   });
 }
 
-OutcomeOfStart CycleHunt::probe_from(const LoopState& start, std::string name) {
+OutcomeOfStart CycleHunt::probe_from(const LoopState& start, std::string name, double smallest_swing) {
+  const double floor = std::exchange(settle_.amplitude_floor, std::max(settle_.amplitude_floor, smallest_swing));
   OutcomeOfStart outcome = simulate(start, std::move(name));
+  settle_.amplitude_floor = floor;
   if (is_news(outcome)) outcomes_.push_back(outcome);
   return outcome;
 }

@@ -15,8 +15,9 @@ class CycleHunt {
   /// Simulates from a state until the outcome is decided; a cycle reached joins `cycles`.
   const OutcomeOfStart& settle_from(const LoopState& start, std::string name);
   /// The same from a state that no user would choose, to find outcomes between the starts: it joins `outcomes` only if
-  /// it reaches a cycle or another kind of outcome that none of them has reached.
-  OutcomeOfStart probe_from(const LoopState& start, std::string name);
+  /// it reaches a cycle or another kind of outcome that none of them has reached. A motion whose swings have become
+  /// less than `smallest_swing` has died out.
+  OutcomeOfStart probe_from(const LoopState& start, std::string name, double smallest_swing = 0.0);
   /// Newton's method for the cycle near a guess, stable or not; index of the cycle found (the caller decides if it is
   /// near).
   std::optional<std::size_t> shoot_from(const OrbitGuess& guess);

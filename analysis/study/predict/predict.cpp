@@ -119,12 +119,11 @@ class PredictionStudy {
     return (elsewhere ? "y(0) = rest + " : "y(0) = ") + short_number(displacement);
   }
 
-  /// Searches for cycles between the starts if some of them diverge.
+  /// Searches for cycles between the starts.
   void look_between_starts(const WorkShare& share) {
     between_.emplace(time_, *hunt_, share.between_steps, options_.stop);
-    between_->look_inside_divergence(
-        starts_, [&](double displacement) { return displaced(time_, displacement); },
-        [&](double displacement) { return start_name(displacement); });
+    between_->look_between(starts_, {[&](double displacement) { return displaced(time_, displacement); },
+                                     [&](double displacement) { return start_name(displacement); }});
   }
 
   void look_beside_unstable_cycles() {
