@@ -77,13 +77,21 @@ std::pair<std::string, std::string> both_ways(const Value& value, std::span<cons
   }
 }
 
+/// Eigen compares matrices of one shape only.
+bool equal(const ParameterValue& a, const ParameterValue& b) {
+  const auto *left = std::get_if<Eigen::MatrixXd>(&a), *right = std::get_if<Eigen::MatrixXd>(&b);
+  if (left != nullptr && right != nullptr && (left->rows() != right->rows() || left->cols() != right->cols()))
+    return false;
+  return a == b;
+}
+
 /// True if an optional parameter has its default: its own value, or that of another key.
 bool stands_by_default(const std::vector<ParameterRow>& rows, const std::vector<ParameterValue>& values,
                        const std::vector<ParameterValue>& defaults, std::size_t i) {
   if (rows[i].required) return false;
-  if (rows[i].default_from.empty()) return values[i] == defaults[i];
+  if (rows[i].default_from.empty()) return equal(values[i], defaults[i]);
   for (std::size_t k = 0; k < rows.size(); ++k)
-    if (rows[k].key == rows[i].default_from) return values[i] == values[k];
+    if (rows[k].key == rows[i].default_from) return equal(values[i], values[k]);
   return false;
 }
 
