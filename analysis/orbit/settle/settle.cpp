@@ -54,7 +54,7 @@ class Settling {
 
   void step() {
     if (options_.stop && options_.stop()) return decide(Outcome::undecided, "interrupted");
-    if (march_.steps() > options_.max_steps) {
+    if (march_.steps() > horizon()) {
       if (grows_like_a_power(turning_))
         return decide(Outcome::divergence, "y grows without bound, like a power of time");
       return look_for_irregular();
@@ -77,6 +77,16 @@ class Settling {
     if (decided_ || !march_.last().switched) return;
     if (auto still = stillness_.switched(dx_)) return come_to(*still);
     if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
+  }
+
+  /// The step limit, or more for a motion that has not turned often enough, or not lasted long enough for a known
+  /// cycle, to be judged: bristles that ring while the body sticks may take 30,000 steps between two of its turns.
+  long horizon() const {
+    constexpr long longer = 4;
+    constexpr double periods = 6.0;
+    const auto may_be = [&](const Cycle& cycle) { return march_.t() < periods * cycle.period; };
+    const bool early = turning_.points().size() < options_.fewest_turns || std::ranges::any_of(options_.known, may_be);
+    return early && options_.fewest_turns > 0 ? longer * options_.max_steps : options_.max_steps;
   }
 
   /// For neither rest nor a cycle within the step limit: permanent nevertheless, if two tolerances give the same

@@ -19,6 +19,7 @@ struct SettleOptions {
   double amplitude_floor = 1e-9;   ///< swings of y below this have died out
   double amplitude_ceiling = 1e6;  ///< |y| beyond this has diverged
   long max_steps = 60000;          ///< the horizon: steps, not seconds, so that it follows the loop's own time scales
+  std::size_t fewest_turns = 12;   ///< of y; with fewer, the horizon is four times as long; 0: it never is
   ShootingOptions shooting;
   std::span<const Cycle> known;  ///< cycles found before: recognised by period and swing (to 1e-4) without shooting
   std::function<bool()> stop;

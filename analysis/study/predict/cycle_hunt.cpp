@@ -76,7 +76,10 @@ std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(d
     if (end->shot) merge(cycles_, end->shot->cycle);
   settle_.known = cycles_;
   SettleOptions along = settle_;
-  if (max_steps > 0) along.max_steps = max_steps;
+  if (max_steps > 0) {
+    along.max_steps = max_steps;
+    along.fewest_turns = 0;
+  }
   return keep(edge_cycle(loop_, ray, period, along));
 }
 
