@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "limcycle/models/element/cubic.hpp"
 #include "limcycle/models/element/relay.hpp"
 #include "limcycle/models/element/saturation.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
@@ -92,6 +93,13 @@ inline Loop forward(Element element, std::vector<double> numerator, std::vector<
   parts.plant = TransferFunction{std::move(numerator), std::move(denominator), 0.0};
   parts.element = std::move(element);
   return build_loop(parts);
+}
+
+/// x'' - mu x' + x + mu (x^3/3)' = 0: plant mu s/(s^2 - mu s + 1), element x^3/3.
+inline Loop van_der_pol(double mu) {
+  Cubic<double> cubic;
+  cubic.coefficient = 1.0 / 3.0;
+  return forward(cubic, {mu, 0.0}, {1.0, -mu, 1.0});
 }
 
 /// A pendulum with friction on a turning shaft, and its loop.

@@ -19,7 +19,7 @@ namespace {
 std::string with_claim(const std::string& body) { return std::string(servo) + "[[claim]]\nid = \"a\"\n" + body; }
 
 /// Relay with hysteresis and an integrator: period 4 h/(gain level), amplitude h.
-const std::string relay = R"([loop.plant]
+const std::string relay_case = R"([loop.plant]
 kind = "zpk"
 zeros = []
 poles = [0.0]
@@ -125,7 +125,7 @@ TEST_CASE("section claim: what is refused, with line, key, value and rule") {
              Contains("claim[1].id") && Contains("appears twice in the case"));
   CHECK_THAT(message(coulomb + "[[claim]]\nid = \"a\"\nquantity = \"period\"\nformula = \"1\"\n"),
              Contains("needs a loop"));
-  CHECK_THAT(message(relay + "[[claim]]\nid = \"a\"\nquantity = \"passive\"\nformula = \"1\"\n"),
+  CHECK_THAT(message(relay_case + "[[claim]]\nid = \"a\"\nquantity = \"passive\"\nformula = \"1\"\n"),
              Contains("the loop has none"));
   CHECK(message("claim = [1]\n" + coulomb) == "a.toml:1: claim[0] = 1: must be a table, found a number");
 }
@@ -147,32 +147,35 @@ TEST_CASE("user claims: a cycle known in closed form, at random parameters too")
       "= "
       "3}]\nrandom = 3\n";
   const auto period =
-      tested(relay, "quantity = \"period\"\nformula = \"4*hysteresis/(gain*level)\"\ntolerance = 1e-8\n" + over);
+      tested(relay_case, "quantity = \"period\"\nformula = \"4*hysteresis/(gain*level)\"\ntolerance = 1e-8\n" + over);
   CHECK(period.result.verdict == ClaimVerdict::holds);
   CHECK(period.result.checks.size() == 4);
   CHECK(period.result.checks[3].random);
   CHECK(period.result.checks[3].claimed != period.result.checks[0].claimed);
-  CHECK(verdict(relay, "quantity = \"period\"\nformula = \"4.001*hysteresis/(gain*level)\"\ntolerance = 1e-4\n") ==
+  CHECK(verdict(relay_case, "quantity = \"period\"\nformula = \"4.001*hysteresis/(gain*level)\"\ntolerance = 1e-4\n") ==
         ClaimVerdict::fails);
-  CHECK(verdict(relay, "quantity = \"amplitude\"\nformula = \"hysteresis\"\ntolerance = 1e-8\n") ==
+  CHECK(verdict(relay_case, "quantity = \"amplitude\"\nformula = \"hysteresis\"\ntolerance = 1e-8\n") ==
         ClaimVerdict::holds);
-  CHECK(verdict(relay, "quantity = \"amplitude\"\nformula = \"0.11\"\ncomparison = \"<\"\n") == ClaimVerdict::holds);
-  CHECK(verdict(relay, "quantity = \"amplitude\"\nformula = \"0.09\"\ncomparison = \"<=\"\n") == ClaimVerdict::fails);
-  CHECK(verdict(relay, "quantity = \"hunts\"\nformula = 1\n") == ClaimVerdict::holds);
-  CHECK(verdict(relay, "quantity = \"hunts\"\ncomparison = \"<\"\nformula = 1\n") == ClaimVerdict::fails);
+  CHECK(verdict(relay_case, "quantity = \"amplitude\"\nformula = \"0.11\"\ncomparison = \"<\"\n") ==
+        ClaimVerdict::holds);
+  CHECK(verdict(relay_case, "quantity = \"amplitude\"\nformula = \"0.09\"\ncomparison = \"<=\"\n") ==
+        ClaimVerdict::fails);
+  CHECK(verdict(relay_case, "quantity = \"hunts\"\nformula = 1\n") == ClaimVerdict::holds);
+  CHECK(verdict(relay_case, "quantity = \"hunts\"\ncomparison = \"<\"\nformula = 1\n") == ClaimVerdict::fails);
   // The root is at the least amplitude for which N exists: the search may have missed others, so the count is open.
-  CHECK(verdict(relay, "quantity = \"cycles\"\nformula = 1\n") == ClaimVerdict::undecided);
+  CHECK(verdict(relay_case, "quantity = \"cycles\"\nformula = 1\n") == ClaimVerdict::undecided);
   const std::string lags =
       "[loop.plant]\nkind = \"zpk\"\nzeros = []\npoles = [-1, -1, -1]\ngain = 1\n[loop.element]\n"
       "kind = \"relay\"\nlevel = 1\n[search]\namplitude = [0.01, 1]\nfrequency = [0.1, 10]\n";
   CHECK(verdict(lags, "quantity = \"cycles\"\nformula = 1\n") == ClaimVerdict::holds);
   CHECK(verdict(lags, "quantity = \"cycles\"\nformula = 2\n") == ClaimVerdict::fails);
-  CHECK(verdict(relay, "quantity = \"largest_multiplier\"\ncomparison = \"<\"\nformula = 1\n") == ClaimVerdict::holds);
-  CHECK(verdict(relay, "quantity = \"offset\"\nformula = 0\n") == ClaimVerdict::holds);
-  CHECK(verdict(relay, "quantity = \"sticking_fraction\"\nformula = 0\n") == ClaimVerdict::holds);
+  CHECK(verdict(relay_case, "quantity = \"largest_multiplier\"\ncomparison = \"<\"\nformula = 1\n") ==
+        ClaimVerdict::holds);
+  CHECK(verdict(relay_case, "quantity = \"offset\"\nformula = 0\n") == ClaimVerdict::holds);
+  CHECK(verdict(relay_case, "quantity = \"sticking_fraction\"\nformula = 0\n") == ClaimVerdict::holds);
   // The frequency by the describing function, 4 gain level/(pi h), is 19 % off.
   const auto df =
-      tested(relay,
+      tested(relay_case,
              "quantity = \"frequency\"\nformula = \"4*gain*level/(pi*hysteresis)\"\ntolerance = 0.05\nexpected = "
              "\"fails\"\n");
   CHECK(df.as_expected());

@@ -7,12 +7,11 @@
 #include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;
+using limcycle::test::lone_law;
 using limcycle::test::message;
 using limcycle::test::servo;
 
 namespace {
-
-const std::string law = "[loop.friction]\nkind = \"coulomb\"\nFc = 1.0\n";
 
 std::string load_message(const std::string& file) {
   try {
@@ -64,8 +63,8 @@ TEST_CASE("SHA-256: the vectors of FIPS 180-4 and of the empty text") {
 }
 
 TEST_CASE("the digest is of the bytes of the file, whatever is overridden") {
-  const Case plain = read_case(law, "a.toml"), changed = read_case(law, "a.toml", {"loop.friction.Fc=2"});
-  CHECK(plain.sha256 == sha256(law));
+  const Case plain = read_case(lone_law, "a.toml"), changed = read_case(lone_law, "a.toml", {"loop.friction.Fc=2"});
+  CHECK(plain.sha256 == sha256(lone_law));
   CHECK(changed.sha256 == plain.sha256);
 }
 
@@ -89,20 +88,20 @@ TEST_CASE("files that are no case files") {
   CHECK(put("a = 1\nb = \"\xC3\x28\"\n") == file + ":2: not a text file in UTF-8: a case file is TOML");
   CHECK(put("\xFF\xFE[\n") == file + ":1: not a text file in UTF-8: a case file is TOML");
   CHECK(put(std::string(largest_case_file + 1, '#')) == file + ": is larger than 1 MiB, the limit for a case file");
-  CHECK(put("\xEF\xBB\xBF" + law) == "");  // a byte-order mark is no error
-  CHECK(put("# \xC3\xA9\r\n" + law) == "");
+  CHECK(put("\xEF\xBB\xBF" + lone_law) == "");  // a byte-order mark is no error
+  CHECK(put("# \xC3\xA9\r\n" + lone_law) == "");
   std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("TOML mistakes are told with line and column") {
   CHECK(message("[loop\n").starts_with("a.toml:1: not valid TOML at column 6: "));
-  CHECK(message(law + "x = \n").starts_with("a.toml:4: not valid TOML at column "));
-  CHECK(message(law + "Fc = 2.0\n").starts_with("a.toml:4: not valid TOML at column "));
-  CHECK(message(law + "Fc = 2.0\n").find("'Fc'") != std::string::npos);
-  CHECK(message(law + "[loop.friction]\n").starts_with("a.toml:4: not valid TOML"));
-  CHECK(message(law + "x = 99999999999999999999\n").starts_with("a.toml:4: not valid TOML"));
-  CHECK(message(law + "x = abc\n").starts_with("a.toml:4: not valid TOML"));
-  CHECK(message(law + "x = \"abc\n").starts_with("a.toml:4: not valid TOML"));
+  CHECK(message(lone_law + "x = \n").starts_with("a.toml:4: not valid TOML at column "));
+  CHECK(message(lone_law + "Fc = 2.0\n").starts_with("a.toml:4: not valid TOML at column "));
+  CHECK(message(lone_law + "Fc = 2.0\n").find("'Fc'") != std::string::npos);
+  CHECK(message(lone_law + "[loop.friction]\n").starts_with("a.toml:4: not valid TOML"));
+  CHECK(message(lone_law + "x = 99999999999999999999\n").starts_with("a.toml:4: not valid TOML"));
+  CHECK(message(lone_law + "x = abc\n").starts_with("a.toml:4: not valid TOML"));
+  CHECK(message(lone_law + "x = \"abc\n").starts_with("a.toml:4: not valid TOML"));
   for (const auto& text : {"[loop\n", "x = [1,\n2", "a.b.c = {x = 1\n"})
     CHECK(message(text).find('\n') == std::string::npos);
 }
@@ -120,12 +119,12 @@ TEST_CASE("what is nested too deeply for the stack is refused before it is parse
   CHECK(message("[a" + repeated(".a", 100000) + "]\n") == "a.toml:1" + rule);
   CHECK(message("[a" + repeated(" . \"a\"", 100000) + "]\n") == "a.toml:1" + rule);
   CHECK(message("a = {a" + repeated(".a", 100000) + " = 1}\n") == "a.toml:1" + rule);
-  CHECK(message(law, {"a" + repeated(".a", 10000) + "=1"}).ends_with(": PATH has too many parts"));
-  CHECK(message(law, {"a={a" + repeated(".a", 10000) + "=1}"}).ends_with(rule));
+  CHECK(message(lone_law, {"a" + repeated(".a", 10000) + "=1"}).ends_with(": PATH has too many parts"));
+  CHECK(message(lone_law, {"a={a" + repeated(".a", 10000) + "=1}"}).ends_with(rule));
   // Dots and brackets in comments, strings and long lists are harmless.
-  CHECK(message("# " + repeated("[.", 500) + "\ntitle = \"" + repeated("[.", 500) + "\\\"\"\n" + law).empty());
-  CHECK(message("title = \"\"\"" + repeated("[.\n", 500) + "\"\"\"\n" + law).empty());
-  CHECK(message("title = '" + repeated("{.", 500) + "'\n" + law + "[df]\nfrequency = [1]\namplitude = [1" +
+  CHECK(message("# " + repeated("[.", 500) + "\ntitle = \"" + repeated("[.", 500) + "\\\"\"\n" + lone_law).empty());
+  CHECK(message("title = \"\"\"" + repeated("[.\n", 500) + "\"\"\"\n" + lone_law).empty());
+  CHECK(message("title = '" + repeated("{.", 500) + "'\n" + lone_law + "[df]\nfrequency = [1]\namplitude = [1" +
                 repeated(", 1.5", 500) + "]\n")
             .empty());
 }

@@ -7,6 +7,9 @@
 
 namespace limcycle::test {
 
+/// A case of a friction law alone.
+inline const std::string lone_law = "[loop.friction]\nkind = \"coulomb\"\nFc = 1.0\n";
+
 /// Message of the loader about a text; empty if it accepts it.
 inline std::string message(std::string_view text, const std::vector<std::string>& overrides = {}) {
   try {

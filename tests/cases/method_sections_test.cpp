@@ -3,16 +3,15 @@
 #include "limcycle/tests/cases/message.hpp"
 
 using namespace limcycle;
+using limcycle::test::lone_law;
 using limcycle::test::message;
 using limcycle::test::servo;
 using limcycle::test::with;
 
 namespace {
 
-const std::string law = "[loop.friction]\nkind = \"coulomb\"\nFc = 1.0\n";
-
-Case with_df(const std::string& body) { return read_case(law + "[df]\n" + body, "a.toml"); }
-std::string df_message(const std::string& body) { return message(law + "[df]\n" + body); }
+Case with_df(const std::string& body) { return read_case(lone_law + "[df]\n" + body, "a.toml"); }
+std::string df_message(const std::string& body) { return message(lone_law + "[df]\n" + body); }
 std::string simulate_message(const std::string& body) { return message(std::string(servo) + "[simulate]\n" + body); }
 
 }  // namespace
@@ -169,15 +168,15 @@ TEST_CASE("section simulate: what is refused") {
         "a.toml:22: simulate.force.times = [0, 0]: must increase, but entry 1 is not above the one before");
   CHECK(simulate_message("duration = 1\nforce = {kind = \"table\", times = [0, 1], values = [1]}\n") ==
         "a.toml:22: simulate.force.values = [1]: must have as many entries as times (2), found 1");
-  CHECK(message(law + "[simulate]\nduration = 1\n") == "a.toml:4: simulate: needs a loop: add [loop.plant]");
+  CHECK(message(lone_law + "[simulate]\nduration = 1\n") == "a.toml:4: simulate: needs a loop: add [loop.plant]");
 }
 
 TEST_CASE("sections of other commands are read too") {
-  CHECK(message(law + "[sensitivity]\nsample = 1\n") ==
+  CHECK(message(lone_law + "[sensitivity]\nsample = 1\n") ==
         "a.toml:5: sensitivity.sample: unknown key; did you mean samples?");
-  CHECK(message(law + "[sensitivity]\nparameters = [{path = \"loop.friction.Fs\", factor = 2}]\n[dissipativity]\n") ==
-        "");
-  CHECK(message("sensitivity = 1\n" + law) == "a.toml:1: sensitivity = 1: must be a table, found a number");
-  CHECK(message("claim = [1]\n" + law) == "a.toml:1: claim[0] = 1: must be a table, found a number");
-  CHECK(message(law + "[serch]\n") == "a.toml:4: serch: unknown key; did you mean search?");
+  CHECK(message(lone_law +
+                "[sensitivity]\nparameters = [{path = \"loop.friction.Fs\", factor = 2}]\n[dissipativity]\n") == "");
+  CHECK(message("sensitivity = 1\n" + lone_law) == "a.toml:1: sensitivity = 1: must be a table, found a number");
+  CHECK(message("claim = [1]\n" + lone_law) == "a.toml:1: claim[0] = 1: must be a table, found a number");
+  CHECK(message(lone_law + "[serch]\n") == "a.toml:4: serch: unknown key; did you mean search?");
 }

@@ -14,7 +14,7 @@ using limcycle::test::shipped;
 
 namespace {
 
-void check_refused(const Ran& ran, const std::string& part) {
+void check_refused_with(const Ran& ran, const std::string& part) {
   CHECK(ran.code == 2);
   CHECK(ran.out.empty());
   CHECK_THAT(ran.err, Contains(part));
@@ -29,15 +29,15 @@ TEST_CASE("files: no document takes the place of the case, a store or another do
   const std::string mine = scratch.file("my.toml"), before = scratch.get("my.toml"), there = scratch.file("./my.toml");
   for (const char* flag : {"-o", "--json", "--csv"})
     for (const std::string& name : {mine, there, scratch.file("link.toml")})
-      check_refused(run({"check", mine, flag, name}), "is the case file");
-  check_refused(run({"predict", mine, "-o", scratch.file("a.html"), "--json", mine}), "is the case file");
-  check_refused(run({"check", mine, "--json", scratch.file("a.out"), "--csv", scratch.file("./a.out")}),
-                "is where --json goes already");
+      check_refused_with(run({"check", mine, flag, name}), "is the case file");
+  check_refused_with(run({"predict", mine, "-o", scratch.file("a.html"), "--json", mine}), "is the case file");
+  check_refused_with(run({"check", mine, "--json", scratch.file("a.out"), "--csv", scratch.file("./a.out")}),
+                     "is where --json goes already");
   const std::string store = scratch.file("s.db");
-  check_refused(run({"map", mine, "--x", "loop.controller.kp=1:5:2", "--y", "loop.controller.kd=1:9:2", "--store",
-                     store, "--json", store}),
-                "is the store");
-  check_refused(run({"report", mine, "-o", there}), "is the case file");
+  check_refused_with(run({"map", mine, "--x", "loop.controller.kp=1:5:2", "--y", "loop.controller.kd=1:9:2", "--store",
+                          store, "--json", store}),
+                     "is the store");
+  check_refused_with(run({"report", mine, "-o", there}), "is the case file");
   CHECK(scratch.get("my.toml") == before);
   CHECK_FALSE(std::filesystem::exists(scratch.file("a.out")));
   CHECK(run({"check", mine, "--json", "/dev/null", "--csv", "/dev/null"}).code == 0);
@@ -46,23 +46,23 @@ TEST_CASE("files: no document takes the place of the case, a store or another do
 TEST_CASE("files: a name that is empty is refused") {
   const std::string servo = shipped("pid-lugre.toml");
   for (const char* flag : {"--json", "--csv", "-o"})
-    check_refused(run({"check", servo, flag, ""}), "needs the name of a file");
-  check_refused(
+    check_refused_with(run({"check", servo, flag, ""}), "needs the name of a file");
+  check_refused_with(
       run({"map", servo, "--x", "loop.controller.kp=1:5:2", "--y", "loop.controller.kd=1:9:2", "--store", ""}),
       "needs the name of a file");
-  check_refused(run({"predict", servo, "--html", ""}), "needs the name of a file");
+  check_refused_with(run({"predict", servo, "--html", ""}), "needs the name of a file");
   CHECK(run({"check", ""}).code == 2);
 }
 
 TEST_CASE("flags: a number is finite, a whole number is decimal and fits") {
   const std::string servo = shipped("pid-lugre.toml");
-  check_refused(run({"dissipativity", servo, "--speed", "nan"}), "--speed: 'nan' is not a finite number");
-  check_refused(run({"dissipativity", servo, "--top-speed", "inf"}), "'inf' is not a finite number");
-  check_refused(run({"adequate", servo, "--spread", "nan"}), "'nan' is not a finite number");
-  check_refused(run({"adequate", servo, "--tolerance", "-nan"}), "is not a finite number");
-  check_refused(run({"check", servo, "--seed", "18446744073709551616"}), "too large");
-  check_refused(run({"check", servo, "--seed", "0x10"}), "is not a whole number");
-  check_refused(run({"check", servo, "--threads", "99999999999"}), "--threads");
+  check_refused_with(run({"dissipativity", servo, "--speed", "nan"}), "--speed: 'nan' is not a finite number");
+  check_refused_with(run({"dissipativity", servo, "--top-speed", "inf"}), "'inf' is not a finite number");
+  check_refused_with(run({"adequate", servo, "--spread", "nan"}), "'nan' is not a finite number");
+  check_refused_with(run({"adequate", servo, "--tolerance", "-nan"}), "is not a finite number");
+  check_refused_with(run({"check", servo, "--seed", "18446744073709551616"}), "too large");
+  check_refused_with(run({"check", servo, "--seed", "0x10"}), "is not a whole number");
+  check_refused_with(run({"check", servo, "--threads", "99999999999"}), "--threads");
   CHECK_THAT(run({"check", servo, "--seed", "010", "--json", "-"}).out, Contains("\"seed\":10,"));
   CHECK_THAT(run({"check", servo, "--seed", "18446744073709551615", "--json", "-"}).out,
              Contains("\"seed\":18446744073709551615,"));
@@ -70,12 +70,12 @@ TEST_CASE("flags: a number is finite, a whole number is decimal and fits") {
 
 TEST_CASE("flags: what is out of range is told with short numbers") {
   const std::string servo = shipped("pid-lugre.toml");
-  check_refused(run({"dissipativity", servo, "--speed", "-1"}), "--speed: must be > 0, got '-1'");
-  check_refused(run({"adequate", servo, "--tolerance", "2"}), "--tolerance: must lie in 1e-06 to 1, got '2'");
-  check_refused(run({"check", servo, "--threads", "2000"}), "--threads: must lie in 0 to 1024, got '2000'");
-  check_refused(run({"check", servo, "--time-limit", "1e300"}), "must lie in 0 to 1e+09, got '1e300'");
-  check_refused(run({"check", servo, "--seed", "-1"}), "--seed: must be >= 0, got '-1'");
-  check_refused(run({"check", servo, "--threads", std::string(5000, '9')}), "99999...'");
+  check_refused_with(run({"dissipativity", servo, "--speed", "-1"}), "--speed: must be > 0, got '-1'");
+  check_refused_with(run({"adequate", servo, "--tolerance", "2"}), "--tolerance: must lie in 1e-06 to 1, got '2'");
+  check_refused_with(run({"check", servo, "--threads", "2000"}), "--threads: must lie in 0 to 1024, got '2000'");
+  check_refused_with(run({"check", servo, "--time-limit", "1e300"}), "must lie in 0 to 1e+09, got '1e300'");
+  check_refused_with(run({"check", servo, "--seed", "-1"}), "--seed: must be >= 0, got '-1'");
+  check_refused_with(run({"check", servo, "--threads", std::string(5000, '9')}), "99999...'");
   for (const char* flag : {"--speed", "--top-speed"}) CHECK(run({"dissipativity", servo, flag, "0"}).err.size() < 120);
 }
 
@@ -86,15 +86,15 @@ TEST_CASE("files: what could not be kept is refused before anything is computed"
   std::filesystem::create_directory(folder);
   std::filesystem::permissions(folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   for (const char* flag : {"--json", "--csv", "-o", "--html", "--svg"})
-    check_refused(run({"predict", shipped("pid-lugre.toml"), flag, folder + "/a"}), "cannot be written");
+    check_refused_with(run({"predict", shipped("pid-lugre.toml"), flag, folder + "/a"}), "cannot be written");
   std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
 }
 
 TEST_CASE("files: a name in a folder that does not exist, and a folder, are refused before anything is computed") {
   const Scratch scratch;
   for (const char* flag : {"--json", "--csv", "-o", "--html", "--svg"}) {
-    check_refused(run({"predict", shipped("pid-lugre.toml"), flag, scratch.file("none/a")}), "cannot be written");
-    check_refused(run({"predict", shipped("pid-lugre.toml"), flag, scratch.file("")}), "cannot be written");
+    check_refused_with(run({"predict", shipped("pid-lugre.toml"), flag, scratch.file("none/a")}), "cannot be written");
+    check_refused_with(run({"predict", shipped("pid-lugre.toml"), flag, scratch.file("")}), "cannot be written");
   }
 }
 

@@ -17,7 +17,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-Quantizer<double> quantizer(double step) {
+Quantizer<double> quantizer_of(double step) {
   Quantizer<double> element;
   element.step = step;
   return element;
@@ -81,7 +81,7 @@ TEST_CASE("the selection of a set-valued law: sign while sliding, share of the b
 }
 
 TEST_CASE("quantizer: levels, thresholds and steps between them") {
-  const auto element = quantizer(0.2);
+  const auto element = quantizer_of(0.2);
   std::vector<double> none;
   for (const double x : {0.0, 0.09, -0.09, 0.11, 0.29, -0.31, 123.456, -7.77}) {
     const Mode mode = element.start({x, 0.0, 0.0}, none);
@@ -103,7 +103,7 @@ TEST_CASE("quantizer: levels, thresholds and steps between them") {
 }
 
 TEST_CASE("quantizer: describing function") {
-  const auto element = quantizer(1.0);
+  const auto element = quantizer_of(1.0);
   const auto rounded = [](double x) { return std::round(x); };
   CHECK(*element.exact_describing_function(0.499, 1.0, 0.0) == 0.0);
   // Up to three half steps it is a relay with a dead zone.

@@ -5,20 +5,11 @@
 #include <limits>
 #include <sstream>
 
+#include "limcycle/tests/lines.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
 
 using namespace limcycle;
-
-namespace {
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-}  // namespace
+using namespace limcycle::test;
 
 TEST_CASE("df: names of the columns are the keys of the document") {
   DescribingFunction result;

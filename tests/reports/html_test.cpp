@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-Provenance made() {
+Provenance hostile_provenance() {
   Provenance from;
   from.version = "1.2.3";
   from.title = "<script>alert('title')</script>";
@@ -27,7 +27,7 @@ Provenance made() {
 
 /// The page without the library, which may contain anything.
 std::string page(const PredictReport& report, const std::string& case_text = "a = 1 # </pre><script>bad()</script>") {
-  std::string text = predict_page(report, made(), case_text, {});
+  std::string text = predict_page(report, hostile_provenance(), case_text, {});
   const auto at = text.find(limcycle::plotly_script());
   REQUIRE(at != std::string::npos);
   return text.erase(at, plotly_script().size());
@@ -89,7 +89,8 @@ TEST_CASE("a reader who uses keys skips to the results") {
 }
 
 TEST_CASE("a page without figures that are drawn by script has buttons all the same, and no library") {
-  const auto text = html_page({.provenance = made(), .answer = "", .body = "", .command = "map", .case_text = ""});
+  const auto text =
+      html_page({.provenance = hostile_provenance(), .answer = "", .body = "", .command = "map", .case_text = ""});
   CHECK(holds(text, std::string(page_script())));
   CHECK_FALSE(holds(text, std::string(plotly_script())));
 }

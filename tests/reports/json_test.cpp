@@ -7,13 +7,13 @@
 #include "limcycle/tests/reports/sample_report.hpp"
 
 using namespace limcycle;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
-const double nan_value = std::numeric_limits<double>::quiet_NaN();
+const double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-Provenance made() {
+Provenance provenance() {
   Provenance from;
   from.version = "1.2.3";
   from.commit = "abc";
@@ -24,7 +24,7 @@ Provenance made() {
   return from;
 }
 
-std::vector<std::string> keys(const Json& object) {
+std::vector<std::string> keys(const OrderedJson& object) {
   std::vector<std::string> out;
   for (const auto& [key, value] : object.items()) out.push_back(key);
   return out;
@@ -35,19 +35,20 @@ using Keys = std::vector<std::string>;
 }  // namespace
 
 TEST_CASE("every document says what it is and where it comes from") {
-  const auto document = Json::parse(predict_json(made(), {}));
+  const auto document = OrderedJson::parse(predict_json(provenance(), {}));
   CHECK(document["schema"] == "limcycle/1");
   CHECK(document["command"] == "predict");
-  CHECK(document["case"] == Json({{"title", "a title"}, {"file", "case.toml"}, {"sha256", std::string(64, '0')}}));
+  CHECK(document["case"] ==
+        OrderedJson({{"title", "a title"}, {"file", "case.toml"}, {"sha256", std::string(64, '0')}}));
   CHECK(document["provenance"]["version"] == "1.2.3");
   CHECK(document["provenance"]["seed"] == 18446744073709551615U);
   for (const char* key : {"commit", "isa", "threads"}) CHECK(document["provenance"].contains(key));
-  CHECK(Json::parse(df_json(made(), {}, {}))["command"] == "df");
-  CHECK(Json::parse(simulate_json(made(), {}))["command"] == "simulate");
+  CHECK(OrderedJson::parse(df_json(provenance(), {}, {}))["command"] == "df");
+  CHECK(OrderedJson::parse(simulate_json(provenance(), {}))["command"] == "simulate");
 }
 
 TEST_CASE("predict: keys and values") {
-  const auto document = Json::parse(predict_json(made(), sample::relay()));
+  const auto document = OrderedJson::parse(predict_json(provenance(), sample::relay()));
   CHECK(keys(document) == Keys{"schema", "command", "case", "provenance", "cycles", "predictions", "missed", "outcomes",
                                "search", "absence", "notes", "status"});
   const auto& cycle = document["cycles"][0];
@@ -56,7 +57,7 @@ TEST_CASE("predict: keys and values") {
   CHECK(cycle["amplitude"] == 0.65831343);
   CHECK(cycle["frequency"].get<double>() == Approx(1.0).epsilon(1e-15));
   CHECK(cycle["stable"] == true);
-  CHECK(cycle["multipliers"] == Json({{0.0095, -0.001}, {0.0, 0.0}}));
+  CHECK(cycle["multipliers"] == OrderedJson({{0.0095, -0.001}, {0.0, 0.0}}));
   CHECK(cycle["method"] == "exact");
   const auto& predictions = document["predictions"];
   REQUIRE(predictions.size() == 2);
@@ -65,7 +66,7 @@ TEST_CASE("predict: keys and values") {
   CHECK(predictions[0]["harmonics"] == 1);
   auto balanced = sample::relay();
   balanced.predictions[0].harmonics = 15;
-  CHECK(Json::parse(predict_json(made(), balanced))["predictions"][0]["harmonics"] == 15);
+  CHECK(OrderedJson::parse(predict_json(provenance(), balanced))["predictions"][0]["harmonics"] == 15);
   CHECK(predictions[0]["trust"].is_null());
   CHECK(document["absence"].is_null());
   CHECK(predictions[0]["verdict"] == "confirmed");
@@ -73,58 +74,60 @@ TEST_CASE("predict: keys and values") {
   CHECK(predictions[1]["verdict"] == "false");
   CHECK(predictions[1]["cycle"].is_null());
   CHECK(predictions[1]["stable"].is_null());
-  CHECK(document["missed"] == Json::array());
+  CHECK(document["missed"] == OrderedJson::array());
   CHECK(document["outcomes"][0] ==
-        Json({{"start", "y(0) = 1"}, {"outcome", "cycle"}, {"cycle", 0}, {"why", "it settles"}}));
-  CHECK(document["search"] == Json({{"amplitude", {1e-6, 1.0}}, {"frequency", {0.01, 1000.0}}}));
-  CHECK(document["notes"] == Json::array({"a note"}));
-  CHECK(Json::parse(predict_json(made(), sample::hunting()))["missed"] ==
-        Json::array({{{"method", "describing-function"}, {"cycle", 0}}}));
+        OrderedJson({{"start", "y(0) = 1"}, {"outcome", "cycle"}, {"cycle", 0}, {"why", "it settles"}}));
+  CHECK(document["search"] == OrderedJson({{"amplitude", {1e-6, 1.0}}, {"frequency", {0.01, 1000.0}}}));
+  CHECK(document["notes"] == OrderedJson::array({"a note"}));
+  CHECK(OrderedJson::parse(predict_json(provenance(), sample::hunting()))["missed"] ==
+        OrderedJson::array({{{"method", "describing-function"}, {"cycle", 0}}}));
 }
 
 TEST_CASE("predict: trust indicators, bands without ends and the proof of absence") {
-  const auto document = Json::parse(predict_json(made(), sample::trusted()));
+  const auto document = OrderedJson::parse(predict_json(provenance(), sample::trusted()));
   CHECK(document["predictions"][0]["trust"] ==
-        Json({{"filter_ratio", 0.0075512345},
-              {"worst_harmonic", 3},
-              {"harmonic_residual", 0.0081},
-              {"sticking_fraction", 0.0},
-              {"band",
-               {{"kind", "rigorous"},
-                {"verdict", "proved"},
-                {"frequency", {0.98, 1.03}},
-                {"amplitude", {0.6, 0.7}},
-                {"input_amplitude", {1.2, 1.4}},
-                {"why", "crossed completely"}}},
-              {"sentence", "the loop filters the harmonics well: a cycle within 6 % of it is proved"}}));
+        OrderedJson({{"filter_ratio", 0.0075512345},
+                     {"worst_harmonic", 3},
+                     {"harmonic_residual", 0.0081},
+                     {"sticking_fraction", 0.0},
+                     {"band",
+                      {{"kind", "rigorous"},
+                       {"verdict", "proved"},
+                       {"frequency", {0.98, 1.03}},
+                       {"amplitude", {0.6, 0.7}},
+                       {"input_amplitude", {1.2, 1.4}},
+                       {"why", "crossed completely"}}},
+                     {"sentence", "the loop filters the harmonics well: a cycle within 6 % of it is proved"}}));
   const auto& poor = document["predictions"][1]["trust"];
   CHECK(poor["band"]["kind"] == "heuristic");
   CHECK(poor["band"]["verdict"] == "undecided");
-  CHECK(poor["band"]["frequency"] == Json::array({0.0, nullptr}));
+  CHECK(poor["band"]["frequency"] == OrderedJson::array({0.0, nullptr}));
   CHECK(poor["worst_harmonic"] == 5);
   CHECK(poor["sticking_fraction"] == 0.01);
-  const auto open = Json::parse(predict_json(made(), sample::without_roots(BandVerdict::undecided)))["absence"];
-  CHECK(open == Json({{"verdict", "undecided"},
-                      {"frequency", {0.01, 100.0}},
-                      {"input_amplitude", {1e-3, 10.0}},
-                      {"undecided", {{0.01, 0.4}, {0.5, 0.6}}},
-                      {"why", "an oscillation is not excluded between 0.01 and 0.6 rad/s"}}));
-  const auto proved = Json::parse(predict_json(made(), sample::without_roots(BandVerdict::proved)))["absence"];
+  const auto open =
+      OrderedJson::parse(predict_json(provenance(), sample::without_roots(BandVerdict::undecided)))["absence"];
+  CHECK(open == OrderedJson({{"verdict", "undecided"},
+                             {"frequency", {0.01, 100.0}},
+                             {"input_amplitude", {1e-3, 10.0}},
+                             {"undecided", {{0.01, 0.4}, {0.5, 0.6}}},
+                             {"why", "an oscillation is not excluded between 0.01 and 0.6 rad/s"}}));
+  const auto proved =
+      OrderedJson::parse(predict_json(provenance(), sample::without_roots(BandVerdict::proved)))["absence"];
   CHECK(proved["verdict"] == "proved");
-  CHECK(proved["undecided"] == Json::array());
+  CHECK(proved["undecided"] == OrderedJson::array());
 }
 
 TEST_CASE("predict: a number that does not exist is null") {
   auto report = sample::hunting();
-  report.cycles[0].offset = nan_value;
+  report.cycles[0].offset = not_a_number;
   report.cycles[0].error = std::numeric_limits<double>::infinity();
-  report.cycles[0].multipliers = {{nan_value, 0.0}};
+  report.cycles[0].multipliers = {{not_a_number, 0.0}};
   report.cycles[0].stable.reset();
-  const auto cycle = Json::parse(predict_json(made(), report))["cycles"][0];
+  const auto cycle = OrderedJson::parse(predict_json(provenance(), report))["cycles"][0];
   CHECK(cycle["offset"].is_null());
   CHECK(cycle["error"].is_null());
   CHECK(cycle["stable"].is_null());
-  CHECK(cycle["multipliers"] == Json::array({Json::array({nullptr, 0.0})}));
+  CHECK(cycle["multipliers"] == OrderedJson::array({OrderedJson::array({nullptr, 0.0})}));
 }
 
 TEST_CASE("df: keys and values, one line a point") {
@@ -139,22 +142,22 @@ TEST_CASE("df: keys and values, one line a point") {
   unanswered.status = Status::not_finite;
   unanswered.harmonics = {{0.0, 0.0}};
   unanswered.method = "quadrature";
-  const auto text = df_json(made(), {{2.0, 3.0, 0.5}, {1.0, 2.0, 0.0}}, {result, unanswered});
-  const auto document = Json::parse(text);
+  const auto text = df_json(provenance(), {{2.0, 3.0, 0.5}, {1.0, 2.0, 0.0}}, {result, unanswered});
+  const auto document = OrderedJson::parse(text);
   const auto& point = document["points"][0];
   CHECK(keys(point) == Keys{"amplitude", "frequency", "bias", "gain", "mean", "harmonics", "dissipation", "error",
                             "method", "status"});
-  CHECK(point == Json({{"amplitude", 2.0},
-                       {"frequency", 3.0},
-                       {"bias", 0.5},
-                       {"gain", {1.5, 0.25}},
-                       {"mean", 0.125},
-                       {"harmonics", {{3.0, 0.5}, {0.0, -1.0}}},
-                       {"dissipation", 3.14},
-                       {"error", 1e-9},
-                       {"method", "fft"},
-                       {"status", "converged"}}));
-  CHECK(document["points"][1]["gain"] == Json::array({nullptr, nullptr}));
+  CHECK(point == OrderedJson({{"amplitude", 2.0},
+                              {"frequency", 3.0},
+                              {"bias", 0.5},
+                              {"gain", {1.5, 0.25}},
+                              {"mean", 0.125},
+                              {"harmonics", {{3.0, 0.5}, {0.0, -1.0}}},
+                              {"dissipation", 3.14},
+                              {"error", 1e-9},
+                              {"method", "fft"},
+                              {"status", "converged"}}));
+  CHECK(document["points"][1]["gain"] == OrderedJson::array({nullptr, nullptr}));
   CHECK(document["points"][1]["error"].is_null());
   CHECK(document["points"][1]["status"] == "not_finite");
   CHECK(document["status"] == "converged");
@@ -163,21 +166,21 @@ TEST_CASE("df: keys and values, one line a point") {
 
 TEST_CASE("df: a table that was cut short says so") {
   const std::vector<DfPoint> points(3);
-  CHECK(Json::parse(df_json(made(), points, {DescribingFunction{}}))["status"] == "interrupted");
-  CHECK_THROWS_AS(df_json(made(), {}, {DescribingFunction{}}), std::invalid_argument);
+  CHECK(OrderedJson::parse(df_json(provenance(), points, {DescribingFunction{}}))["status"] == "interrupted");
+  CHECK_THROWS_AS(df_json(provenance(), {}, {DescribingFunction{}}), std::invalid_argument);
 }
 
 TEST_CASE("simulate: columns, rows, events") {
   Simulation run;
   run.columns = {"t", "y"};
-  run.rows = {{0.0, 1.0}, {0.1, nan_value}};
+  run.rows = {{0.0, 1.0}, {0.1, not_a_number}};
   run.events = {{0.05, "loop.friction: stick"}};
   run.stepper = "rodas5p";
   run.steps = 12;
-  const auto document = Json::parse(simulate_json(made(), run));
-  CHECK(document["columns"] == Json({"t", "y"}));
-  CHECK(document["rows"] == Json::array({Json::array({0.0, 1.0}), Json::array({0.1, nullptr})}));
-  CHECK(document["events"] == Json::array({{{"t", 0.05}, {"what", "loop.friction: stick"}}}));
+  const auto document = OrderedJson::parse(simulate_json(provenance(), run));
+  CHECK(document["columns"] == OrderedJson({"t", "y"}));
+  CHECK(document["rows"] == OrderedJson::array({OrderedJson::array({0.0, 1.0}), OrderedJson::array({0.1, nullptr})}));
+  CHECK(document["events"] == OrderedJson::array({{{"t", 0.05}, {"what", "loop.friction: stick"}}}));
   CHECK(document["stepper"] == "rodas5p");
   CHECK(document["steps"] == 12);
   CHECK(document["status"] == "converged");
@@ -187,12 +190,12 @@ TEST_CASE("simulate: columns, rows, events") {
 
   Agreement second;
   second.rtol = 1e-9;
-  second.period_difference = nan_value;
+  second.period_difference = not_a_number;
   second.phase_drift = 0.25;
   second.why = "because";
   run.outcome = Outcome::cycle;
   run.period = 2.0;
-  const auto both = Json::parse(simulate_json(made(), run, second));
+  const auto both = OrderedJson::parse(simulate_json(provenance(), run, second));
   CHECK(both["outcome"] == "cycle");
   CHECK(both["period"] == 2.0);
   CHECK(both["agreement"]["rtol"] == 1e-9);
@@ -205,15 +208,15 @@ TEST_CASE("simulate: columns, rows, events") {
 TEST_CASE("simulate: energy, with null for what the loop does not have") {
   Simulation run;
   run.notes = {"take care"};
-  CHECK(Json::parse(simulate_json(made(), run))["energy"].is_null());
-  CHECK(Json::parse(simulate_json(made(), run))["notes"] == Json::array({"take care"}));
+  CHECK(OrderedJson::parse(simulate_json(provenance(), run))["energy"].is_null());
+  CHECK(OrderedJson::parse(simulate_json(provenance(), run))["notes"] == OrderedJson::array({"take care"}));
   EnergyBalance energy;
   energy.of_friction = energy.of_storage = true;
   energy.rubbing = 2.0;
   energy.in_friction = 0.5;
   energy.friction = 1.25;
   energy.turnover = 2.0;
-  auto document = Json::parse(simulate_json(made(), run, std::nullopt, energy))["energy"];
+  auto document = OrderedJson::parse(simulate_json(provenance(), run, std::nullopt, energy))["energy"];
   CHECK(document["of"] == "friction");
   CHECK(document["supplied"]["friction"] == 2.0);
   CHECK(document["supplied"]["command"].is_null());
@@ -221,15 +224,15 @@ TEST_CASE("simulate: energy, with null for what the loop does not have") {
   CHECK(document["balance_difference"] == 0.25);
   CHECK(document["balanced"] == false);
   energy.of_storage = false;
-  document = Json::parse(simulate_json(made(), run, std::nullopt, energy))["energy"];
+  document = OrderedJson::parse(simulate_json(provenance(), run, std::nullopt, energy))["energy"];
   CHECK(document["balanced"].is_null());
   CHECK(document["dissipated"]["friction"] == 1.25);
 }
 
 TEST_CASE("text from a user cannot break a document") {
-  auto from = made();
+  auto from = provenance();
   from.title = "quote \" backslash \\ newline \n </script> \xFF\xFE";
-  const auto document = Json::parse(predict_json(from, {}));
+  const auto document = OrderedJson::parse(predict_json(from, {}));
   CHECK(document["case"]["title"].get<std::string>() ==
         "quote \" backslash \\ newline \n </script> \xEF\xBF\xBD\xEF\xBF\xBD");
 }

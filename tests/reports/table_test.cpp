@@ -1,20 +1,11 @@
 #include "limcycle/reports/table.hpp"
+#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <sstream>
 
 using namespace limcycle;
-
-namespace {
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-}  // namespace
+using namespace limcycle::test;
 
 TEST_CASE("display width counts characters, not bytes") {
   CHECK(display_width("") == 0);

@@ -29,7 +29,6 @@ class DenseSegment {
 
  private:
   friend class Rodas5p;
-  friend class DenseRodas5p;
 
   double fraction(double t) const;
   double value(double theta, std::size_t i) const {

@@ -1,3 +1,5 @@
+#include "limcycle/analysis/orbit/settle/displaced.hpp"
+
 #include <Eigen/Core>
 #include <cmath>
 #include <complex>
@@ -39,6 +41,15 @@ Eigen::VectorXd shortest(const Loop& loop, const Eigen::VectorXd& sizes) {
 }
 
 }  // namespace
+
+LoopState scaled(const Loop& loop, const LoopState& state, double factor) {
+  bool exact = false;
+  const Eigen::VectorXd rest = loop.rest_point(exact);
+  LoopState moved = state;
+  Eigen::Map<Eigen::VectorXd> X(moved.x.data(), rest.size());
+  X = rest + factor * (X - rest);
+  return moved;
+}
 
 LoopState displaced(const Loop& loop, double displacement) {
   bool exact = false;

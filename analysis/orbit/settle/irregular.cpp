@@ -124,21 +124,4 @@ bool agree(const IrregularMotion& one, const IrregularMotion& other) {
          std::abs(one.mean_period / other.mean_period - 1.0) <= enough;
 }
 
-bool grows_like_a_power(const TurningPoints& turning) {
-  constexpr std::size_t few = 64, averaged = 4;
-  constexpr double least_growth = 1.3, alike = 0.2;
-  const std::size_t count = turning.points().size();
-  if (count < few) return false;
-  const auto size = [&](std::size_t swings) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < averaged; ++k) sum += turning.swing(count - 1 - swings + k);
-    return sum;
-  };
-  const std::size_t all = count - 1;
-  const double last = size(all) / size(all / 2), before = size(all / 2) / size(all / 4),
-               first = size(all / 4) / size(all / 8);
-  const auto like = [](double one, double other) { return std::abs(one / other - 1.0) < alike; };
-  return std::min({last, before, first}) > least_growth && like(last, before) && like(before, first);
-}
-
 }  // namespace limcycle

@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "limcycle/analysis/cycle.hpp"
-#include "limcycle/analysis/orbit/settle/turning_points.hpp"
 
 namespace limcycle {
 
@@ -20,10 +19,5 @@ std::optional<IrregularMotion> permanent_motion(const Trace& trace);
 
 /// True if two runs at different tolerances give the same numbers. Chaotic motions part after a while.
 bool agree(const IrregularMotion& one, const IrregularMotion& other);
-
-/// True if the swings grow like a power of time, as a limited command allows an unstable loop, and not towards a cycle:
-/// each doubling of their number increases them by about the same factor. On the way to a cycle that factor falls
-/// towards 1; in an exponential growth, which may end in a cycle, it rises. Needs 64 swings.
-bool grows_like_a_power(const TurningPoints& turning);
 
 }  // namespace limcycle

@@ -7,6 +7,8 @@
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
+#include "limcycle/analysis/orbit/settle/displaced.hpp"
+#include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
 #include "limcycle/analysis/orbit/settle/switching_watch.hpp"
 #include "limcycle/analysis/orbit/settle/turning_points.hpp"
@@ -54,10 +56,9 @@ class Settling {
 
   void step() {
     if (options_.stop && options_.stop()) return decide(Outcome::undecided, "interrupted");
-    if (march_.steps() > horizon()) {
-      if (grows_like_a_power(turning_))
-        return decide(Outcome::divergence, "y grows without bound, like a power of time");
-      return look_for_irregular();
+    if (march_.steps() > options_.max_steps && march_.steps() > horizon()) {
+      look_for_growth();
+      return decided_ ? void() : look_for_irregular();
     }
     const Status status = march_.step(1e15);
     if (status == Status::not_finite) return decide(Outcome::divergence, "the state left the range of numbers");
@@ -126,9 +127,21 @@ class Settling {
     decide(still.outcome, std::move(still.why));
   }
 
+  void look_for_growth() {
+    const long affordable = options_.max_steps / 8;
+    if (grows_like_a_power(turning_) &&
+        grows_from_afar(loop_, {march_.x(), field_.modes()}, options_.rtol, affordable, options_.stop))
+      decide(Outcome::divergence, "y grows without bound, like a power of time");
+  }
+
   void look_at_swings() {
     const auto& points = turning_.points();
     if (points.size() < 5) return;
+    if (points.size() >= next_growth_) {
+      next_growth_ *= 2;
+      look_for_growth();
+      if (decided_) return;
+    }
     bool exact = false;
     const double rest = loop_.C_y.dot(loop_.rest_point(exact).transpose());
     if (exact && died_out(turning_, rest, options_.amplitude_floor)) {
@@ -204,22 +217,12 @@ class Settling {
     }
   }
 
-  /// Start of the cycle, moved away from the rest point of the linear part by a factor; elements keep their states.
-  LoopState beside(const Cycle& cycle, double factor) const {
-    bool exact = false;
-    const Eigen::VectorXd rest = loop_.rest_point(exact);
-    LoopState other = cycle.start;
-    Eigen::Map<Eigen::VectorXd> X(other.x.data(), rest.size());
-    X = rest + factor * (X - rest);
-    return other;
-  }
-
   /// True if another periodic motion lies close to this one: shooting from 2 % farther out finds it.
   bool has_neighbour(const Cycle& cycle, const Section& section, bool half, const ShootingOptions& options) const {
     constexpr double farther = 1.02, apart = 0.005;
     ShootingOptions there = options;
     there.warm_maps = 0;
-    const auto found = shoot(loop_, beside(cycle, farther), section, half, there);
+    const auto found = shoot(loop_, scaled(loop_, cycle.start, farther), section, half, there);
     const double larger = found.cycle.amplitude / cycle.amplitude - 1.0;
     return found.status == Status::converged && std::abs(larger) > apart && std::abs(larger) < 10.0 * (farther - 1.0);
   }
@@ -241,7 +244,7 @@ class Settling {
                    returns_of(section, cycle.trace)});
     bool back = true;
     for (const double side : {1.0 + aside, 1.0 - aside}) {
-      const LoopState other = beside(cycle, side);
+      const LoopState other = scaled(loop_, cycle.start, side);
       const double before = distance(other.x);
       auto at = map.approach(other);
       for (int k = 0; k < periods && at.status == Status::converged; ++k) at = map(at.state);
@@ -310,7 +313,7 @@ class Settling {
   State dx_;
   std::optional<Cycle> candidate_;
   double mismatch_ = 0.0;
-  std::size_t next_try_ = 5;
+  std::size_t next_try_ = 5, next_growth_ = 128;
   long tried_ = 0;  ///< steps of return maps
   bool decided_ = false;
 };

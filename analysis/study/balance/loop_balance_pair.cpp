@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/quasi_linear.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -38,23 +39,21 @@ std::vector<LoopBalance::Oscillation> LoopBalance::oscillations(double amplitude
   const Eigen::VectorXcd W = own_outputs(amplitude, frequency, accuracy);
   if (!W.allFinite()) return {};
   const Eigen::MatrixXcd H = loop_->element_response(frequency);
-  const auto with = [&](int branch, Eigen::VectorXcd all) {
-    const Complex left = 1.0 - (H.row(static_cast<Index>(main_)) * all).value() / amplitude;
-    return Oscillation{branch, std::move(all), left};
-  };
-  if (!other_) return {with(0, W)};
+  const auto m = static_cast<Index>(main_);
+  if (!other_) return {{0, W, 1.0 - (H.row(m) * W).value() / amplitude}};
   const auto o = static_cast<Index>(*other_);
   const Complex reached = (H.row(o) * W).value(), back = H(o, o);
   const auto size = [&](double a) { return a * std::abs(1.0 - back * other_gain(a, frequency, accuracy)); };
   std::vector<Oscillation> found;
   for (const auto& answer :
        second_->own->answers(size, second_->reach.range(std::abs(back)), std::abs(reached), frequency, accuracy)) {
-    Eigen::VectorXcd all = W;
+    Eigen::VectorXcd all = W, gains = Eigen::VectorXcd::Zero(W.size());
     if (reached != 0.0) {
-      const Complex N = other_gain(answer.amplitude, frequency, accuracy);
-      all(o) = N * reached / (1.0 - back * N);
+      gains(o) = other_gain(answer.amplitude, frequency, accuracy);
+      all(o) = gains(o) * reached / (1.0 - back * gains(o));
     }
-    found.push_back(with(answer.branch, std::move(all)));
+    const Complex returning = (quasi_linear_response(*loop_, gains, frequency).row(m) * W).value();
+    found.push_back({answer.branch, std::move(all), 1.0 - returning / amplitude});
   }
   return found;
 }
@@ -127,9 +126,9 @@ LoopBalance::FromSecond LoopBalance::from_second(int branch, double amplitude, d
   const auto answer =
       second_->main->answer_on(branch, size, main_range(std::abs(H(m, m))), std::abs(drives), frequency, accuracy);
   if (!answer) return {{nan, nan}, nan};
-  const Eigen::VectorXcd W = own_outputs(answer->amplitude, frequency, accuracy);
-  const Complex phase = drives / (answer->amplitude - (to_main * W).value());  // of the main element's input
-  return {1.0 - (H.row(o) * W).value() * phase / amplitude - H(o, o) * N, answer->amplitude};
+  Eigen::VectorXcd gains = own_outputs(answer->amplitude, frequency, accuracy) / answer->amplitude;
+  for (const auto& [index, factor] : beside_) gains(static_cast<Index>(index)) /= factor;
+  return {1.0 - N * quasi_linear_response(*loop_, gains, frequency)(o, o), answer->amplitude};
 }
 
 /// Amplitudes of the main element's input between which the size of the required drive can turn.

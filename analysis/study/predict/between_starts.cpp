@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/orbit/settle/displaced.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -11,18 +13,6 @@ constexpr double close_enough = 1.1;      ///< ratio of two starts between which
 constexpr double apart = 5.0;             ///< ratio of neighbouring starts if those of a user come to rest
 constexpr long steps_of_a_trend = 6'000;  ///< of one of the fifty motions along a border
 constexpr double step_aside = 0.01;       ///< relative distance from an unstable cycle
-
-/// The state moved away from the rest point of the linear part by a factor; elements keep their states.
-LoopState scaled(const Loop& loop, const LoopState& state, double factor) {
-  bool exact = false;
-  const Eigen::VectorXd rest = loop.rest_point(exact);
-  LoopState moved = state;
-  for (Eigen::Index i = 0; i < rest.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    moved.x[k] = rest(i) + factor * (state.x[k] - rest(i));
-  }
-  return moved;
-}
 
 /// The time between the third and the fifth turn of y: a motion that begins near an unstable cycle first follows it.
 std::optional<double> first_period(const Trace& trace) {

@@ -21,8 +21,8 @@ using namespace limcycle;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-using Gain = std::complex<double>;
+using std::numbers::pi;
+using Complex = std::complex<double>;
 
 template <class Law>
 Law levels(double Fs = 1.5, double vs = 1e-2) {
@@ -54,16 +54,16 @@ void check_samples(const Kind<double>& law, double A, double w, double bias, con
   CHECK(df.error <= 1e-5);
 }
 
-struct Reference {
-  Gain gain;
+struct ReferenceGain {
+  Complex gain;
   double mean = 0.0, work = 0.0;
 };
 
 /// Wojewoda's law from its description: from each reversal a spring that starts with the force left by slip and yields
 /// at Fs, then slip on the upper curve while |v| grows, on the lower one while it falls. Simpson's rule between the
 /// corners.
-Reference wojewoda_by_pieces(const Wojewoda<double>& law, double A, double w, double bias) {
-  Reference sum;
+ReferenceGain wojewoda_by_pieces(const Wojewoda<double>& law, double A, double w, double bias) {
+  ReferenceGain sum;
   double sine = 0.0, cosine = 0.0;
   const double first = std::acos(-bias / (A * w));  // v = bias + A w cos(theta) turns negative
   const auto x = [&](double t) { return bias * t / w + A * std::sin(t); };
@@ -99,7 +99,7 @@ Reference wojewoda_by_pieces(const Wojewoda<double>& law, double A, double w, do
   };
   stretch(first, 2.0 * pi - first, -1.0);
   stretch(2.0 * pi - first, 2.0 * pi + first, 1.0);
-  sum.gain = Gain(sine, cosine) / (pi * A);
+  sum.gain = Complex(sine, cosine) / (pi * A);
   return sum;
 }
 
@@ -109,7 +109,7 @@ class OneElement {
  public:
   OneElement(const Xiong<double>& law, std::size_t i, double A, double w) : law_(law), i_(i), A_(A), w_(w) {}
 
-  Gain gain(int steps) {
+  Complex gain(int steps) {
     Point p{law_.Fs, A_, 0.0, 0.0};  // an element that never slips has a = x
     int where = 0;
     for (int half = 0; half < 40; ++half) {
@@ -134,7 +134,7 @@ class OneElement {
           where = where != 0 ? 0 : trial(p, t) > 0.0 ? 1 : -1;
         }
       }
-      const Gain now = Gain(p[2], p[3]) * (2.0 / (pi * A_));
+      const Complex now = Complex(p[2], p[3]) * (2.0 / (pi * A_));
       if (half > 2 && std::abs(now - last_) < 1e-15 * std::abs(now)) return now;
       last_ = now;
       p[1] = -p[1];  // the other half of the period is its mirror image
@@ -174,7 +174,7 @@ class OneElement {
   const Xiong<double>& law_;
   std::size_t i_;
   double A_, w_;
-  Gain last_;
+  Complex last_;
 };
 
 }  // namespace
@@ -206,7 +206,7 @@ TEST_CASE("describing function of wojewoda: spring, two curves of slip") {
   }
   // Below Fs/ks the spring alone, from the virgin state; in a slide without reversals the two curves alone.
   const auto spring = by_quadrature<Wojewoda>(law, 0.9e-4, 5.0, 0.0, 1e-10);
-  CHECK(std::abs(spring.gain - Gain(1e4, 0.4 * 5.0)) < 1e-7);
+  CHECK(std::abs(spring.gain - Complex(1e4, 0.4 * 5.0)) < 1e-7);
   const double A = 1e-3, w = 10.0, V = 2e-2;
   const auto slide = by_quadrature<Wojewoda>(law, A, w, V, 1e-10);
   double sine = 0.0;
@@ -228,7 +228,7 @@ TEST_CASE("describing function of xiong: each element event by event") {
   REQUIRE_FALSE(law.validate());
   for (const auto& [A, w] : {std::pair{1e-3, 10.0}, {2e-4, 40.0}, {1.2e-4, 2.0}}) {
     CAPTURE(A, w);
-    Gain want(0.0, law.sigma2 * w);
+    Complex want(0.0, law.sigma2 * w);
     for (std::size_t i = 0; i < 3; ++i) want += OneElement(law, i, A, w).gain(3000);
     const auto df = by_quadrature<Xiong>(law, A, w, 0.0, 1e-9);
     CHECK(df.status == Status::converged);
@@ -240,7 +240,7 @@ TEST_CASE("describing function of xiong: each element event by event") {
   check_samples<Xiong>(law, 1e-3, 10.0, 2e-3, df);
   // Not slipping: springs and dampers in parallel.
   const auto small = by_quadrature<Xiong>(law, 1e-6, 10.0, 0.0, 1e-10);
-  CHECK(std::abs(small.gain - Gain(13800.0, 10.0 * (48.5 + 0.4))) < 1e-6);
+  CHECK(std::abs(small.gain - Complex(13800.0, 10.0 * (48.5 + 0.4))) < 1e-6);
 }
 
 TEST_CASE("describing functions of laws with a band: outside it those of the Stribeck curve") {
@@ -300,7 +300,7 @@ TEST_CASE("harmonic response of wojewoda: its derivative moves the switches at z
   law.ks = 1e4;
   const Element element(law);
   Eigen::VectorXcd input(4);
-  input << 0.0, Gain(1e-3, 2e-4), 0.0, Gain(5e-5, -1e-4);
+  input << 0.0, Complex(1e-3, 2e-4), 0.0, Complex(5e-5, -1e-4);
   const auto response = [&](const Eigen::VectorXcd& at, Eigen::MatrixXd* derivative) {
     const PrescribedHarmonics motion(at, 12.0, 0.0, true);
     ElementHarmonics harmonics(element);
@@ -314,7 +314,7 @@ TEST_CASE("harmonic response of wojewoda: its derivative moves the switches at z
   const double h = 1e-8;
   for (const Eigen::Index order : {1, 3})
     for (int part = 0; part < 2; ++part) {
-      const Gain step = part == 0 ? Gain(h, 0.0) : Gain(0.0, h);
+      const Complex step = part == 0 ? Complex(h, 0.0) : Complex(0.0, h);
       Eigen::VectorXcd plus = input, minus = input;
       plus(order) += step;
       minus(order) -= step;
@@ -342,7 +342,7 @@ TEST_CASE("mass and friction under a harmonic force: the applied force is known,
     REQUIRE(found.status == Status::converged);
     return found.gain;
   };
-  const Gain want = response(stribeck);
+  const Complex want = response(stribeck);
   const auto apart = [&](auto law, double dv) {
     law.dv = dv;
     return std::abs(response(law) - want) / std::abs(want);
@@ -363,7 +363,7 @@ TEST_CASE("least speed and acceleration of a prescribed motion") {
   CHECK(PrescribedMotion(1e-3, 10.0, -1.3e-2, true).least_speed() == Approx(3e-3));
   CHECK(PrescribedMotion(1e-3, 10.0, 0.9e-2, true).least_speed() == 0.0);
   Eigen::VectorXcd input(4);
-  input << 0.0, Gain(1e-3, 2e-4), Gain(0.0, 1e-4), Gain(-5e-5, 1e-4);
+  input << 0.0, Complex(1e-3, 2e-4), Complex(0.0, 1e-4), Complex(-5e-5, 1e-4);
   const PrescribedHarmonics reversing(input, 7.0, 0.0, false), sliding(input, 7.0, 0.1, false);
   CHECK(reversing.least_speed() == 0.0);
   double least = infinite;

@@ -8,7 +8,8 @@
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 #include "limcycle/tests/analysis/frequency/one_state_reference.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
@@ -22,11 +23,6 @@ BoucWen<double> bouc_wen(double beta, double gamma, double n = 1.0, double alpha
   law.gamma = gamma;
   law.n = n;
   return law;
-}
-
-DescribingFunction quadrature(const BoucWen<double>& law, double A, double w, double bias, double accuracy) {
-  const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute(law, motion, bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
 }
 
 OneStateReference plain(const BoucWen<double>& law, double A, double w, double bias, int steps) {

@@ -9,7 +9,8 @@
 #include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
@@ -95,7 +96,7 @@ TEST_CASE("FFT route converges algebraically across kinks and jumps", "[df][orde
     CHECK(order < 4.2);
   }
   SECTION("a jump at a sample: Coulomb") {
-    const auto law = coulomb();
+    const auto law = coulomb(1.0, 1.0);
     const PrescribedMotion motion(1.0, 1.0, 0.0, true);
     FftRoute route(law, motion, true, 0.0, options);
     const auto error = [&](int samples) { return apart(route.on_samples(samples).gain, {0.0, 4.0 / pi}); };
@@ -105,7 +106,7 @@ TEST_CASE("FFT route converges algebraically across kinks and jumps", "[df][orde
     CHECK(order < 2.1);
   }
   SECTION("jumps between samples: Coulomb with a mean velocity") {
-    const auto law = coulomb();
+    const auto law = coulomb(1.0, 1.0);
     const double bias = 0.3137;
     const PrescribedMotion motion(1.0, 1.0, bias, true);
     FftRoute route(law, motion, false, bias, options);

@@ -8,7 +8,8 @@
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 #include "limcycle/tests/analysis/frequency/one_state_reference.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 
 namespace {
 
@@ -21,11 +22,6 @@ ElastoPlastic<double> seeds(bool of_coulomb = false) {
   law.sigma1 = 316.22776601683796;
   law.zba_of.index = of_coulomb ? 1 : 0;
   return law;
-}
-
-DescribingFunction quadrature(const ElastoPlastic<double>& law, double A, double w, double bias, double accuracy) {
-  const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
 }
 
 /// The equations as printed, with the sign test.

@@ -6,7 +6,8 @@
 #include "limcycle/models/laws.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 
 namespace {
 

@@ -6,15 +6,14 @@
 #include <numbers>
 
 #include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
-#include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
 #include "limcycle/models/friction/sliders/gms.hpp"
+#include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
 using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
-
-double apart(std::complex<double> a, std::complex<double> b) { return std::abs(a - b) / std::abs(b); }
 
 /// Ten elements of different shares, of stiffness k0, 2 k0, ... 10 k0.
 Gms<double> ten_elements(double k0, double C) {
@@ -30,16 +29,11 @@ Gms<double> ten_elements(double k0, double C) {
   return law;
 }
 
-DescribingFunction quadrature(const Gms<double>& law, double A, double w, double bias, double accuracy) {
-  const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, {.harmonics = 3, .accuracy = accuracy}).refine();
-}
-
 /// The law again, from its equations alone, with the classical Runge-Kutta method in the phase. The integrals of the
 /// force by sine and cosine are states like the others, so that everything is of order 4.
-class Reference {
+class GmsReference {
  public:
-  Reference(const Gms<double>& law, double A, double w, double bias) : p_(law), A_(A), w_(w), bias_(bias) {
+  GmsReference(const Gms<double>& law, double A, double w, double bias) : p_(law), A_(A), w_(w), bias_(bias) {
     y_.assign(law.k.size() + 3, 0.0);
     slip_.assign(law.k.size(), 0);
     const double r = std::acos(std::clamp(-bias / (A * w), -1.0, 1.0));
@@ -138,9 +132,9 @@ class Reference {
 void check_against_reference(const Gms<double>& law, double A, double w, double bias, int periods, int steps,
                              double tolerance) {
   CAPTURE(law.C, law.k[0], A, w, bias);
-  const auto df = quadrature(law, A, w, bias, 1e-9);
-  const auto coarse = Reference(law, A, w, bias).gain(periods, steps / 2);
-  Reference reference(law, A, w, bias);
+  const auto df = quadrature(law, A, w, bias, 1e-9, 3);
+  const auto coarse = GmsReference(law, A, w, bias).gain(periods, steps / 2);
+  GmsReference reference(law, A, w, bias);
   const auto fine = reference.gain(periods, steps);
   CHECK(df.status == Status::converged);
   CHECK(apart(fine, coarse) / 15.0 < 0.2 * tolerance);  // of the reference itself, of order 4
@@ -180,7 +174,7 @@ TEST_CASE("gms: without Stribeck effect it is maxwell-slip for any C, claim A9",
       CAPTURE(C, A);
       std::complex<double> sum;
       for (std::size_t i = 0; i < 10; ++i) sum += stop_gain(law.k[i], law.alpha[i] * law.Fc, A);
-      const auto df = quadrature(law, A, 2.0, 0.0, 1e-9);
+      const auto df = quadrature(law, A, 2.0, 0.0, 1e-9, 3);
       CHECK(df.status == Status::converged);
       CHECK(apart(df.gain, sum) < 1e-9);
     }
@@ -199,13 +193,13 @@ TEST_CASE("gms: one stiff element with fast attraction is the Stribeck curve", "
     sum += law.level(speed) * std::cos(theta) * 0.5 * pi / panels;
   }
   const std::complex<double> stribeck(0.0, 4.0 * sum / (pi * A));
-  CHECK(apart(quadrature(law, A, w, 0.0, 1e-8).gain, stribeck) < 1e-3);
+  CHECK(apart(quadrature(law, A, w, 0.0, 1e-8, 3).gain, stribeck) < 1e-3);
 }
 
 TEST_CASE("gms: the two routes agree", "[df][friction]") {
   const auto law = ten_elements(1000.0, 1000.0);
   const PrescribedMotion motion(5e-4, 20.0, 0.0, true);
-  const auto other = quadrature(law, 5e-4, 20.0, 0.0, 1e-8);
+  const auto other = quadrature(law, 5e-4, 20.0, 0.0, 1e-8, 3);
   const auto fft = FftRoute(law, motion, true, 0.0, {.harmonics = 3, .accuracy = 1e-6}).refine(other);
   CHECK(fft.status == Status::converged);
   CHECK(apart(fft.gain, other.gain) < 1e-6);

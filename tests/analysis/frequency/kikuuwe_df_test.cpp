@@ -8,7 +8,8 @@
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 #include "limcycle/tests/analysis/frequency/one_state_reference.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 
 namespace {
 
@@ -21,11 +22,6 @@ Kikuuwe<double> kikuuwe(double K = 1e5, double B = 316.0, double sigma2 = 0.0) {
   law.B = B;
   law.sigma2 = sigma2;
   return law;
-}
-
-DescribingFunction quadrature(const Kikuuwe<double>& law, double A, double w, double bias, double accuracy) {
-  const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
 }
 
 OneStateReference plain(const Kikuuwe<double>& law, double A, double w, double bias, int steps) {

@@ -12,7 +12,7 @@ using namespace limcycle::test;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 template <class Law>
 double length(const Law& law) {
@@ -33,7 +33,7 @@ std::vector<DfPoint> points_of(const Law& law) {
 /// Runs check(law, sample) on every sample of every law that has a value under every prescribed motion.
 void for_laws(auto&& check) {
   FrictionLaws::for_each([&]<template <class> class Kind>() {
-    for_samples<Kind>([&](const Kind<double>& law, const Sample& sample) {
+    for_some_samples<Kind>([&](const Kind<double>& law, const Sample& sample) {
       INFO(Kind<double>::kind << ", " << sample.name);
       if (drive_band(law) == 0.0) check(law, sample);
     });

@@ -5,19 +5,18 @@
 #include <numbers>
 
 #include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
-#include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/sliders/leuven.hpp"
+#include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
 using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
 
-double apart(std::complex<double> a, std::complex<double> b) { return std::abs(a - b) / std::abs(b); }
-
 template <class Law>
-Law stribeck_set() {
+Law levels_of() {
   Law law;
   law.Fs = law.Fs_minus = 1.5;
   law.Fc = law.Fc_minus = 1.0;
@@ -26,7 +25,7 @@ Law stribeck_set() {
 }
 
 Leuven<double> five_elements(double n) {
-  auto law = stribeck_set<Leuven<double>>();
+  auto law = levels_of<Leuven<double>>();
   for (int i = 0; i < 5; ++i) {
     law.k.push_back(2000.0 * (i + 1));
     law.W.push_back(0.2 + 0.1 * i);
@@ -37,17 +36,11 @@ Leuven<double> five_elements(double n) {
   return law;
 }
 
-template <template <class> class Kind>
-DescribingFunction quadrature(const Kind<double>& law, double A, double w, double bias, double accuracy) {
-  const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute(law, motion, law.odd() && bias == 0.0, {.harmonics = 3, .accuracy = accuracy}).refine();
-}
-
 /// The law from its equations, by Runge-Kutta steps in z alone: within a step z is monotonic and each stretch is
 /// s_i + dz cut off at its limits; steps in which an element meets a limit or z turns are halved down to nothing.
-class Reference {
+class LeuvenReference {
  public:
-  Reference(const Leuven<double>& law, double A, double w, double bias)
+  LeuvenReference(const Leuven<double>& law, double A, double w, double bias)
       : p_(law), A_(A), w_(w), bias_(bias), s_(law.k.size(), 0.0) {}
 
   std::complex<double> gain(int periods, int steps) {
@@ -124,23 +117,23 @@ class Reference {
 }  // namespace
 
 TEST_CASE("leuven: one element that never slips is LuGre, and Dahl without Stribeck effect", "[df][friction][claims]") {
-  auto law = stribeck_set<Leuven<double>>();
+  auto law = levels_of<Leuven<double>>();
   law.k = {1e5};
   law.W = {3.0};
   law.sigma1 = 316.22776601683796;
-  auto lugre = stribeck_set<LuGre<double>>();
+  auto lugre = levels_of<LuGre<double>>();
   lugre.sigma0 = 1e5;
   lugre.sigma1 = law.sigma1;
   for (const auto& [A, w, bias] :
        {std::tuple{5e-6, 1.0, 0.0}, {1e-4, 10.0, 0.0}, {1e-3, 1.0, 0.0}, {1e-4, 10.0, 3e-4}}) {
     CAPTURE(A, w, bias);
-    const auto df = quadrature(law, A, w, bias, 1e-10), expected = quadrature(lugre, A, w, bias, 1e-10);
+    const auto df = quadrature(law, A, w, bias, 1e-10, 3), expected = quadrature(lugre, A, w, bias, 1e-10, 3);
     CHECK(df.status == Status::converged);
     CHECK(apart(df.gain, expected.gain) < 1e-9);
   }
   law.sigma1 = 0.0;  // claim A12
   law.Fs = law.Fs_minus = 1.0;
-  const auto dahl = quadrature(law, 1e-5, 1.0, 0.0, 1e-10);
+  const auto dahl = quadrature(law, 1e-5, 1.0, 0.0, 1e-10, 3);
   CHECK(dahl.gain.real() == Approx(73250.7545).epsilon(1e-9));
   CHECK(dahl.gain.imag() == Approx(30354.7748).epsilon(1e-8));
 }
@@ -150,8 +143,8 @@ TEST_CASE("leuven: five elements against a march of fixed steps", "[df][friction
     for (const auto& [A, w, bias] : {std::tuple{5e-5, 5.0, 0.0}, {3e-4, 5.0, 0.0}, {1e-3, 5.0, 1e-3}}) {
       CAPTURE(n, A, w, bias);
       const auto law = five_elements(n);
-      const auto df = quadrature(law, A, w, bias, n == 1.7 ? 1e-7 : 1e-9);  // |F_h|^1.7 is not smooth at 0
-      Reference coarse(law, A, w, bias), fine(law, A, w, bias);
+      const auto df = quadrature(law, A, w, bias, n == 1.7 ? 1e-7 : 1e-9, 3);  // |F_h|^1.7 is not smooth at 0
+      LeuvenReference coarse(law, A, w, bias), fine(law, A, w, bias);
       const int periods = A < 1e-4 ? 12 : 4, steps = A < 1e-4 ? 300 : 1500;
       const auto half = coarse.gain(periods, steps), whole = fine.gain(periods, 2 * steps);
       CHECK(df.status == Status::converged);
@@ -168,7 +161,7 @@ TEST_CASE("leuven: the two routes agree, uneven levels too", "[df][friction]") {
     law.Fs_minus = back;
     law.Fc_minus = back - 0.5;
     const PrescribedMotion motion(3e-4, 5.0, 0.0, true);
-    const auto other = quadrature(law, 3e-4, 5.0, 0.0, 1e-7);
+    const auto other = quadrature(law, 3e-4, 5.0, 0.0, 1e-7, 3);
     const auto fft = FftRoute(law, motion, law.odd(), 0.0, {.harmonics = 3, .accuracy = 1e-6}).refine(other);
     CHECK(fft.status == Status::converged);
     CHECK(apart(fft.gain, other.gain) < 1e-6);

@@ -7,7 +7,8 @@
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 
 namespace {
 
@@ -103,7 +104,7 @@ TEST_CASE("LuGre values of the claims, A15", "[df][lugre][claims]") {
                {1e-2, 1, 7.219, 127.419, 5e-6},         {1e-2, 10, 1.121, 127.357, 5e-6}};
   for (const auto& row : table) {
     CAPTURE(row.A, row.w);
-    const auto df = describing_function(lugre(0.0), {row.A, row.w, 0.0}, with(DfMethod::quadrature, 1e-10));
+    const auto df = describing_function(lugre(1.5, 1.0, 0.0), {row.A, row.w, 0.0}, with(DfMethod::quadrature, 1e-10));
     CHECK(apart(df.gain, {row.re, row.im}) < row.room);
     CHECK(df.symmetric);
   }

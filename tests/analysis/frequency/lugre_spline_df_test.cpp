@@ -7,7 +7,8 @@
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 #include "limcycle/tests/analysis/frequency/one_state_reference.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 
 namespace {
 
@@ -18,11 +19,6 @@ LuGreSpline<double> spline() {
   law.sigma0 = 1e5;
   law.sigma1 = 316.0;
   return law;
-}
-
-DescribingFunction quadrature(const LuGreSpline<double>& law, double A, double w, double bias, double accuracy) {
-  const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute(law, motion, bias == 0.0, with(DfMethod::quadrature, accuracy)).refine();
 }
 
 OneStateReference plain(const LuGreSpline<double>& law, double A, double w, double bias, int steps) {

@@ -6,7 +6,7 @@
 
 /// Describing functions of one-state laws by the simplest means, independent of the program: classical Runge-Kutta with
 /// fixed steps from reversal to reversal, the fixed point of the period map by secants, Simpson's rule.
-namespace df_test {
+namespace limcycle::test {
 
 struct OneStateReference {
   std::complex<double> gain;
@@ -64,4 +64,4 @@ OneStateReference one_state_reference(double A, double w, double bias, Rate rate
   return {sum, mean, work};
 }
 
-}  // namespace df_test
+}  // namespace limcycle::test

@@ -6,7 +6,7 @@
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
 /// Common parts of the tests of kernels at random points.
-namespace df_test {
+namespace limcycle::test {
 
 class Random {
  public:
@@ -25,10 +25,20 @@ inline DfOptions asking(double accuracy, Isa isa = Isa::scalar, int harmonics = 
   return options;
 }
 
+/// Amplitudes of 1e-6 to 0.1 and frequencies of 0.1 to 1000.
+inline std::vector<DfPoint> grid(int rows, int columns) {
+  std::vector<DfPoint> points;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j)
+      points.push_back({1e-6 * std::pow(1e5, static_cast<double>(i) / (rows - 1)),
+                        0.1 * std::pow(1e4, static_cast<double>(j) / (columns - 1)), 0.0});
+  return points;
+}
+
 struct Tally {
   int points = 0, unanswered = 0, broken = 0;
   std::string which;              ///< the broken ones, as text
   std::vector<double> looseness;  ///< estimate over true error, where that exceeds roundings
 };
 
-}  // namespace df_test
+}  // namespace limcycle::test

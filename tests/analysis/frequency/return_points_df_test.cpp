@@ -9,19 +9,14 @@
 #include "limcycle/models/friction/bristle/two_state.hpp"
 #include "limcycle/models/friction/sliders/iwan.hpp"
 #include "limcycle/models/friction/sliders/xiong.hpp"
+#include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
 using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
 
-double apart(std::complex<double> a, std::complex<double> b) { return std::abs(a - b) / std::abs(b); }
-
-template <template <class> class Kind>
-DescribingFunction quadrature(const Kind<double>& law, double A, double w, double bias, double accuracy) {
-  const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute(law, motion, bias == 0.0, {.harmonics = 5, .accuracy = accuracy}).refine();
-}
 template <template <class> class Kind>
 DescribingFunction fft(const Kind<double>& law, double A, double w, double bias, const DescribingFunction& other) {
   const PrescribedMotion motion(A, w, bias, true);
@@ -79,7 +74,7 @@ TEST_CASE("iwan: the march meets the closed forms", "[iwan][df]") {
     for (const double elements : {0.0, 7.0}) {
       const auto law = iwan(curve, elements);
       for (const double A : {2e-6, 3e-4, 1e-3, 2e-3, 0.05}) {
-        const auto df = quadrature(law, A, 1.0, 0.0, 1e-9);
+        const auto df = quadrature(law, A, 1.0, 0.0, 1e-9, 5);
         const auto exact = *law.exact_describing_function(A, 1.0, 0.0);
         INFO("curve " << curve << " elements " << elements << " A " << A);
         REQUIRE(df.status == Status::converged);
@@ -89,11 +84,11 @@ TEST_CASE("iwan: the march meets the closed forms", "[iwan][df]") {
       }
     }
     const auto law = iwan(curve);
-    const auto df = quadrature(law, 1.7e-3, 1.0, 0.0, 1e-9);
+    const auto df = quadrature(law, 1.7e-3, 1.0, 0.0, 1e-9, 5);
     const auto other = fft(law, 1.7e-3, 1.0, 0.0, df);
     REQUIRE(other.status == Status::converged);
     CHECK(apart(other.gain, df.gain) < 1e-5);
-    const auto fast = quadrature(law, 1.7e-3, 1e4, 0.0, 1e-9);  // rate-independent
+    const auto fast = quadrature(law, 1.7e-3, 1e4, 0.0, 1e-9, 5);  // rate-independent
     CHECK(apart(fast.gain, df.gain) < 1e-14);
   }
 }
@@ -103,7 +98,7 @@ TEST_CASE("iwan: with a drift the loops hang on saturation", "[iwan][df]") {
   // branch up.
   const auto law = iwan(2);
   const double A = 2e-3, w = 1.0, V = 1.6e-3;
-  const auto df = quadrature(law, A, w, V, 1e-9);
+  const auto df = quadrature(law, A, w, V, 1e-9, 5);
   REQUIRE(df.status == Status::converged);
   const double r = std::acos(-V / (A * w));
   const auto x = [&](double theta) { return V * theta / w + A * std::sin(theta); };
@@ -126,7 +121,7 @@ TEST_CASE("iwan: with a drift the loops hang on saturation", "[iwan][df]") {
 TEST_CASE("non-drift below slip: hysteresis plus j sigma w", "[non-drift][df]") {
   const auto law = non_drift(0, 0);
   for (const double A : {1e-6, 3e-4}) {
-    const auto df = quadrature(law, A, 1.0, 0.0, 1e-8);
+    const auto df = quadrature(law, A, 1.0, 0.0, 1e-8, 5);
     const auto exact = *iwan(2).exact_describing_function(A, 1.0, 0.0) + std::complex<double>(0.0, sigma);
     REQUIRE(df.status == Status::converged);
     CHECK(apart(df.gain, exact) < 1e-9);
@@ -142,8 +137,8 @@ TEST_CASE("non-drift in sliding with a linear branch: Xiong with one element", "
   for (const int memory : {0, 1}) {
     const struct { double A, w, bias; } points[] = {{1e-3, 1.0, 0.0}, {1e-3, 1.0, 2e-4}, {1e-2, 1.0, 2e-4}};
     for (const auto& p : points) {
-      const auto df = quadrature(non_drift(3, memory), p.A, p.w, p.bias, 1e-8);
-      const auto other = quadrature(one, p.A, p.w, p.bias, 1e-8);
+      const auto df = quadrature(non_drift(3, memory), p.A, p.w, p.bias, 1e-8, 5);
+      const auto other = quadrature(one, p.A, p.w, p.bias, 1e-8, 5);
       INFO("memory " << memory << " A " << p.A << " w " << p.w << " bias " << p.bias);
       REQUIRE(df.status == Status::converged);
       CHECK(apart(df.gain, other.gain) < 2e-8);
@@ -173,7 +168,7 @@ TEST_CASE("two-state in sliding without lag: the integral of its loop", "[two-st
   law.s = 1e-3;
   law.tau = 0.0;
   for (const double A : {1e-3, 2.5e-3, 2e-2}) {
-    const auto df = quadrature(law, A, 1.0, 0.0, 1e-9);
+    const auto df = quadrature(law, A, 1.0, 0.0, 1e-9, 5);
     // From x = A, F = Fs back over 2 s to -Fs, then -g(v) until x = -A.
     const double way = std::min(2e-3, 2.0 * A), broke = std::acos(1.0 - way / A);
     const auto turn = [](double theta) { return std::complex<double>(std::cos(theta), -std::sin(theta)); };
@@ -191,7 +186,7 @@ TEST_CASE("two-state in sliding without lag: the integral of its loop", "[two-st
     CHECK(df.symmetric);
   }
   law.tau = 2e-3;
-  const auto df = quadrature(law, 2.5e-3, 1.0, 0.0, 1e-8);
+  const auto df = quadrature(law, 2.5e-3, 1.0, 0.0, 1e-8, 5);
   REQUIRE(df.status == Status::converged);
   CHECK(apart(fft(law, 2.5e-3, 1.0, 0.0, df).gain, df.gain) < 1e-5);
 }

@@ -5,31 +5,23 @@
 #include <random>
 
 #include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
-#include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
 #include "limcycle/models/friction/sliders/jenkins.hpp"
 #include "limcycle/models/friction/sliders/maxwell_slip.hpp"
+#include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
 using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
 
-/// Distance of two gains, relative.
-double apart(std::complex<double> a, std::complex<double> b) { return std::abs(a - b) / std::abs(b); }
-
-MaxwellSlip<double> ten_elements() {
+MaxwellSlip<double> ten_sliders() {
   MaxwellSlip<double> law;
   for (int i = 0; i < 10; ++i) {
     law.k.push_back(1000.0 + 350.0 * i);
     law.W.push_back(0.05 + 0.02 * ((7 * i) % 10));
   }
   return law;
-}
-
-template <template <class> class Kind>
-DescribingFunction quadrature(const Kind<double>& law, double A, double w, double bias, double accuracy) {
-  const PrescribedMotion motion(A, w, bias, true);
-  return QuadratureRoute(law, motion, bias == 0.0, {.harmonics = 5, .accuracy = accuracy}).refine();
 }
 
 /// Gain and mean force of one element in x = bias t + A sin wt: the stretch after a reversal at x_r follows x until it
@@ -86,7 +78,7 @@ TEST_CASE("jenkins and maxwell-slip: claims A8 and A9", "[df][friction][claims]"
   CHECK(std::abs(stop_gain(1000.0, 1.5, 0.004) - std::complex<double>(342.518821, 298.415518)) < 1e-6);
   for (const double A : {1e-4, 1.5e-3, 1.5001e-3, 4e-3, 0.3}) {
     CAPTURE(A);
-    const auto df = quadrature(one, A, 2.0, 0.0, 1e-10);
+    const auto df = quadrature(one, A, 2.0, 0.0, 1e-10, 5);
     CHECK(df.status == Status::converged);
     CHECK(df.symmetric);
     CHECK(apart(df.gain, *one.exact_describing_function(A, 2.0, 0.0)) <= df.error);
@@ -94,10 +86,10 @@ TEST_CASE("jenkins and maxwell-slip: claims A8 and A9", "[df][friction][claims]"
     CHECK(df.dissipation == Approx(4.0 * 1.5 * std::max(0.0, A - 1.5e-3)).epsilon(1e-9).margin(1e-16));
   }
   CHECK_FALSE(one.exact_describing_function(1.0, 1.0, 0.1));
-  const auto law = ten_elements();
+  const auto law = ten_sliders();
   for (const double A : {1e-5, 3e-5, 6e-5, 1e-3}) {
     CAPTURE(A);
-    const auto df = quadrature(law, A, 7.0, 0.0, 1e-10);
+    const auto df = quadrature(law, A, 7.0, 0.0, 1e-10, 5);
     CHECK(df.status == Status::converged);
     CHECK(apart(df.gain, *law.exact_describing_function(A, 7.0, 0.0)) <= std::min(df.error, 1e-10));
   }
@@ -112,17 +104,17 @@ TEST_CASE("maxwell-slip: 31 elements that slip one after another or all at once"
     equal.W.push_back(0.1);
   }
   for (const auto& law : {spread, equal}) {
-    const auto df = quadrature(law, 2e-3, 5.0, 0.0, 1e-4);
+    const auto df = quadrature(law, 2e-3, 5.0, 0.0, 1e-4, 5);
     CHECK(df.status == Status::converged);
     CHECK(apart(df.gain, *law.exact_describing_function(2e-3, 5.0, 0.0)) <= df.error);
   }
 }
 
 TEST_CASE("maxwell-slip: with a mean velocity each element follows its exact path", "[df][friction]") {
-  const auto law = ten_elements();
+  const auto law = ten_sliders();
   for (const auto& [A, w, bias] : {std::tuple{1e-3, 2.0, 2e-4}, {3e-4, 2.0, 5.5e-4}, {4e-5, 50.0, 1e-4}}) {
     CAPTURE(A, w, bias);
-    const auto df = quadrature(law, A, w, bias, 1e-9);
+    const auto df = quadrature(law, A, w, bias, 1e-9, 5);
     std::complex<double> gain;
     double mean = 0.0;
     for (std::size_t i = 0; i < law.k.size(); ++i) {
@@ -133,18 +125,18 @@ TEST_CASE("maxwell-slip: with a mean velocity each element follows its exact pat
     CHECK(df.status == Status::converged);
     CHECK(apart(df.gain, gain) < 1e-9);
     CHECK(df.mean == Approx(mean).epsilon(1e-9));
-    const auto back = quadrature(law, A, w, -bias, 1e-9);
+    const auto back = quadrature(law, A, w, -bias, 1e-9, 5);
     CHECK(back.mean == Approx(-mean).epsilon(1e-9));
   }
-  const auto sliding = quadrature(law, 1e-3, 1.0, 1.0, 1e-6);  // never turns back
+  const auto sliding = quadrature(law, 1e-3, 1.0, 1.0, 1e-6, 5);  // never turns back
   CHECK(sliding.gain == 0.0);
   CHECK(sliding.mean == Approx(law.sum_of_limits()).epsilon(1e-11));
 }
 
 TEST_CASE("maxwell-slip: the two routes agree, and the frequency does not matter to rounding", "[df][friction]") {
-  const auto law = ten_elements();
+  const auto law = ten_sliders();
   const double A = 6e-5;
-  const auto slow = quadrature(law, A, 1e-4, 0.0, 1e-8), fast = quadrature(law, A, 3e5, 0.0, 1e-8);
+  const auto slow = quadrature(law, A, 1e-4, 0.0, 1e-8, 5), fast = quadrature(law, A, 3e5, 0.0, 1e-8, 5);
   CHECK(apart(fast.gain, slow.gain) < 1e-13);
   for (std::size_t i = 0; i < slow.harmonics.size(); ++i)
     CHECK(std::abs(fast.harmonics[i] - slow.harmonics[i]) < 1e-13 * std::abs(slow.harmonics[0]));

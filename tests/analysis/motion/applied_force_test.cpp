@@ -11,6 +11,7 @@
 #include "limcycle/models/friction/dry/karnopp.hpp"
 #include "limcycle/models/friction/dry/quinn.hpp"
 #include "limcycle/models/friction/dry/wojewoda.hpp"
+#include "limcycle/tests/analysis/motion/one_step.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -59,53 +60,19 @@ double jacobian_defect(LoopField& field, const State& x, double t = 0.0, double 
   return worst / size;
 }
 
-State moved(LoopField& field, const State& x, double h) {
-  State k1, k2, k3, k4, at = x;
-  const auto stage = [&](const State& k, double part) {
-    for (std::size_t i = 0; i < x.size(); ++i) at[i] = x[i] + part * h * k[i];
-  };
-  field.rate(x, k1, 0.0);
-  stage(k1, 0.5);
-  field.rate(at, k2, 0.0);
-  stage(k2, 0.5);
-  field.rate(at, k3, 0.0);
-  stage(k3, 1.0);
-  field.rate(at, k4, 0.0);
-  for (std::size_t i = 0; i < x.size(); ++i) at[i] = x[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-  return at;
-}
-
-/// Time, of either sign, to the zero of a guard: secant steps.
-double time_to(LoopField& field, const State& x, std::size_t guard) {
-  std::vector<double> g;
-  const auto value = [&](double t) {
-    field.guards(moved(field, x, t), 0.0, g);
-    return g.at(guard);
-  };
-  double t0 = 0.0, g0 = value(t0), t1 = 1e-5, g1 = value(t1);
-  for (int i = 0; i < 60 && g1 != 0.0 && g1 != g0; ++i) {
-    const double t2 = t1 - g1 * (t1 - t0) / (g1 - g0);
-    t0 = t1;
-    g0 = g1;
-    t1 = t2;
-    g1 = value(t1);
-  }
-  return t1;
-}
-
 /// Saltation matrix of the switch of a guard near x, against neighbours carried over it and back.
 void check_saltation(const Loop& loop, const State& near, std::vector<Mode> modes, std::size_t guard,
                      std::vector<Mode> after, double size, double accuracy = 1e-5) {
   LoopField field(loop);
   field.modes() = modes;
-  const State at = moved(field, near, time_to(field, near, guard));
+  const State at = moved(field, near, time_to(field, near, guard, 1e-5));
   State x = at;
   Eigen::MatrixXd saltation;
   REQUIRE(field.fire(x, 0.0, guard, saltation));
   CHECK(field.modes() == after);
   const auto over = [&](const State& start) {
     field.modes() = modes;
-    const double t = time_to(field, start, guard);
+    const double t = time_to(field, start, guard, 1e-5);
     State y = moved(field, start, t);
     field.fire(y, 0.0, guard);
     CHECK(field.modes() == after);

@@ -17,7 +17,7 @@ namespace odeint = boost::numeric::odeint;
 namespace {
 
 /// m v' = -kp x - ki I - kd v - F with LuGre friction of bristle force f = sigma0 z; state (I, x, v, f).
-struct Hunting {
+struct HuntingMass {
   double kp = 3, ki = 4, kd = 6, m = 1;
   double Fs = 1.5, Fc = 1, vs = 1e-3, sigma0 = 1e5, sigma1 = std::sqrt(1e5), sigma2 = 0.4;
 
@@ -87,7 +87,7 @@ double crossing(const System& system, const State& x0, double t0, double t1, dou
 }
 
 /// Times between successive rising zeros of x, from x(0) = 1 at rest.
-std::vector<double> intervals(const Hunting& loop, double tolerance, std::size_t count) {
+std::vector<double> intervals(const HuntingMass& loop, double tolerance, std::size_t count) {
   const auto system = loop.system();
   ControlledRodas5p stepper(loop.weights(tolerance));
   State x{0, 1, 0, 0};
@@ -110,7 +110,7 @@ std::vector<double> intervals(const Hunting& loop, double tolerance, std::size_t
 }  // namespace
 
 TEST_CASE("The Jacobian of the hunting loop is that of its right side", "[rodas5p][lugre]") {
-  const Hunting loop;
+  const HuntingMass loop;
   for (const State& x : {State{0.3, -0.2, 0.05, 0.9}, State{0.1, 0.2, -4e-4, -1.2}, State{0, 0, 2e-3, 1}}) {
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(4, 4);
     loop.jacobian(x, J);
@@ -134,7 +134,7 @@ TEST_CASE("The Jacobian of the hunting loop is that of its right side", "[rodas5
 TEST_CASE("RODAS5P reaches the hunting cycle of LuGre friction with its period", "[rodas5p][lugre]") {
   // Period by an explicit method of order 8 in extended precision: 24.436786455993(1) s.
   const double exact = 24.436786455993;
-  const Hunting loop;
+  const HuntingMass loop;
   const std::vector<double> fine = intervals(loop, 1e-9, 10);
   CHECK(fine.back() == Approx(exact).epsilon(1e-9));
   // The cycle is reached (multiplier of half a period 0.078): two periods in a row agree.
@@ -148,8 +148,8 @@ TEST_CASE("RODAS5P reaches the hunting cycle of LuGre friction with its period",
 TEST_CASE("RODAS5P is not misled by a loose tolerance when velocity is weighted by vs", "[rodas5p][lugre]") {
   // With atol(v) = tol these settle on false cycles of 13 to 25 s.
   for (const double tolerance : {1e-4, 1e-5})
-    CHECK(intervals(Hunting{}, tolerance, 10).back() == Approx(24.4368).epsilon(1e-4));
-  Hunting stiffer;
+    CHECK(intervals(HuntingMass{}, tolerance, 10).back() == Approx(24.4368).epsilon(1e-4));
+  HuntingMass stiffer;
   stiffer.sigma0 = 1e6;
   stiffer.sigma1 = 1e3;
   CHECK(intervals(stiffer, 1e-6, 10).back() == Approx(23.830519).epsilon(1e-6));
@@ -157,7 +157,7 @@ TEST_CASE("RODAS5P is not misled by a loose tolerance when velocity is weighted 
 
 TEST_CASE("An explicit stepper finds the same motion as RODAS5P where both can go", "[explicit_steppers][lugre]") {
   // Two codes that share only the right-hand side, over the first slip and the first stick (2 s), state by state.
-  const Hunting loop;
+  const HuntingMass loop;
   const auto rhs = [&](const State& x, State& rate, double) { loop.rhs(x, rate); };
   const auto march = [](auto stepper, const auto& system) {
     State x{0, 1, 0, 0};

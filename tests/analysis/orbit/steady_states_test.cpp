@@ -3,6 +3,7 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/orbit/settle/standstill.hpp"
@@ -338,6 +339,22 @@ TEST_CASE("rest: a body that a limited command cannot break away stays where it 
   controller.saturation = 1.6;  // a little more, and it breaks away again and again
   parts.controller = controller;
   CHECK(from(build_loop(parts), 1.0).outcome == Outcome::cycle);
+}
+
+TEST_CASE("divergence: growth is tried from afar, where a damped spring that bounds it shows") {
+  // A conditionally stable loop: large motions, against the limit of the command, wind up.
+  const auto grows = [](double stiffness, double displacement) {
+    LoopParts parts = servo_parts(coulomb(4.0, 4.0));
+    parts.plant = Mass{.mass = 1.0, .damping = stiffness, .stiffness = stiffness};
+    Pid controller = pid(60.0, 100.0, 3.0);
+    controller.saturation = 60.0;
+    parts.controller = controller;
+    const Loop loop = build_loop(parts);
+    return grows_from_afar(loop, displaced(loop, displacement), 1e-9, 20'000, {});
+  };
+  CHECK(grows(0.0, 100.0));
+  CHECK_FALSE(grows(1.0, 100.0));
+  CHECK_FALSE(grows(0.0, 1e-6));  // thirty times as far is still within the limit of the command and stuck
 }
 
 TEST_CASE("divergence: swings that grow like a power of time have no bound") {

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -25,8 +26,7 @@ TEST_CASE("adequate: text, documents and page of a servo with stiction") {
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
   CHECK_THAT(ran.out, Contains("Simplest adequate model: the law coulomb + stiction") && Contains("no law"));
-  std::istringstream lines(ran.out.substr(0, ran.out.find("report: ")));
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : lines_of(ran.out.substr(0, ran.out.find("report: ")))) CHECK(line.size() <= 80);
   const auto document = Json::parse(scratch.get("r.json"));
   CHECK(document["schema"] == "limcycle/1");
   CHECK(document["command"] == "adequate");

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -28,8 +29,7 @@ TEST_CASE("claims: the thesis's contradictory claim fails as expected, which is 
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, StartsWith("2 claims tested: 1 holds, 1 fails; all as expected.") &&
                           Contains("thesis-rate: fails, as expected") && Contains("rate*Zb"));
-  std::istringstream lines(ran.out.substr(0, ran.out.find("report: ")));
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : lines_of(ran.out.substr(0, ran.out.find("report: ")))) CHECK(line.size() <= 80);
   const auto document = Json::parse(scratch.get("r.json"));
   REQUIRE(document["claims"].size() == 2);
   CHECK(document["claims"][0]["verdict"] == "fails");

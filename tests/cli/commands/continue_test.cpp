@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -32,8 +33,7 @@ TEST_CASE("continue: text, documents, page and diagram of a branch with a fold")
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
   CHECK_THAT(ran.out, Contains("There is one fold, where the branch") && Contains("0.0818750"));
-  std::istringstream lines(ran.out.substr(0, ran.out.find("report: ")));
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : lines_of(ran.out.substr(0, ran.out.find("report: ")))) CHECK(line.size() <= 80);
 
   const auto document = Json::parse(scratch.get("r.json"));
   CHECK(document["schema"] == "limcycle/1");

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -93,8 +94,7 @@ TEST_CASE("dissipativity: text, page and points over the state") {
   CAPTURE(ran.err);
   REQUIRE(ran.code == 0);
   CHECK_THAT(ran.out, Contains("not passive") && Contains("Counter-example") && Contains("Steady sliding"));
-  std::istringstream lines(ran.out.substr(0, ran.out.find("report: ")));
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : lines_of(ran.out.substr(0, ran.out.find("report: ")))) CHECK(line.size() <= 80);
   CHECK_THAT(scratch.get("r.html"), Contains("<svg") && Contains("--parameter loop.friction.sigma2=0:400"));
   CHECK_THAT(scratch.get("r.csv"), Contains("storage,") && Contains("taken,"));
 }

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -29,8 +30,7 @@ TEST_CASE("experiment: text, documents, page and figures of one with two laws") 
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
   CHECK_THAT(ran.out, StartsWith("breakaway-rate: ") && Contains("peak falls with the rate"));
-  std::istringstream lines(ran.out.substr(0, ran.out.find("report: ")));
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : lines_of(ran.out.substr(0, ran.out.find("report: ")))) CHECK(line.size() <= 80);
   const auto document = Json::parse(scratch.get("r.json"));
   const auto& one = document["experiments"][0];
   CHECK(one["name"] == "breakaway-rate");

@@ -4,7 +4,7 @@
 #include "limcycle/tests/cli/program.hpp"
 
 using namespace limcycle::test;
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -18,7 +18,7 @@ std::vector<std::string> small_map(std::vector<std::string> more) {
 }
 
 std::string without_provenance(const std::string& document) {
-  json all = json::parse(document);
+  Json all = Json::parse(document);
   all.erase("provenance");
   return all.dump();
 }
@@ -30,14 +30,14 @@ TEST_CASE("map: what happens, and that the describing function misses the huntin
   const Ran ran = run(small_map({"--json", "-", "--csv", scratch.file("map.csv"), "--svg", scratch.file("map.svg"),
                                  "--html", scratch.file("map.html")}));
   REQUIRE(ran.code == 0);
-  const json document = json::parse(ran.out);
+  const Json document = Json::parse(ran.out);
   CHECK(document["schema"] == "limcycle/1");
   CHECK(document["command"] == "map");
   CHECK(document["x"]["parameter"] == "loop.controller.kd");
   REQUIRE(document["points"].size() == 9);
   CHECK(document["points"][0]["happens"] == "not valid");  // Fs below Fc
   CHECK(document["points"][0]["amplitude"].is_null());
-  const json& hunting = document["points"][6];
+  const Json& hunting = document["points"][6];
   CHECK(hunting["stable_cycles"] == 1);
   CHECK(hunting["period"].get<double>() == Approx(24.4368).epsilon(1e-5));
   CHECK(hunting["methods"][0]["worth"] == "missed");

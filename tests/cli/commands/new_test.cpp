@@ -6,12 +6,14 @@
 #include "limcycle/reports/case_files/new_case.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/share.hpp"
 
 using limcycle::Case;
 using limcycle::NewCase;
 using limcycle::read_case;
 using limcycle::test::run;
 using limcycle::test::Scratch;
+using limcycle::test::some_of;
 using Kinds = std::vector<std::string>;
 
 namespace {
@@ -38,7 +40,7 @@ std::string complaint(const std::string& text) {
 TEST_CASE("new: every plant with every controller and every friction law is a valid case") {
   int cases = 0;
   for (const auto& plant : kinds_in("plant"))
-    for (const auto& controller : kinds_in("controller"))
+    for (const auto& controller : some_of(kinds_in("controller")))
       for (const auto& friction : kinds_in("friction"))
         for (const bool all : {false, true}) {
           INFO(plant << ' ' << controller << ' ' << friction << ' ' << all);
@@ -52,12 +54,12 @@ TEST_CASE("new: every plant with every controller and every friction law is a va
           CHECK(made.simulate.has_value() == all);
           ++cases;
         }
-  CHECK(cases == 2 * 7 * 4 * 20);
+  CHECK(cases == 2 * 7 * std::ssize(some_of(kinds_in("controller"))) * 20);
 }
 
 TEST_CASE("new: every element, alone and beside friction, before every plant and behind every controller") {
   for (const auto& plant : kinds_in("plant"))
-    for (const auto& controller : kinds_in("controller"))
+    for (const auto& controller : some_of(kinds_in("controller")))
       for (const auto& friction : {"", "lugre", "coulomb"})
         for (const auto& element : kinds_in("element")) {
           INFO(plant << ' ' << controller << ' ' << friction << ' ' << element);
@@ -77,7 +79,7 @@ TEST_CASE("new: the kinds that are told beside the chosen one are those that may
 
 TEST_CASE("new: every element on the error, and every friction law as an element, where the format has it") {
   for (const auto& plant : kinds_in("plant"))
-    for (const auto& controller : kinds_in("controller")) {
+    for (const auto& controller : some_of(kinds_in("controller"))) {
       for (const auto& error : {"dead-zone", "saturation", "quantizer"}) {
         INFO(plant << ' ' << controller << ' ' << error);
         const auto why = complaint(limcycle::new_case({plant, controller, "lugre", {}, error}));
@@ -178,10 +180,10 @@ TEST_CASE("new: predict answers on new cases") {
     CHECK(ran.code == 0);
     CHECK(ran.out.find("This loop ") != std::string::npos);
   };
-  for (const auto& plant : kinds_in("plant")) answers({"--plant", plant, "--friction", "coulomb"});
+  for (const auto& plant : some_of(kinds_in("plant"))) answers({"--plant", plant, "--friction", "coulomb"});
   for (const auto* controller : {"none", "state-space"})
     answers({"--controller", controller, "--friction", "stribeck"});
-  for (const auto& element : kinds_in("element")) answers({"--element", element});
+  for (const auto& element : some_of(kinds_in("element"))) answers({"--element", element});
   answers({"--friction", "lugre"});
   answers({"--error", "quantizer", "--friction", "coulomb"});
 }

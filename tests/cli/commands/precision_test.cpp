@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "limcycle/tests/cli/started.hpp"
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -35,8 +36,7 @@ TEST_CASE("precision: text, documents and page of a relay loop") {
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
   CHECK_THAT(ran.out, Contains("Reference: shooting at rtol 3e-12 (exact)") && Contains("fehlberg78"));
-  std::istringstream lines(ran.out.substr(0, ran.out.find("report: ")));
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : lines_of(ran.out.substr(0, ran.out.find("report: ")))) CHECK(line.size() <= 80);
 
   const auto document = Json::parse(scratch.get("r.json"));
   CHECK(document["schema"] == "limcycle/1");

@@ -3,9 +3,10 @@
 #include <regex>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/share.hpp"
 
 using namespace limcycle::test;
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -26,7 +27,7 @@ std::string with_spread(const Scratch& scratch) {
   return scratch.put("spread.toml", std::string(std::istreambuf_iterator<char>(in), {}) + spread_section);
 }
 
-json parameter(const json& document, const std::string& name) {
+Json parameter(const Json& document, const std::string& name) {
   for (const auto& one : document["parameters"])
     if (one["name"] == name) return one;
   return nullptr;
@@ -39,8 +40,8 @@ TEST_CASE("sensitivity: derivatives, changes, indices and the share of loops wit
   const Ran ran = run({"sensitivity", with_spread(scratch), "--json", "-", "--quiet", "--html", scratch.file("s.html"),
                        "--csv", scratch.file("s.csv")});
   REQUIRE(ran.code == 0);
-  const json document = json::parse(ran.out);
-  const json kp = parameter(document, "loop.controller.kp"), Fs = parameter(document, "loop.friction.Fs");
+  const Json document = Json::parse(ran.out);
+  const Json kp = parameter(document, "loop.controller.kp"), Fs = parameter(document, "loop.friction.Fs");
   // From differences of cycles of `predict`, with Fs and kp changed by a relative 1e-4.
   CHECK(kp["derivative"]["period"].get<double>() == Approx(4.749126).epsilon(1e-5));
   CHECK(Fs["derivative"]["amplitude"].get<double>() == Approx(0.1234977).epsilon(1e-5));
@@ -66,13 +67,13 @@ TEST_CASE("sensitivity: derivatives, changes, indices and the share of loops wit
 
 TEST_CASE("sensitivity: the same for any number of threads, and from a store") {
   const Scratch scratch;
-  const std::string from = with_spread(scratch);
+  const std::string from = with_spread(scratch), count = std::to_string(8 * limcycle::test::samples(8));
   const auto document = [&](std::vector<std::string> flags) {
-    std::vector<std::string> all{"sensitivity", from, "--json", "-", "--quiet"};
+    std::vector<std::string> all{"sensitivity", from, "--json", "-", "--quiet", "--samples", count};
     all.insert(all.end(), flags.begin(), flags.end());
     const Ran ran = run(all);
     REQUIRE(ran.code == 0);
-    json made = json::parse(ran.out);
+    Json made = Json::parse(ran.out);
     made.erase("provenance");
     return made.dump();
   };
@@ -87,7 +88,7 @@ TEST_CASE("sensitivity: without a cycle there is nothing to differentiate, and t
   const Ran ran =
       run({"sensitivity", lugre_case, "--set", "loop.friction.Fs=1.0", "--local", "--json", "-", "--quiet"});
   REQUIRE(ran.code == 0);
-  const json document = json::parse(ran.out);
+  const Json document = Json::parse(ran.out);
   CHECK(document["cycle"].is_null());
   CHECK(document["parameters"].empty());
   CHECK(document["share_without_answer"].is_null());
@@ -102,20 +103,20 @@ TEST_CASE("sensitivity: harmonics, predictions and thresholds") {
                        "--threshold", "loop.element.dead_zone", "--threshold", "loop.element.level", "--json", "-",
                        "--quiet", "--html", scratch.file("s.html"), "--csv", scratch.file("s.csv")});
   REQUIRE(ran.code == 0);
-  const json document = json::parse(ran.out);
+  const Json document = Json::parse(ran.out);
   // For small constants the relay is a gain k: y = k/(1 + k) r + 1/(1 + k) load.
-  const auto of = [](const json& one) { return one["derivative"]["offset"].get<double>(); };
+  const auto of = [](const Json& one) { return one["derivative"]["offset"].get<double>(); };
   CHECK(of(parameter(document, "loop.reference")) + of(parameter(document, "loop.load")) == Approx(1.0).epsilon(1e-6));
   CHECK(parameter(document, "loop.element.level")["elasticity"]["first_harmonic"].get<double>() > 1.0);
 
   REQUIRE(document["predicted"].size() == 2);
   CHECK(document["predicted"][0]["gain"][0].get<double>() == Approx(8.0).epsilon(1e-6));
-  const json by_level = parameter(document["predicted"][0], "loop.element.level");
+  const Json by_level = parameter(document["predicted"][0], "loop.element.level");
   REQUIRE_FALSE(by_level.is_null());
   CHECK(by_level["derivative"]["gain"][0].get<double>() == Approx(8.0).epsilon(1e-6));
 
   REQUIRE(document["thresholds"].size() == 2);
-  const json& zone = document["thresholds"][0];
+  const Json& zone = document["thresholds"][0];
   CHECK(zone["what"] == "ends");
   CHECK(zone["at"].get<double>() == Approx(0.08187508).epsilon(1e-6));
   bool by_the_level = false;
@@ -140,10 +141,10 @@ TEST_CASE("sensitivity: without a cycle, where hunting begins") {
   const Ran ran = run({"sensitivity", relay_case, "--set", "loop.element.dead_zone=0.1", "--local", "--factors", "1.1",
                        "--threshold", "loop.element.level", "--json", "-", "--quiet"});
   REQUIRE(ran.code == 0);
-  const json document = json::parse(ran.out);
+  const Json document = Json::parse(ran.out);
   CHECK(document["cycle"].is_null());
   REQUIRE(document["thresholds"].size() == 1);
-  const json& level = document["thresholds"][0];
+  const Json& level = document["thresholds"][0];
   CHECK(level["what"] == "begins");
   CHECK(level["at"].get<double>() == Approx(0.1 / 0.08187508).epsilon(1e-6));
   for (const auto& one : level["parameters"]) {

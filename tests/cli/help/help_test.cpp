@@ -5,19 +5,14 @@
 
 #include "limcycle/reports/table.hpp"
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/lines.hpp"
 
+using limcycle::test::lines_of;
 using limcycle::test::quoted;
 using limcycle::test::run;
 using limcycle::test::Scratch;
 
 namespace {
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
 
 /// Commands listed by `limcycle --help`: the first word of lines indented by two columns, before the exit codes.
 std::vector<std::string> listed_commands() {

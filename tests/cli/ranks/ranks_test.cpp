@@ -5,6 +5,7 @@
 
 #include "limcycle/reports/store/store.hpp"
 #include "limcycle/tests/cli/started.hpp"
+#include "limcycle/tests/share.hpp"
 
 // The program under mpirun. If there is none, or the program was built without MPI, it must refuse to be started as
 // several processes, which is then tested.
@@ -140,8 +141,10 @@ parameters = [
 TEST_CASE("ranks: killed and stopped at any moment, a map goes on where it was, and nothing is computed twice") {
   if (!mpirun_is_here()) return;
   const Scratch scratch;
-  const Words map = map_of("16", "12");  // seconds on a fast machine: a rank must be hit before the end
-  const std::size_t points = 192;
+  // Seconds on a fast machine: a rank must be hit before the end.
+  const int columns = 4 * limcycle::test::samples(4);
+  const Words map = map_of(std::to_string(columns), "12");
+  const auto points = static_cast<std::size_t>(12 * columns);
   REQUIRE(run(map + Words{"--threads", "1", "--json", scratch.file("1.json")}).code == 0);
   const std::string store = scratch.file("store");
   const Words again = map + Words{"--threads", "1", "--store", store, "--resume", "--json", scratch.file("n.json")};

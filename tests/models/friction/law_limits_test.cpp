@@ -46,7 +46,7 @@ double difference(const A& a, const B& b, double L, double v, MarchSteps steps =
   return worst;
 }
 
-const Settings flat = with(stribeck_set, {{"Fs", 1.0}});
+Settings flat() { return with(stribeck_set, {{"Fs", 1.0}}); }
 const Jenkins<double> jenkins = made<Jenkins<double>>({{"k", 1e5}, {"Fc", 1.0}});
 constexpr double L = 1e-5;  // Fc/k
 
@@ -55,9 +55,9 @@ constexpr double L = 1e-5;  // Fc/k
 TEST_CASE("one-element laws without a falling level are the Jenkins element") {
   CHECK(difference(made<MaxwellSlip<double>>({{"k", std::vector{1e5}}, {"W", one}}), jenkins, L, 1e-3) < 1e-12);
   CHECK(difference(made<Iwan<double>>({{"curve", "linear"}, {"Fs", 1.0}, {"Zb", L}}), jenkins, L, 1e-3) < 1e-12);
-  CHECK(difference(made<Wojewoda<double>>(with(flat, {{"ks", 1e5}})), jenkins, L, 1e-3) < 1e-12);
+  CHECK(difference(made<Wojewoda<double>>(with(flat(), {{"ks", 1e5}})), jenkins, L, 1e-3) < 1e-12);
   const auto gms = [](double C) {
-    return made<Gms<double>>(with(flat, {{"k", std::vector{1e5}}, {"alpha", one}, {"C", C}}));
+    return made<Gms<double>>(with(flat(), {{"k", std::vector{1e5}}, {"alpha", one}, {"C", C}}));
   };
   CHECK(difference(gms(10.0), jenkins, L, 1e-3) < 1e-12);
   // One element of gms with a fast attraction follows the Stribeck level, with the lag g/C.
@@ -76,11 +76,15 @@ TEST_CASE("compliant laws with little damping come close to the Jenkins element,
     CHECK(coarse < 3e-3);
     CHECK(fine < 0.15 * coarse);
   };
-  close([](double B) { return made<Kikuuwe<double>>(with(flat, {{"K", 1e5}, {"B", B}})); }, {infinite, infinite, 1e-5});
+  close(
+      [](double B) {
+        return made<Kikuuwe<double>>(with(flat(), {{"K", 1e5}, {"B", B}}));
+      },
+      {infinite, infinite, 1e-5});
   close(
       [](double s) {
         return made<Xiong<double>>(
-            with(flat, {{"K", std::vector{1e5}}, {"sigma", std::vector{s}}, {"lambda", one}, {"tau", 1e-3}}));
+            with(flat(), {{"K", std::vector{1e5}}, {"sigma", std::vector{s}}, {"lambda", one}, {"tau", 1e-3}}));
       },
       {infinite, infinite, 1e-5});
 }
@@ -89,7 +93,7 @@ TEST_CASE("bouc-wen with n = 1, gamma = 0, and slow lugre without a falling leve
   const auto dahl = made<Dahl<double>>({{"Fc", 1.0}, {"sigma0", 1e5}});
   const auto bouc_wen = made<BoucWen<double>>({{"k", 1e5}, {"D", L}, {"beta", 1.0}, {"gamma", 0.0}});
   CHECK(difference(bouc_wen, dahl, L, 1e-3) < 1e-12);
-  CHECK(difference(made<LuGre<double>>(with(flat, {{"sigma0", 1e5}})), dahl, L, 1e-3) < 1e-12);
+  CHECK(difference(made<LuGre<double>>(with(flat(), {{"sigma0", 1e5}})), dahl, L, 1e-3) < 1e-12);
   const auto published = made<LuGre<double>>(with(bristle, {{"sigma1", root}, {"sigma2", 0.4}}));
   const auto dahl_of_Fs = made<Dahl<double>>({{"Fc", 1.5}, {"sigma0", 1e5}});
   CHECK(difference(published, dahl_of_Fs, L, 1e-10) < 1e-6);
@@ -99,13 +103,13 @@ TEST_CASE("non-drift without damping and with one level is iwan") {
   for (const std::string branch : {"koizumi-shibazaki", "linear"}) {
     INFO(branch);
     const auto non_drift = [&](double sigma) {
-      return made<NonDrift<double>>(with(flat, {{"Zb", L}, {"sigma", sigma}, {"tau", 0.0}, {"branch", branch}}));
+      return made<NonDrift<double>>(with(flat(), {{"Zb", L}, {"sigma", sigma}, {"tau", 0.0}, {"branch", branch}}));
     };
     const auto iwan = made<Iwan<double>>({{"curve", branch}, {"Fs", 1.0}, {"Zb", L}});
     const double rough = difference(non_drift(1.0), iwan, L, 1e-3, {infinite, infinite, 1e-5});
-    const double fine = difference(non_drift(0.1), iwan, L, 1e-3, {infinite, infinite, 1e-6});
+    const double fine = difference(non_drift(0.2), iwan, L, 1e-3, {infinite, infinite, 2e-6});
     CHECK(rough < 3e-3);
-    CHECK(fine < 0.15 * rough);
+    CHECK(fine < 0.25 * rough);
   }
 }
 
@@ -115,13 +119,13 @@ TEST_CASE("lugre-spline with equal coefficients is lugre without a falling level
                                                  {"sigma0", 1e5},
                                                  {"sigma1", 30.0},
                                                  {"sigma2", 0.4}});
-  const auto lugre = made<LuGre<double>>(with(flat, {{"sigma0", 1e5}, {"sigma1", 30.0}, {"sigma2", 0.4}}));
+  const auto lugre = made<LuGre<double>>(with(flat(), {{"sigma0", 1e5}, {"sigma1", 30.0}, {"sigma2", 0.4}}));
   CHECK(difference(spline, lugre, L, 3e-3) < 1e-10);
 }
 
 TEST_CASE("elasto-plastic without a falling level comes close to Jenkins as z_ba rises to z_ss") {
   const auto distance = [](double ratio) {
-    const auto law = made<ElastoPlastic<double>>(with(flat, {{"sigma0", 1e5}, {"zba_ratio", ratio}}));
+    const auto law = made<ElastoPlastic<double>>(with(flat(), {{"sigma0", 1e5}, {"zba_ratio", ratio}}));
     return difference(law, jenkins, L, 1e-3, {1e-3 * L, infinite, infinite});
   };
   const double rough = distance(0.9), fine = distance(0.99);
@@ -140,10 +144,15 @@ TEST_CASE("leuven with a large exponent and a level above its elements is maxwel
 }
 
 TEST_CASE("xiong and kikuuwe with one element are one law but for the lag of the level") {
-  const auto xiong = made<Xiong<double>>(
-      with(stribeck_set, {{"K", std::vector{1e5}}, {"sigma", std::vector{root}}, {"lambda", one}, {"tau", 1e-7}}));
   const auto kikuuwe = made<Kikuuwe<double>>(with(stribeck_set, {{"K", 1e5}, {"B", root}}));
-  CHECK(difference(xiong, kikuuwe, L, 1e-3, {infinite, infinite, 1e-7}) < 1e-4);
+  const auto distance = [&](double tau) {
+    const auto xiong = made<Xiong<double>>(
+        with(stribeck_set, {{"K", std::vector{1e5}}, {"sigma", std::vector{root}}, {"lambda", one}, {"tau", tau}}));
+    return difference(xiong, kikuuwe, L, 1e-3, {infinite, infinite, tau});
+  };
+  const double rough = distance(4e-6), fine = distance(1e-6);
+  CHECK(fine < 1e-3);
+  CHECK(fine == Approx(rough / 4.0).epsilon(0.05));
 }
 
 TEST_CASE("dahl and slow lugre: minor loops contract by exp(-sigma0 (x2 - x1)/Fs) each half cycle (claim D4)") {

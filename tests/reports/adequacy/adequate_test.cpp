@@ -1,5 +1,6 @@
 #include "limcycle/reports/adequacy/adequate.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
+#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -71,8 +72,7 @@ TEST_CASE("adequate report: text within 80 columns with the whole ladder and its
   const auto text = adequate_text("A title", sample(), Units{});
   CHECK_THAT(text, StartsWith("A title\n") && Contains("no law") && Contains("not possible: no") && Contains("1.7 %") &&
                        Contains("CPU time of an answer") && Contains("Fs +10 %"));
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : test::lines_of(text)) CHECK(line.size() <= 80);
 }
 
 TEST_CASE("adequate report: JSON, CSV and page") {

@@ -1,4 +1,5 @@
 #include "limcycle/reports/claims/claims.hpp"
+#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -51,8 +52,7 @@ TEST_CASE("claims: text within 80 columns, the answer first, what does not hold 
   CHECK_THAT(claims_text({sample()[0]}, false), Contains("all as expected") && Contains("by hand"));
   CHECK_THAT(claims_list({sample()[0].claim}), Contains("A1  It <is> so"));
   for (const auto& document : {text, all}) {
-    std::istringstream lines(document);
-    for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+    for (const auto& line : test::lines_of(document)) CHECK(line.size() <= 80);
   }
 }
 

@@ -1,4 +1,5 @@
 #include "limcycle/reports/experiments/experiment.hpp"
+#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -41,8 +42,7 @@ TEST_CASE("experiment: text within 80 columns, with findings, numbers and claims
   CHECK_THAT(text, StartsWith("non-drift: Does <it> drift?\n") && Contains("Findings\nlugre    drifts by 4.75e-06 m") &&
                        Contains("not confirmed  it does not (paper): 4 m") && Contains("4.7500e-06") &&
                        Contains("Of 2 claims tested, 1 confirmed, 1 not confirmed; 1 not tested"));
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : test::lines_of(text)) CHECK(line.size() <= 80);
   // For several experiments: findings and claims only.
   CHECK(experiment_text({sample(), sample()}).find("4.7500e-06") == std::string::npos);
 }

@@ -11,7 +11,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-Provenance made() {
+Provenance with_overrides() {
   Provenance from;
   from.version = "1.2.3";
   from.title = "title";
@@ -38,29 +38,29 @@ TEST_CASE("case in a page: every byte of it comes back") {
                                        "\t\x01\x7F\x1B \n\n",
                                        "<script type=\"application/json\" id=\"case\">"};
   for (const auto& text : texts) {
-    const std::string page = predict_page(sample::relay(), made(), text, {});
+    const std::string page = predict_page(sample::relay(), with_overrides(), text, {});
     const CaseInPage found = case_in_page(page);
     CHECK(found.text == text);
-    CHECK(found.file == made().file);
+    CHECK(found.file == with_overrides().file);
     CHECK(found.sha256 == "0123");
-    CHECK(found.overrides == made().overrides);
+    CHECK(found.overrides == with_overrides().overrides);
     CHECK(found.command == "predict");
     CHECK(found.version == "1.2.3");
-    CHECK(same_result(result_in_page(page), predict_json(made(), sample::relay())));
+    CHECK(same_result(result_in_page(page), predict_json(with_overrides(), sample::relay())));
   }
 }
 
 TEST_CASE("case in a page: a page without a case, cut off, or with two of them is refused") {
   CHECK_THROWS_WITH(case_in_page("<html></html>"), "is not a limcycle page with an embedded case");
   CHECK_THROWS_WITH(case_in_page(""), Contains("is not a limcycle page"));
-  CHECK_THROWS_AS(case_in_page(predict_page(sample::relay(), made(), "", {})), PageError);
-  const std::string element = case_element(made(), "a = 1", "predict", "");
+  CHECK_THROWS_AS(case_in_page(predict_page(sample::relay(), with_overrides(), "", {})), PageError);
+  const std::string element = case_element(with_overrides(), "a = 1", "predict", "");
   CHECK_THROWS_WITH(case_in_page(element + element), Contains("was altered: it holds more than one"));
   CHECK_THROWS_WITH(case_in_page(element.substr(0, element.find("</script>"))), Contains("is cut off"));
 }
 
 TEST_CASE("case in a page: what was altered is refused with a reason") {
-  const std::string page = predict_page(sample::relay(), made(), "a = 1", {});
+  const std::string page = predict_page(sample::relay(), with_overrides(), "a = 1", {});
   CHECK_NOTHROW(case_in_page(page));
   CHECK_THROWS_WITH(
       case_in_page(replaced(page, "\"overrides\":[\"loop.plant.kind=\\\"mass\\\"\"", "\"overrides\":[\"b=2\"")),
@@ -74,14 +74,14 @@ TEST_CASE("case in a page: what was altered is refused with a reason") {
 }
 
 TEST_CASE("case in a page: a newer schema is named") {
-  const std::string element = case_element(made(), "a = 1", "report", "--quick");
+  const std::string element = case_element(with_overrides(), "a = 1", "report", "--quick");
   CHECK(case_in_page(element).flags == "--quick");
   CHECK_THROWS_WITH(case_in_page(replaced(element, "limcycle/1", "limcycle/2")),
                     "was written by a newer limcycle (1.2.3, schema limcycle/2): use that version or a later one");
 }
 
 TEST_CASE("results are the same but for rounding") {
-  const auto document = [](const PredictReport& report) { return predict_json(made(), report); };
+  const auto document = [](const PredictReport& report) { return predict_json(with_overrides(), report); };
   auto report = sample::relay();
   const std::string original = document(report);
   CHECK(same_result(original, original));

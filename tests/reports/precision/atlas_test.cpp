@@ -1,4 +1,5 @@
 #include "limcycle/reports/precision/atlas.hpp"
+#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -16,7 +17,7 @@ AtlasPoint made(double stiffness, const std::string& stepper, double setting, Ru
   return {"lugre", stiffness, stepper, setting, fixed, kind, error, 1234, why};
 }
 
-StepperAtlas sample() {
+StepperAtlas sample_atlas() {
   StepperAtlas atlas;
   atlas.points = {made(1e5, "rodas5p", 1e-3, RunClass::right, 1e-4),
                   made(1e5, "rodas5p", 1e-6, RunClass::right, 1e-8),
@@ -41,15 +42,15 @@ Provenance provenance_of_test() {
 }  // namespace
 
 TEST_CASE("atlas report: which tolerance is right everywhere") {
-  const auto answer = atlas_answer(sample());
+  const auto answer = atlas_answer(sample_atlas());
   CHECK_THAT(answer,
              Contains("rodas5p at 1e-06 or tighter") && Contains("dopri5 at 1e-03 or tighter where it is not too"));
   CHECK_THAT(atlas_answer({}), Contains("no stepper can be assessed"));
-  auto worse = sample();
+  auto worse = sample_atlas();
   worse.points[3].kind = RunClass::rough;
   CHECK_THAT(atlas_answer(worse), Contains("At no tolerance right everywhere: rodas5p."));
 
-  const Table table = atlas_table(sample(), "lugre");
+  const Table table = atlas_table(sample_atlas(), "lugre");
   REQUIRE(table.rows.size() == 3);
   CHECK(table.rows[0] == std::vector<std::string>{"rodas5p", "1e-03", "1e-06"});
   CHECK(table.rows[1] == std::vector<std::string>{"dopri5", "1e-03", "too slow"});
@@ -57,12 +58,11 @@ TEST_CASE("atlas report: which tolerance is right everywhere") {
 }
 
 TEST_CASE("atlas report: text, documents, picture, page") {
-  const auto text = atlas_text("title", sample());
+  const auto text = atlas_text("title", sample_atlas());
   CHECK_THAT(text, Contains("Right everywhere") && Contains("4 right") && Contains("left out, no verified reference"));
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 100);
+  for (const auto& line : test::lines_of(text)) CHECK(line.size() <= 100);
 
-  const auto document = Json::parse(atlas_json(provenance_of_test(), sample()));
+  const auto document = Json::parse(atlas_json(provenance_of_test(), sample_atlas()));
   CHECK(document["command"] == "precision");
   REQUIRE(document["points"].size() == 8);
   CHECK(document["points"][2]["result"] == "creeps");
@@ -72,10 +72,10 @@ TEST_CASE("atlas report: text, documents, picture, page") {
   CHECK(document["limits"][1]["loosest_right"] == 1e-6);
   CHECK(document["limits"][4]["loosest_right"].is_null());
 
-  CHECK_THAT(atlas_csv(sample()), StartsWith("law,stiffness,stepper,setting,of,result,error,steps,why\nlugre,"));
-  const auto picture = atlas_picture(sample());
+  CHECK_THAT(atlas_csv(sample_atlas()), StartsWith("law,stiffness,stepper,setting,of,result,error,steps,why\nlugre,"));
+  const auto picture = atlas_picture(sample_atlas());
   CHECK_THAT(picture, StartsWith("<svg") && Contains("periods differ by &lt;40&gt; %") && Contains("misses event"));
   CHECK_THAT(picture, !Contains("nan") && !Contains("<40>"));
-  const auto page = atlas_page(sample(), provenance_of_test(), "[loop]");
+  const auto page = atlas_page(sample_atlas(), provenance_of_test(), "[loop]");
   CHECK_THAT(page, Contains("<svg") && Contains("precision") && Contains("nothing agreed"));
 }

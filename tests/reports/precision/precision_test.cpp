@@ -1,4 +1,5 @@
 #include "limcycle/reports/precision/precision.hpp"
+#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -67,8 +68,7 @@ TEST_CASE("precision report: text within 80 columns, failures with their reasons
   const auto text = precision_text("A title", sample(), Units{});
   CHECK_THAT(text, StartsWith("A title\n") && Contains("confirmed to 11 digits") && Contains("predicts no cycle") &&
                        Contains("H = 1 (failed): no balance was found") && Contains("too slow") && Contains("wrong"));
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
+  for (const auto& line : test::lines_of(text)) CHECK(line.size() <= 80);
 }
 
 TEST_CASE("precision report: JSON and CSV keep every point, what does not exist is null or empty") {

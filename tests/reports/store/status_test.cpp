@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "limcycle/reports/number.hpp"
+#include "limcycle/tests/lines.hpp"
 #include "limcycle/tests/reports/store/store_samples.hpp"
 
 using namespace limcycle;
@@ -54,8 +55,7 @@ TEST_CASE("the status of a store in words: how far, how fast, who, and what to d
                        Contains("Process 42 is computing.") && Contains("3 points stored, 2.00 a second") &&
                        Contains("1 s left") && Contains("\nLast written 3 s ago.\n") &&
                        Contains("Provisional results") && Contains("-8.00000"));
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 81);  // one letter of the title has two bytes
+  for (const auto& line : test::lines_of(text)) CHECK(line.size() <= 81);  // one letter of the title has two bytes
   sweep.activity.running = false;
   CHECK_THAT(status_text("a.store", sweep, 1004.0), Contains("continue by the same command with --resume"));
   sweep.known.assign(6, true);

@@ -33,7 +33,7 @@ PassivityOptions up_to(double speed) {
   return options;
 }
 
-const Settings lugre_1995 = with(bristle, {{"sigma1", root}, {"sigma2", 0.4}});
+Settings lugre_1995() { return with(bristle, {{"sigma1", root}, {"sigma2", 0.4}}); }
 
 Settings bouc_wen(double beta, double gamma, double n = 1.0, double alpha = 0.0) {
   return {{"k", 1e5}, {"D", 1e-5}, {"beta", beta}, {"gamma", gamma}, {"n", n}, {"alpha", alpha}};
@@ -64,7 +64,7 @@ void check_refuted(const Element& law, const Passivity& answer) {
 TEST_CASE("lugre with the values of 1995 is refuted by a cycle") {
   for (const double sigma2 : {0.0, 0.4, 0.999 * 0.5 * root}) {
     INFO("sigma2 = " << sigma2);
-    const auto law = erased<LuGre<double>>(with(lugre_1995, {{"sigma2", sigma2}}));
+    const auto law = erased<LuGre<double>>(with(lugre_1995(), {{"sigma2", sigma2}}));
     check_refuted(law, one_state_passivity(law));
   }
 }
@@ -89,7 +89,7 @@ TEST_CASE("lugre is passive from sigma2 = sigma1 (Fs - Fc)/Fc on, for random par
 
 TEST_CASE("too close to the threshold lugre stays undecided, never passive") {
   const auto at = [](double share) {
-    return one_state_verdict(erased<LuGre<double>>(with(lugre_1995, {{"sigma2", share * 0.5 * root}})), infinite);
+    return one_state_verdict(erased<LuGre<double>>(with(lugre_1995(), {{"sigma2", share * 0.5 * root}})), infinite);
   };
   CHECK(at(1.0 - 1e-11) == Passive::undecided);
   CHECK(at(1.0 - 1e-7) == Passive::no);
@@ -203,7 +203,7 @@ TEST_CASE("elasto-plastic and uneven lugre are decided, on both sides of the thr
 
 TEST_CASE("a limited speed makes lugre passive, and random places agree") {
   // F v/f by the equations of the law alone: what a passage down gives must not exceed what one up costs.
-  const auto law = erased<LuGre<double>>(lugre_1995);
+  const auto law = erased<LuGre<double>>(lugre_1995());
   const double speed = 0.0381;
   CHECK(one_state_passivity(law, up_to(speed)).passive == Passive::yes);
   check_refuted(law, one_state_passivity(law, up_to(0.0383)));
@@ -231,10 +231,10 @@ TEST_CASE("a limited speed makes lugre passive, and random places agree") {
 
 TEST_CASE("damping that fades with speed restores passivity") {
   for (const double vd : {1e-3, 1e-2, 0.088}) {
-    const auto law = erased<LuGre<double>>(with(lugre_1995, {{"sigma2", 0.0}, {"vd", vd}}));
+    const auto law = erased<LuGre<double>>(with(lugre_1995(), {{"sigma2", 0.0}, {"vd", vd}}));
     CHECK(one_state_passivity(law).passive == Passive::yes);
   }
-  const auto law = erased<LuGre<double>>(with(lugre_1995, {{"sigma2", 0.0}, {"vd", 0.089}}));
+  const auto law = erased<LuGre<double>>(with(lugre_1995(), {{"sigma2", 0.0}, {"vd", 0.089}}));
   check_refuted(law, one_state_passivity(law));
 }
 
@@ -242,10 +242,10 @@ TEST_CASE("laws of another kind are refused, and a stop is heard") {
   CHECK_FALSE(OneStateLaw::fits(Element(made<Wojewoda<double>>(with(stribeck_set, {{"ks", 1e5}})))));
   CHECK_FALSE(OneStateLaw::fits(Element(made<Coulomb<double>>(levels))));
   CHECK_THROWS_AS(one_state_passivity(erased<Coulomb<double>>(levels)), std::invalid_argument);
-  CHECK_THROWS_AS(one_state_passivity(erased<LuGre<double>>(lugre_1995), up_to(0.0)), std::invalid_argument);
+  CHECK_THROWS_AS(one_state_passivity(erased<LuGre<double>>(lugre_1995()), up_to(0.0)), std::invalid_argument);
   PassivityOptions stopped;
   stopped.stop = [] { return true; };
-  const Passivity answer = one_state_passivity(erased<LuGre<double>>(lugre_1995), stopped);
+  const Passivity answer = one_state_passivity(erased<LuGre<double>>(lugre_1995()), stopped);
   CHECK(answer.passive == Passive::undecided);
   CHECK(answer.status == Status::interrupted);
 }

@@ -48,7 +48,7 @@ Element leuven(double n, double sigma1, double sigma2) {
 TEST_CASE("passivity: laws with a storage function are certified by it") {
   int certified = 0;
   const auto check = [&]<template <class> class Kind>(std::initializer_list<std::string_view> left_out = {}) {
-    for_samples<Kind>([&](const Kind<double>& law, const Sample& sample) {
+    for_some_samples<Kind>([&](const Kind<double>& law, const Sample& sample) {
       if (!sample.passive || std::ranges::find(left_out, sample.name) != left_out.end()) return;
       INFO(Kind<double>::kind << ", " << sample.name);
       const Passivity result = passivity(Element(law));
@@ -65,7 +65,7 @@ TEST_CASE("passivity: laws with a storage function are certified by it") {
   check.operator()<NonDrift>({"two-point", "two-point, exponential"});
   check.operator()<Gms>();
   check.operator()<Wojewoda>();
-  CHECK(certified == 16);
+  CHECK((one_in > 1 || certified == 16));
   CHECK(passivity(leuven(1.0, 0.0, 0.0)).passive == Passive::yes);
 }
 
@@ -199,7 +199,7 @@ TEST_CASE(
   std::uniform_real_distribution<double> u(0.0, 1.0);
   const auto log = [&](double low, double high) { return low * std::pow(high / low, u(random)); };
   int refuted = 0;
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < samples(12); ++k) {
     const double Fc = log(0.1, 10.0), ratio = 1.0 + log(1e-3, 1.0), vs = log(1e-4, 1e-1), share = 0.2 + 0.6 * u(random);
     const Element blocks = made<Gms<double>>({{"Fs", Fc * ratio},
                                               {"Fc", Fc},
@@ -228,7 +228,7 @@ TEST_CASE(
     CHECK_FALSE(certify(erased(bristles(0.98)), motion_scales(erased(bristles(0.98)), infinite), {}).holds);
     CHECK(certify(erased(bristles(1.001)), motion_scales(erased(bristles(1.001)), infinite), {}).holds);
   }
-  CHECK(refuted >= 4);
+  CHECK((refuted >= 4 || one_in > 1));
   for (const std::string_view kind : {"maxwell-slip", "gms"}) {
     FrictionLaws::for_each([&]<template <class> class Kind>() {
       if (Kind<double>::kind != kind) return;

@@ -13,14 +13,14 @@ using namespace limcycle::test;
 namespace {
 
 template <class Law>
-Element erased(const Settings& settings) {
+Element element_of(const Settings& settings) {
   return Element(made<Law>(settings));
 }
 
 }  // namespace
 
 TEST_CASE("work of a fast step on preloaded lugre is that of the closed form (claim D2)") {
-  const auto law = erased<LuGre<double>>(with(bristle, {{"sigma1", root}}));
+  const auto law = element_of<LuGre<double>>(with(bristle, {{"sigma1", root}}));
   const double Fs = 1.5, Fc = 1.0, sigma0 = 1e5, V = 1.0, X = 1e-5, settling = Fc / sigma0;
   const Resimulation run = resimulate(law, {{0.0, X / V}, {V, V}}, {Fs / sigma0}, Mode{}, 1);
   const double faded = settling * (1.0 - std::exp(-X / settling));
@@ -34,7 +34,7 @@ TEST_CASE("work of a fast step on preloaded lugre is that of the closed form (cl
 
 TEST_CASE("a slider loses its level times the way slipped, cycle by cycle") {
   const double k = 1000.0, Fc = 1.5, A = 0.004, V = 0.1;
-  const auto law = erased<Jenkins<double>>({{"k", k}, {"Fc", Fc}});
+  const auto law = element_of<Jenkins<double>>({{"k", k}, {"Fc", Fc}});
   const double T = 2.0 * A / V;
   const VelocityCycle input{{0.0, T, T, 2.0 * T}, {V, V, -V, -V}};
   const Resimulation run = resimulate_virgin(law, input, 5);
@@ -49,14 +49,14 @@ TEST_CASE("a slider loses its level times the way slipped, cycle by cycle") {
 
 TEST_CASE("ramps of the velocity are split where it changes its sign") {
   const double Fc = 1.0, sigma2 = 0.3, V = 0.2, T = 3.0;
-  const auto law = erased<Coulomb<double>>({{"Fc", Fc}, {"Fs", 1.5}, {"sigma2", sigma2}});
+  const auto law = element_of<Coulomb<double>>({{"Fc", Fc}, {"Fs", 1.5}, {"sigma2", sigma2}});
   const Resimulation run = resimulate_virgin(law, {{0.0, T}, {-V, V}}, 3);
   REQUIRE(run.status == Status::converged);
   CHECK(run.supplied == Approx(3.0 * (Fc * V * T / 2.0 + sigma2 * V * V * T / 3.0)).epsilon(1e-10));
 }
 
 TEST_CASE("a short stroke within a long period keeps its digits") {
-  const auto law = erased<LuGre<double>>(bristle);
+  const auto law = element_of<LuGre<double>>(bristle);
   const double fast = 1e-9, slow = 1e4;
   const VelocityCycle input{{0.0, fast, fast, fast + slow}, {1e3, 1e3, -1e-9, -1e-9}};
   const Resimulation run = resimulate(law, input, {0.0}, Mode{}, 1);
@@ -71,7 +71,7 @@ TEST_CASE("a short stroke within a long period keeps its digits") {
 }
 
 TEST_CASE("a simulation that cannot go on says so") {
-  const auto law = erased<LuGre<double>>(with(bristle, {{"sigma1", root}}));
+  const auto law = element_of<LuGre<double>>(with(bristle, {{"sigma1", root}}));
   const VelocityCycle input{{0.0, 1.0, 1.0, 2.0}, {0.1, 0.1, -0.1, -0.1}};
   ResimulationOptions few;
   few.max_steps = 5;

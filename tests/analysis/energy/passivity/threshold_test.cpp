@@ -16,7 +16,7 @@ using namespace limcycle::test;
 
 namespace {
 
-const Settings damped = with(bristle, {{"sigma1", root}});
+Settings damped() { return with(bristle, {{"sigma1", root}}); }
 
 ThresholdOptions scanned(int values, bool logarithmic = false) {
   ThresholdOptions options;
@@ -28,7 +28,7 @@ ThresholdOptions scanned(int values, bool logarithmic = false) {
 }  // namespace
 
 TEST_CASE("the threshold of lugre in sigma2 is sigma1 (Fs - Fc)/Fc, within its stated error") {
-  const Element law = made<LuGre<double>>(damped);
+  const Element law = made<LuGre<double>>(damped());
   const double expected = 0.5 * root;
   const Threshold found = passivity_threshold(family_of(law, "sigma2"), 0.0, 1000.0, scanned(2));
   REQUIRE(found.changes.size() == 1);
@@ -44,7 +44,7 @@ TEST_CASE("the threshold of lugre in sigma2 is sigma1 (Fs - Fc)/Fc, within its s
 
 TEST_CASE("elasto-plastic needs the sigma2 of lugre, sigma1 = 0 needs none") {
   for (const std::string zba : {"steady-state", "coulomb"}) {
-    const LeastDamping least = least_sigma2(made<ElastoPlastic<double>>(with(damped, {{"zba_of", zba}})));
+    const LeastDamping least = least_sigma2(made<ElastoPlastic<double>>(with(damped(), {{"zba_of", zba}})));
     CHECK(std::abs(least.value - 0.5 * root) <= least.error);
   }
   CHECK(least_sigma2(made<LuGre<double>>(bristle)).value == 0.0);
@@ -65,7 +65,7 @@ TEST_CASE("a spline curve needs what its level at the highest speed asks for") {
 TEST_CASE("thresholds in other parameters are found by a scan") {
   ThresholdOptions options = scanned(13, true);
   options.accuracy = 1e-4;
-  const Threshold vd = passivity_threshold(family_of(made<LuGre<double>>(damped), "vd"), 1e-4, 1e2, options);
+  const Threshold vd = passivity_threshold(family_of(made<LuGre<double>>(damped()), "vd"), 1e-4, 1e2, options);
   REQUIRE(vd.changes.size() == 1);
   CHECK(vd.at_low == Passive::yes);
   // The largest sigma1(v) v is sigma1 vd/sqrt(2 e), and must not exceed the 12 N of the passive speed (below).
@@ -108,7 +108,7 @@ TEST_CASE("every change is reported, and what is not valid makes the answer inco
 
 TEST_CASE("the speed up to which a law is passive") {
   const auto speed_at = [](double sigma2) {
-    return passive_speed(made<LuGre<double>>(with(damped, {{"sigma2", sigma2}})));
+    return passive_speed(made<LuGre<double>>(with(damped(), {{"sigma2", sigma2}})));
   };
   // Far beyond vs a passage down at the top speed V gives sigma1 V - F/(F/Fc - 1), F = sigma0 z; one up at v -> 0 costs
   // F/(1 - F/Fs). Without sigma2 they meet first at F = 1.2 N, where sigma1 V = 6 N + 6 N.

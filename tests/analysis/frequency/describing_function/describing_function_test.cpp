@@ -8,7 +8,8 @@
 #include "limcycle/models/laws.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
@@ -61,8 +62,8 @@ TEST_CASE("describing functions with a closed form", "[df][claims]") {
     CHECK(2.0 / pi == Approx(0.636620).epsilon(1e-6));
   }
   SECTION("A2 and A3 Coulomb, with viscous friction") {
-    check_gain(coulomb(), {0.01, 1.0, 0.0}, Complex(0.0, 400.0 / pi));
-    auto law = coulomb();
+    check_gain(coulomb(1.0, 1.0), {0.01, 1.0, 0.0}, Complex(0.0, 400.0 / pi));
+    auto law = coulomb(1.0, 1.0);
     law.sigma2 = 0.4;
     check_gain(law, {0.01, 30.0, 0.0}, Complex(0.0, 400.0 / pi + 12.0));
   }
@@ -121,12 +122,12 @@ TEST_CASE("describing functions with a closed form", "[df][claims]") {
     }
   }
   SECTION("A14 Coulomb with a mean velocity") {
-    check_gain(coulomb(), {1.0, 1.0, 0.3}, Complex(0.0, 4.0 / pi * std::sqrt(1.0 - 0.09)));
-    const auto df = describing_function(coulomb(), {1.0, 1.0, 0.3}, with(DfMethod::quadrature, 1e-10));
+    check_gain(coulomb(1.0, 1.0), {1.0, 1.0, 0.3}, Complex(0.0, 4.0 / pi * std::sqrt(1.0 - 0.09)));
+    const auto df = describing_function(coulomb(1.0, 1.0), {1.0, 1.0, 0.3}, with(DfMethod::quadrature, 1e-10));
     CHECK(df.gain.imag() == Approx(1.214593).epsilon(1e-6));
     CHECK(df.mean == Approx(2.0 / pi * std::asin(0.3)).epsilon(1e-10));
     CHECK(df.dissipation == Approx(pi * df.gain.imag() + 0.3 * df.mean * 2.0 * pi).epsilon(1e-10));
-    const auto fast = describing_function(coulomb(), {1.0, 1.0, -1.5}, with(DfMethod::quadrature, 1e-10));
+    const auto fast = describing_function(coulomb(1.0, 1.0), {1.0, 1.0, -1.5}, with(DfMethod::quadrature, 1e-10));
     CHECK(fast.gain == 0.0);
     CHECK(fast.mean == Approx(-1.0).epsilon(1e-14));
   }
@@ -148,7 +149,7 @@ TEST_CASE("Dahl with other exponents follows its closed-form branches", "[df][da
 }
 
 TEST_CASE("slow LuGre with Fs = Fc is Dahl", "[df][lugre][claims]") {
-  auto law = lugre(0.0);
+  auto law = lugre(1.5, 1.0, 0.0);
   law.Fc = law.Fc_minus = 1.5;
   law.sigma1 = 0.0;
   const auto df = describing_function(law, {1.5e-5, 1e-4, 0.0}, with(DfMethod::quadrature, 1e-9));
@@ -157,7 +158,7 @@ TEST_CASE("slow LuGre with Fs = Fc is Dahl", "[df][lugre][claims]") {
 
 TEST_CASE("harmonics of the textbook", "[df][harmonics]") {
   SECTION("Coulomb: 4 Fc/(pi k) for odd k, none for even k") {
-    const auto df = describing_function(coulomb(1.3), {0.02, 2.0, 0.0}, with(DfMethod::quadrature, 1e-10, 15));
+    const auto df = describing_function(coulomb(1.3, 1.3), {0.02, 2.0, 0.0}, with(DfMethod::quadrature, 1e-10, 15));
     REQUIRE(df.harmonics.size() == 15);
     for (int k = 1; k <= 15; ++k) {
       CAPTURE(k);
@@ -195,8 +196,8 @@ TEST_CASE("harmonics of the textbook", "[df][harmonics]") {
 }
 
 TEST_CASE("work per period", "[df][energy]") {
-  const std::vector<Element> elements{
-      lugre(), coulomb(), stribeck(), dahl(2.0), relay(1.0, 2e-4), backlash(1e-4), relay(1.0, 1e-4, 3e-4), cubic(1.0)};
+  const std::vector<Element> elements{lugre(),          coulomb(1.0, 1.0), stribeck(1.5, 1.0, 1e-3), dahl(2.0),
+                                      relay(1.0, 2e-4), backlash(1e-4),    relay(1.0, 1e-4, 3e-4),   cubic(1.0)};
   for (const auto& element : elements) {
     const DfPoint point{1e-3, 2.0, 0.0};
     const auto df = describing_function(element, point, with(DfMethod::quadrature, 1e-9));
@@ -217,8 +218,8 @@ TEST_CASE("work per period", "[df][energy]") {
 }
 
 TEST_CASE("rate-independent laws do not see the frequency", "[df]") {
-  for (const Element& element :
-       {Element(coulomb()), Element(dahl()), Element(dahl(1.7)), Element(relay(1.0, 1e-5)), Element(backlash(1e-5))}) {
+  for (const Element& element : {Element(coulomb(1.0, 1.0)), Element(dahl()), Element(dahl(1.7)),
+                                 Element(relay(1.0, 1e-5)), Element(backlash(1e-5))}) {
     const auto slow = describing_function(element, {3e-5, 1e-3, 0.0}, with(DfMethod::quadrature, 1e-9));
     const auto fast = describing_function(element, {3e-5, 7e3, 0.0}, with(DfMethod::quadrature, 1e-9));
     CHECK(apart(slow.gain, fast.gain) < 1e-12);
@@ -256,18 +257,10 @@ TEST_CASE("where the periodic state is not unique", "[df][uniqueness]") {
 TEST_CASE("the two routes agree", "[df][fft]") {
   auto unequal = lugre();
   unequal.Fs_minus = 1.8;
-  const std::vector<Element> elements{lugre(),
-                                      unequal,
-                                      coulomb(),
-                                      stribeck(),
-                                      dahl(),
-                                      dahl(2.0),
-                                      relay(1.0, 1e-4),
-                                      relay(1.0, 1e-4, 3e-4),
-                                      saturation(2.0, 1e-3),
-                                      dead_zone(1.0, 2e-4),
-                                      backlash(2e-4),
-                                      cubic(1.0)};
+  const std::vector<Element> elements{
+      lugre(),        unequal,          coulomb(1.0, 1.0),      stribeck(1.5, 1.0, 1e-3), dahl(),
+      dahl(2.0),      relay(1.0, 1e-4), relay(1.0, 1e-4, 3e-4), saturation(2.0, 1e-3),    dead_zone(1.0, 2e-4),
+      backlash(2e-4), cubic(1.0)};
   for (const auto& element : elements) {
     for (const double bias : {0.0, 3e-4}) {
       CAPTURE(std::string(element.kind()), bias);

@@ -10,7 +10,6 @@
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
 #include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/cubic.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -45,13 +44,6 @@ HarmonicBalanceOptions general(int most = 75, double tail = 1e-6, double accurac
 }
 
 Loop third_order_relay() { return forward(relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0}); }
-
-/// x'' - mu (1 - x^2) x' + x = 0 as the cubic x^3 followed by (mu/3) s/(s^2 - mu s + 1).
-Loop van_der_pol(double mu) {
-  Cubic<double> element;
-  element.coefficient = mu / 3.0;
-  return forward(element, {1.0, 0.0}, {1.0, -mu, 1.0});
-}
 
 double period(const HarmonicBalance& balance) { return 2.0 * pi / balance.frequency; }
 

@@ -8,7 +8,8 @@
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 using Complex = std::complex<double>;
 using Eigen::VectorXcd;
 using std::numbers::pi;
@@ -61,7 +62,7 @@ TEST_CASE("relay and Coulomb friction through six switches a period: the exact s
   const double alpha = std::asin(std::sqrt(7.0 / 8.0)), beta = std::acos(std::sqrt(17.0 / 24.0));
   for (const bool half : {true, false}) {
     const auto switched = respond(relay(1.5), series({0.0, 1.0, 0.0, 2.0}), 2.0, 31, half);
-    const auto rubbed = respond(coulomb(1.5), series({0.0, 1.0, 0.0, 2.0}), 2.0, 31, half);
+    const auto rubbed = respond(coulomb(1.5, 1.5), series({0.0, 1.0, 0.0, 2.0}), 2.0, 31, half);
     REQUIRE(switched.status == Status::converged);
     REQUIRE(rubbed.status == Status::converged);
     for (int n = 1; n <= 31; n += 2) {
@@ -98,9 +99,9 @@ TEST_CASE("one harmonic is the describing function", "[hb][response][df]") {
     bool rubs;
   } cases[] = {{lugre(), 1e-3, 2.0, 0.0, true},
                {lugre(), 1e-4, 2.0, 1e-4, true},
-               {stribeck(), 1e-3, 2.0, 0.0, true},
-               {stribeck(), 1e-3, 2.0, 1.3e-3, true},
-               {coulomb(), 1.0, 2.0, 0.7, true},
+               {stribeck(1.5, 1.0, 1e-3), 1e-3, 2.0, 0.0, true},
+               {stribeck(1.5, 1.0, 1e-3), 1e-3, 2.0, 1.3e-3, true},
+               {coulomb(1.0, 1.0), 1.0, 2.0, 0.7, true},
                {dahl(), 3e-5, 1.0, 0.0, true},
                {relay(2.0, 0.1), 1.0, 3.0, 0.0, false},
                {relay(2.0, 0.1), 1.0, 3.0, 0.2, false},
@@ -163,7 +164,7 @@ TEST_CASE("LuGre under three harmonics: a plain Runge-Kutta run over twenty peri
 
 TEST_CASE("the error estimate of the response bounds its error", "[hb][response][error]") {
   const VectorXcd input = series({0.0, 1e-3, 0.0, Complex(2e-4, -3e-4)});
-  for (const Element& element : {Element(lugre()), Element(stribeck()), Element(dahl())}) {
+  for (const Element& element : {Element(lugre()), Element(stribeck(1.5, 1.0, 1e-3)), Element(dahl())}) {
     const auto exact = respond(element, input, 2.0, 9, true, 0.0, 1e-12);
     for (const double accuracy : {1e-3, 1e-5, 1e-7, 1e-9}) {
       const auto W = respond(element, input, 2.0, 9, true, 0.0, accuracy);
@@ -221,9 +222,9 @@ TEST_CASE("the rate near each of many reversals is exact relative to itself", "[
 TEST_CASE("the derivative of the response agrees with differences", "[hb][response][derivative]") {
   const VectorXcd odd = series({0.0, 1.0, 0.0, Complex(0.3, -0.2)});
   const VectorXcd all = series({Complex(0.0, 0.1), 1.0, Complex(0.15, 0.1), Complex(0.3, -0.2)});
-  auto gentle = stribeck();
+  auto gentle = stribeck(1.5, 1.0, 1e-3);
   gentle.vs = 0.4;
-  const Element elements[] = {soft_lugre(),         coulomb(),           gentle,
+  const Element elements[] = {soft_lugre(),         coulomb(1.0, 1.0),   gentle,
                               relay(1.0, 0.3, 0.5), relay(1.0),          backlash(0.2),
                               saturation(2.0, 0.7), dead_zone(1.0, 0.3), cubic(2.0)};
   const int level = 4;

@@ -11,7 +11,8 @@
 #include "limcycle/models/friction/sliders/jenkins.hpp"
 #include "limcycle/tests/analysis/frequency/random_points.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
@@ -81,15 +82,6 @@ Tally tally(bool tame, int laws, unsigned seed) {
     }
   }
   return t;
-}
-
-std::vector<DfPoint> grid(int rows, int columns) {
-  std::vector<DfPoint> points;
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j)
-      points.push_back({1e-6 * std::pow(1e5, static_cast<double>(i) / (rows - 1)),
-                        0.1 * std::pow(1e4, static_cast<double>(j) / (columns - 1)), 0.0});
-  return points;
 }
 
 /// First harmonic of the state, sine + j cosine after the reversal, on a mesh of this width.
@@ -281,7 +273,7 @@ TEST_CASE("kernel: what it leaves to other methods", "[df][kernel]") {
   LuGre<double> uneven = lugre();
   uneven.Fc_minus = 0.9;
   CHECK_FALSE(DfKernel::of(uneven, asking(1e-6)));
-  CHECK_FALSE(DfKernel::of(coulomb(), asking(1e-6)));
+  CHECK_FALSE(DfKernel::of(coulomb(1.0, 1.0), asking(1e-6)));
   CHECK_FALSE(DfKernel::of(lugre(), asking(1e-13)));
   CHECK_FALSE(DfKernel::of(lugre(), asking(1e-6, Isa::scalar, DfKernel::most_harmonics + 1)));
   CHECK(describing_function(lugre(), {1e-3, 1.0, 0.01}).method == "quadrature");

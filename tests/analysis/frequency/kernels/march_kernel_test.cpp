@@ -12,7 +12,8 @@
 #include "limcycle/models/friction/sliders/xiong.hpp"
 #include "limcycle/tests/analysis/frequency/random_points.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {
@@ -132,15 +133,6 @@ Tally tally(Element (*any_law)(Random&), int laws, unsigned seed) {
     }
   }
   return t;
-}
-
-std::vector<DfPoint> grid(int rows, int columns) {
-  std::vector<DfPoint> points;
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j)
-      points.push_back({1e-6 * std::pow(1e5, static_cast<double>(i) / (rows - 1)),
-                        0.1 * std::pow(1e4, static_cast<double>(j) / (columns - 1)), 0.0});
-  return points;
 }
 
 ElastoPlastic<double> elasto_plastic() {

@@ -10,7 +10,8 @@
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
-using namespace df_test;
+using namespace limcycle;
+using namespace limcycle::test;
 using std::numbers::pi;
 
 namespace {

@@ -66,7 +66,7 @@ TEST_CASE("The controlled RODAS5P keeps to its tolerance, forwards and backwards
 
 namespace {
 
-const auto van_der_pol = [](double mu) {
+const auto van_der_pol_system = [](double mu) {
   return std::make_pair(
       [=](const State& x, State& rate, double) {
         rate[0] = x[1];
@@ -131,11 +131,11 @@ TEST_CASE("The controlled RODAS5P evaluates the start of a rejected step once", 
   int rhs_calls = 0;
   int jacobian_calls = 0;
   double mu = 5;
-  const auto system =
-      std::make_pair([&](const State& x, State& rate, double t) { ++rhs_calls, van_der_pol(mu).first(x, rate, t); },
-                     [&](const State& x, Eigen::MatrixXd& J, double t, State& dfdt) {
-                       ++jacobian_calls, van_der_pol(mu).second(x, J, t, dfdt);
-                     });
+  const auto system = std::make_pair(
+      [&](const State& x, State& rate, double t) { ++rhs_calls, van_der_pol_system(mu).first(x, rate, t); },
+      [&](const State& x, Eigen::MatrixXd& J, double t, State& dfdt) {
+        ++jacobian_calls, van_der_pol_system(mu).second(x, J, t, dfdt);
+      });
   ControlledRodas5p stepper(weights(1e-8));
   State x{1.5, -2};
   double t = 0;
@@ -173,17 +173,17 @@ TEST_CASE("A step of given length from the old state repeats the controlled step
   State x1;
   double t = 0.5;
   double dt = 0.01;
-  REQUIRE(stepper.try_step(van_der_pol(5), x0, t, x1, dt) == odeint::success);
+  REQUIRE(stepper.try_step(van_der_pol_system(5), x0, t, x1, dt) == odeint::success);
   CHECK(t == 0.51);
   DenseSegment segment;
   stepper.interpolant(segment);
   State landed;
   State error;
-  stepper.stepper().do_step(van_der_pol(5), x0, 0.5, landed, t - 0.5, error);
+  stepper.stepper().do_step(van_der_pol_system(5), x0, 0.5, landed, t - 0.5, error);
   CHECK(landed[0] == Approx(x1[0]).epsilon(1e-14));
-  stepper.stepper().do_step(van_der_pol(5), x0, 0.5, landed, 0.004, error);
+  stepper.stepper().do_step(van_der_pol_system(5), x0, 0.5, landed, 0.004, error);
   CHECK(landed[0] == Approx(segment.at(0.504, 0)).epsilon(1e-9));
-  stepper.stepper().repeat_step(van_der_pol(5), landed, 0.006, error);
+  stepper.stepper().repeat_step(van_der_pol_system(5), landed, 0.006, error);
   CHECK(landed[0] == Approx(segment.at(0.506, 0)).epsilon(1e-9));
 }
 

@@ -16,17 +16,10 @@ using Eigen::MatrixXd;
 
 namespace {
 
-/// van der Pol with mu = 1 as a forward loop.
-Loop van_der_pol() {
-  Cubic<double> cubic;
-  cubic.coefficient = 1.0 / 3.0;
-  return forward(cubic, {1.0, 0.0}, {1.0, -1.0, 1.0});
-}
-
 /// State and variational matrix together, by the Runge-Kutta method of order 4 in many steps.
 void integrate(LoopField& field, State& x, MatrixXd& V, double duration, int steps) {
   const double h = duration / steps;
-  const auto n = std::ssize(x);
+  const auto size = std::ssize(x);
   State dx, time;
   MatrixXd J;
   const auto slope = [&](const State& at, const MatrixXd& W, State& k, MatrixXd& K) {
@@ -36,7 +29,7 @@ void integrate(LoopField& field, State& x, MatrixXd& V, double duration, int ste
   };
   const auto shifted = [&](const State& k, double part) {
     State y = x;
-    for (Index i = 0; i < n; ++i) y[static_cast<std::size_t>(i)] += part * h * k[static_cast<std::size_t>(i)];
+    for (Index i = 0; i < size; ++i) y[static_cast<std::size_t>(i)] += part * h * k[static_cast<std::size_t>(i)];
     return y;
   };
   for (int s = 0; s < steps; ++s) {
@@ -54,8 +47,8 @@ void integrate(LoopField& field, State& x, MatrixXd& V, double duration, int ste
 /// Product of the transitions over `steps` equal steps along the motion from x, minus the variational matrix.
 double error_over(const Loop& loop, const State& from, double duration, int steps) {
   LoopField field(loop);
-  const auto n = std::ssize(from);
-  MatrixXd product = MatrixXd::Identity(n, n), reference = product;
+  const auto size = std::ssize(from);
+  MatrixXd product = MatrixXd::Identity(size, size), reference = product;
   Step step;
   step.x0 = from;
   for (int i = 0; i < steps; ++i) {
@@ -105,7 +98,7 @@ TEST_CASE("transition: order 5 where the Jacobian is constant") {
 }
 
 TEST_CASE("transition: order of the whole along a curved motion, where the cubic between the ends counts too") {
-  const Loop loop = van_der_pol();
+  const Loop loop = van_der_pol(1.0);
   const State from{0.4, 1.1};
   for (const int steps : {32, 64, 128}) {
     const double order = std::log2(error_over(loop, from, 4.0, steps) / error_over(loop, from, 4.0, 2 * steps));

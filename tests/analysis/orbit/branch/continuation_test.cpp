@@ -7,7 +7,6 @@
 #include "limcycle/analysis/orbit/branch/branch_end.hpp"
 #include "limcycle/analysis/orbit/cycle/shooting.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
-#include "limcycle/models/element/cubic.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -42,11 +41,7 @@ const BranchEvent& end_towards(const Branch& branch, bool front) {
   return event;
 }
 
-std::optional<Loop> van_der_pol(double mu) {
-  Cubic<double> cubic;
-  cubic.coefficient = mu / 3.0;
-  return forward(cubic, {1.0, 0.0}, {1.0, -mu, 1.0});
-}
+std::optional<Loop> van_der_pol_of(double mu) { return van_der_pol(mu); }
 
 std::optional<Loop> dead_zone_relay(double d) { return forward(relay(1.0, 0.0, d), {1.0}, {1.0, 3.0, 3.0, 1.0}); }
 
@@ -96,7 +91,7 @@ RelayCycle with_pulse(double a) {
 }  // namespace
 
 TEST_CASE("continuation: van der Pol from mu = 0.1 to 5 against the table of claim B3") {
-  const Branch branch = followed(van_der_pol, 1.0, 0.1, 5.0);
+  const Branch branch = followed(van_der_pol_of, 1.0, 0.1, 5.0);
   REQUIRE(branch.status == Status::converged);
   CHECK(branch.points.front().parameter == 0.1);
   CHECK(branch.points.front().cycle.period == Approx(6.28711127).epsilon(2e-9));
@@ -114,11 +109,11 @@ TEST_CASE("continuation: van der Pol from mu = 0.1 to 5 against the table of cla
 }
 
 TEST_CASE("continuation: every point of a branch is a cycle of its own loop, with the error it states") {
-  const Branch branch = followed(van_der_pol, 1.0, 0.5, 2.0, 1e-6);
+  const Branch branch = followed(van_der_pol_of, 1.0, 0.5, 2.0, 1e-6);
   for (std::size_t i = 0; i < branch.points.size(); i += 5) {
     const auto& [mu, cycle] = branch.points[i];
     SettleOptions tight;
-    const auto settled = settle(*van_der_pol(mu), displaced(*van_der_pol(mu), 1.0), tight);
+    const auto settled = settle(*van_der_pol_of(mu), displaced(*van_der_pol_of(mu), 1.0), tight);
     REQUIRE(settled.shot);
     CHECK(std::abs(cycle.period / settled.shot->cycle.period - 1.0) <= cycle.error + 1e-11);
     CHECK(std::abs(cycle.amplitude / settled.shot->cycle.amplitude - 1.0) <= cycle.error + 1e-8);

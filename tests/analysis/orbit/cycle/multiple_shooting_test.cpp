@@ -7,7 +7,6 @@
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
 #include "limcycle/analysis/study/balance/orbit_guess.hpp"
-#include "limcycle/models/element/cubic.hpp"
 #include "limcycle/models/element/dead_zone.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -24,13 +23,6 @@ OrbitGuess sinusoid(const Loop& loop, double amplitude, double frequency) {
   return guess_orbit(
       loop, [&](double phase) { return balance.linear_state(amplitude, frequency, phase); }, frequency,
       symmetry(loop).has_value());
-}
-
-/// van der Pol with damping mu (x^2 - 1); of negative mu, time runs backwards and the cycle is unstable.
-Loop van_der_pol(double mu) {
-  Cubic<double> cubic;
-  cubic.coefficient = 1.0 / 3.0;
-  return forward(cubic, {mu, 0.0}, {1.0, -mu, 1.0});
 }
 
 /// One period later the motion is back at its start.

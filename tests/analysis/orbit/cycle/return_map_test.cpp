@@ -4,19 +4,12 @@
 #include <cmath>
 
 #include "limcycle/analysis/orbit/settle/settle.hpp"
-#include "limcycle/models/element/cubic.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
 using namespace limcycle::test;
 
 namespace {
-
-Loop van_der_pol(double mu) {
-  Cubic<double> cubic;
-  cubic.coefficient = mu / 3.0;
-  return forward(cubic, {1.0, 0.0}, {1.0, -mu, 1.0});
-}
 
 ReturnMap::Options tight(double rtol) {
   ReturnMap::Options options;

@@ -77,41 +77,43 @@ struct Reference {
 /// of order 4.
 Reference van_der_pol_reference(double mu, int steps_per_second, int crossings) {
   const double h = 1.0 / steps_per_second;
-  using V = Eigen::Vector3d;
-  const auto f = [mu](const V& z) { return V(z(1), mu * (1.0 - z(0) * z(0)) * z(1) - z(0), mu * (1.0 - z(0) * z(0))); };
-  const auto advanced = [&](const V& z, double step) -> V {
-    const V k1 = f(z), k2 = f(z + 0.5 * step * k1), k3 = f(z + 0.5 * step * k2), k4 = f(z + step * k3);
-    return z + step / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
+  struct V {
+    double x, v, integral;
   };
-  // Time of the step within [0, h] at which component i is zero.
-  const auto zero_of = [&](const V& z, Eigen::Index i) {
+  const auto f = [mu](const V& z) {
+    const double damping = mu * (1.0 - z.x * z.x);
+    return V{z.v, damping * z.v - z.x, damping};
+  };
+  const auto beside = [](const V& z, double step, const V& k) {
+    return V{z.x + step * k.x, z.v + step * k.v, z.integral + step * k.integral};
+  };
+  const auto advanced = [&](const V& z, double step) {
+    const V k1 = f(z), k2 = f(beside(z, 0.5 * step, k1)), k3 = f(beside(z, 0.5 * step, k2)),
+            k4 = f(beside(z, step, k3));
+    return beside(beside(beside(beside(z, step / 6.0, k1), step / 3.0, k2), step / 3.0, k3), step / 6.0, k4);
+  };
+  // Time of the step within [0, h] at which a component is zero.
+  const auto zero_of = [&](const V& z, double V::*component) {
     double low = 0.0, high = h;
     for (int k = 0; k < 50; ++k) {
       const double middle = 0.5 * (low + high);
-      (advanced(z, middle)(i) * z(i) > 0.0 ? low : high) = middle;
+      (advanced(z, middle).*component * (z.*component) > 0.0 ? low : high) = middle;
     }
     return high;
   };
-  V z(2.0, 0.0, 0.0);
+  V z{2.0, 0.0, 0.0};
   double time = 0.0, last_time = 0.0, last_integral = 0.0, top = 0.0;
   for (;; time += h) {
     const V next = advanced(z, h);
-    if (z(1) > 0.0 && next(1) <= 0.0) top = advanced(z, zero_of(z, 1))(0);
-    if (z(0) < 0.0 && next(0) >= 0.0) {
-      const double part = zero_of(z, 0), integral = advanced(z, part)(2);
+    if (z.v > 0.0 && next.v <= 0.0) top = advanced(z, zero_of(z, &V::v)).x;
+    if (z.x < 0.0 && next.x >= 0.0) {
+      const double part = zero_of(z, &V::x), integral = advanced(z, part).integral;
       if (--crossings == 0) return {time + part - last_time, top, std::exp(integral - last_integral)};
       last_time = time + part;
       last_integral = integral;
     }
     z = next;
   }
-}
-
-Loop van_der_pol(double mu) {
-  // x'' - mu x' + x + mu (x^3/3)' = 0: plant mu s/(s^2 - mu s + 1), element x^3/3.
-  Cubic<double> cubic;
-  cubic.coefficient = 1.0 / 3.0;
-  return forward(cubic, {mu, 0.0}, {1.0, -mu, 1.0});
 }
 
 }  // namespace

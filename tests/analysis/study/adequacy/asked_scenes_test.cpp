@@ -9,7 +9,7 @@ using namespace limcycle::test;
 
 namespace {
 
-PredictOptions quick() {
+PredictOptions quick_predict() {
   PredictOptions options;
   options.starts = 1;
   options.search = SearchBox{1e-4, 1.0, 0.05, 50.0};
@@ -34,7 +34,7 @@ TEST_CASE("asked scenes: a law is asked once at each place") {
   const LoopParts parts = servo_parts(coulomb(1.5, 1.0, 0.4));
   LoopParts heavier = parts;
   heavier.plant = Mass{1.2, 0.0, 0.0};
-  AskedScenes asked(quick(), infinite);
+  AskedScenes asked(quick_predict(), infinite);
   const SceneAnswer& first = asked.ask("simulation", 0, parts, coulomb(1.5, 1.0, 0.4));
   REQUIRE(first.verdict == "cycle");
   CHECK(&asked.ask("simulation", 0, parts, coulomb(1.5, 1.0, 0.4)) == &first);
@@ -46,10 +46,11 @@ TEST_CASE("asked scenes: a law is asked once at each place") {
 
 TEST_CASE("asked scenes: harmonic balance takes over roots, and their cost") {
   const Loop loop = build_loop(servo_parts(coulomb(1.5, 1.0, 0.4)));
-  SceneQuestions together(loop, quick());
+  SceneQuestions together(loop, quick_predict());
   const SceneAnswer df = together.ask("describing-function"), composite = together.ask("composite-describing-function");
   REQUIRE(composite.verdict == "cycle");
-  const SceneAnswer balance = together.ask("harmonic-balance"), alone = ask_scene("harmonic-balance", loop, quick());
+  const SceneAnswer balance = together.ask("harmonic-balance"),
+                    alone = ask_scene("harmonic-balance", loop, quick_predict());
   CHECK(balance.seconds >= df.seconds + composite.seconds);
   CHECK(balance.answered == alone.answered);
   CHECK(balance.verdict == alone.verdict);
@@ -58,7 +59,7 @@ TEST_CASE("asked scenes: harmonic balance takes over roots, and their cost") {
 }
 
 TEST_CASE("asked scenes: who runs out of patience has no answer") {
-  SceneQuestions questions(build_loop(servo_parts(lugre())), quick());
+  SceneQuestions questions(build_loop(servo_parts(lugre())), quick_predict());
   const SceneAnswer answer = questions.ask("shooting", 1e-3);
   CHECK_FALSE(answer.answered);
   CHECK(answer.why == "stopped after 0.001 s of CPU time");

@@ -5,16 +5,19 @@
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
+#include "limcycle/tests/share.hpp"
 
 using namespace limcycle;
 using namespace limcycle::cycle_claims;
+using limcycle::test::one_in;
+using limcycle::test::samples;
 
 namespace {
 
 ClaimOptions few() {
   ClaimOptions options;
   options.seed = 7;
-  options.random_points = 3;
+  options.random_points = samples(3);
   return options;
 }
 
@@ -124,11 +127,12 @@ TEST_CASE("claim B7: no construction where there is no drop from break-away to s
 TEST_CASE("claims B8 to B10: wrong formulas are refused") {
   refuses(test_friction_cycles(few(),
                                [](const RelayFeedback& relay, double h) { return switching_output(relay, h) + 1e-3; }));
-  refuses(test_friction_cycles(few(), switching_output, 0.99));
+  if (one_in == 1) refuses(test_friction_cycles(few(), switching_output, 0.99));
   refuses(test_switch_and_bristles(few(), [](double, double Fc) -> Element { return lugre(Fc, Fc, 0.0); }));
   refuses(test_sliding(few(), [](const LuGre<double>& law, double v, double) {
     return std::complex<double>(quasi_static_damping(law.Fs, law.Fc, law.vs, law.sigma2, v));
   }));
+  if (one_in > 1) return;
   refuses(test_sliding(few(), dynamic_damping, [](double Fs, double Fc, double vs, double sigma2, double v) {
     return 1.01 * quasi_static_damping(Fs, Fc, vs, sigma2, v);
   }));

@@ -19,11 +19,11 @@ using Catch::Matchers::Contains;
 namespace {
 
 constexpr std::string_view df = "describing-function", composite = "composite-describing-function",
-                           balance = "harmonic-balance";
+                           harmonic = "harmonic-balance";
 
-PredictReport predicted(const Loop& loop, std::optional<SearchBox> box = {}) {
+PredictReport predicted(const Loop& loop, std::optional<SearchBox> within = {}) {
   PredictOptions options;
-  options.search = box;
+  options.search = within;
   return predict(loop, options);
 }
 
@@ -93,8 +93,8 @@ TEST_CASE("the hunting servo: one stable cycle, which only the composite describ
   CHECK_FALSE(misses(report, composite, 0));
 
   // Harmonic balance cannot follow a body that sticks on bristles, and reports that instead of a guess.
-  CHECK(predictions_of(report, balance).empty());
-  CHECK(misses(report, balance, 0));
+  CHECK(predictions_of(report, harmonic).empty());
+  CHECK(misses(report, harmonic, 0));
   REQUIRE(report.notes.size() == 1);
   CHECK_THAT(report.notes[0], Contains("harmonic balance was not tried on cycle 0") && Contains("sticks"));
 }
@@ -126,7 +126,7 @@ TEST_CASE("relay loops are confirmed, with the numbers of claim B1, and roots so
   CHECK(p.verdict == Verdict::confirmed);
   CHECK(std::abs(LoopBalance(loop)(p.input_amplitude, p.frequency, 1e-12)) < 1e-9);
   // With more harmonics the bias of 1.4 % of the frequency is gone.
-  const auto more = predictions_of(report, balance);
+  const auto more = predictions_of(report, harmonic);
   REQUIRE(more.size() == 1);
   CHECK(more[0].verdict == Verdict::confirmed);
   CHECK(more[0].harmonics > 9);
@@ -146,7 +146,7 @@ TEST_CASE("relay with dead zone: the unstable cycle between rest and the stable 
     CHECK(report.cycles[*p.cycle].stable == p.stable);
     CHECK(p.verdict == (*p.stable ? Verdict::confirmed : Verdict::biased));
   }
-  for (const auto& p : predictions_of(report, balance)) CHECK(p.verdict == Verdict::confirmed);
+  for (const auto& p : predictions_of(report, harmonic)) CHECK(p.verdict == Verdict::confirmed);
 }
 
 TEST_CASE("belt with LuGre, no viscous part: the describing function is far off and is called biased") {
@@ -181,7 +181,7 @@ TEST_CASE("a relay with dead time is exact in the time domain: claim B2") {
   CHECK(cycle.amplitude == Approx(K * d * (1.0 - std::exp(-L))).epsilon(1e-11));
   CHECK(cycle.error < 1e-11);
   CHECK(cycle.stable == true);
-  for (const auto method : {df, balance}) {
+  for (const auto method : {df, harmonic}) {
     const auto own = predictions_of(report, method);
     REQUIRE(own.size() == 1);
     CHECK(own[0].verdict == Verdict::confirmed);
@@ -309,7 +309,7 @@ TEST_CASE("a balance that more harmonics still move is no prediction, and a note
   play.half_gap = 0.5;
   const auto report = predicted(forward(play, {1.5}, {1.0, 2.0, 1.0, 0.0}), SearchBox{0.51, 50.0, 0.01, 100.0});
   CHECK(predictions_of(report, df).size() == 2);
-  const auto balanced = predictions_of(report, balance);
+  const auto balanced = predictions_of(report, harmonic);
   REQUIRE(balanced.size() == 1);
   CHECK(balanced[0].verdict == Verdict::confirmed);
   CHECK(std::ranges::any_of(report.notes, [](const std::string& note) {

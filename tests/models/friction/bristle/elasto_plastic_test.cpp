@@ -13,7 +13,7 @@ namespace {
 static_assert(LawOn<ElastoPlastic<double>, double> && HasModes<ElastoPlastic<double>, double>);
 static_assert(LawOn<ElastoPlastic<Dual<4>>, Dual<4>> && HasModes<ElastoPlastic<Dual<4>>, Dual<4>>);
 
-ElastoPlastic<double> law_of(int zba_of = 0) {
+ElastoPlastic<double> elasto_plastic(int zba_of = 0) {
   ElastoPlastic<double> law;
   law.Fs = law.Fs_minus = 1.5;
   law.Fc = law.Fc_minus = 1.0;
@@ -56,7 +56,7 @@ TEST_CASE("elasto-plastic: the printed equation in every mode, odd", "[elasto-pl
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (const int kind : {0, 1}) {
-    const auto law = law_of(kind);
+    const auto law = elasto_plastic(kind);
     int seen[5] = {};
     for (int i = 0; i < 500; ++i) {
       const double v = 3e-3 * u(random), z = 1.5e-5 * u(random);
@@ -70,7 +70,7 @@ TEST_CASE("elasto-plastic: the printed equation in every mode, odd", "[elasto-pl
     for (const int times : seen) CHECK(times > 10);
     CHECK(law.odd());
   }
-  auto uneven = law_of();
+  auto uneven = elasto_plastic();
   uneven.Fc_minus = 0.8;
   CHECK_FALSE(uneven.odd());
   CHECK(uneven.steady_deflection(1.0, false) == Approx(0.8e-5));
@@ -78,7 +78,7 @@ TEST_CASE("elasto-plastic: the printed equation in every mode, odd", "[elasto-pl
 
 TEST_CASE("elasto-plastic: steady sliding is the Stribeck curve, elastic range exact", "[elasto-plastic]") {
   for (const int kind : {0, 1}) {
-    const auto law = law_of(kind);
+    const auto law = elasto_plastic(kind);
     for (const double v : {1e-5, 1e-3, 0.1, -0.02}) {
       const double z = law.level(v) * (v > 0 ? 1 : -1) / law.sigma0;
       for (const int mode : {1, 2}) {  // z_ss belongs to both, to rounding
@@ -96,7 +96,7 @@ TEST_CASE("elasto-plastic: steady sliding is the Stribeck curve, elastic range e
 }
 
 TEST_CASE("elasto-plastic: modes overlap without a trace and do not chatter", "[elasto-plastic]") {
-  const auto law = law_of();
+  const auto law = elasto_plastic();
   std::mt19937 random(9);
   std::uniform_real_distribution<double> u(0.0, 1.0);
   for (int i = 0; i < 300; ++i) {
@@ -125,7 +125,7 @@ TEST_CASE("elasto-plastic: bounded, and passive where it says so", "[elasto-plas
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (const int kind : {0, 1}) {
-    auto law = law_of(kind);
+    auto law = elasto_plastic(kind);
     for (int i = 0; i < 500; ++i) {
       const double v = 5e-3 * u(random), z = 1.5e-5 * u(random);
       const Mode mode = mode_of(law, v, z);
@@ -142,7 +142,7 @@ TEST_CASE("elasto-plastic: bounded, and passive where it says so", "[elasto-plas
 }
 
 TEST_CASE("elasto-plastic: z_ba to zero makes sliding that of LuGre", "[elasto-plastic]") {
-  auto law = law_of();
+  auto law = elasto_plastic();
   law.zba_ratio = 1e-9;
   LuGre<double> lugre;
   lugre.Fs = lugre.Fs_minus = 1.5;

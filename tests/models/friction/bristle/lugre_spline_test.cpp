@@ -15,7 +15,7 @@ namespace {
 static_assert(LawOn<LuGreSpline<double>, double> && HasModes<LuGreSpline<double>, double>);
 static_assert(LawOn<LuGreSpline<Dual<4>>, Dual<4>> && HasModes<LuGreSpline<Dual<4>>, Dual<4>>);
 
-LuGreSpline<double> law_of() {
+LuGreSpline<double> spline() {
   LuGreSpline<double> law;
   law.velocity = {0.0, 5e-4, 1e-3, 2e-3, 4e-3};
   law.coefficients = {1.5, 1.45, 1.2, 1.0, 1.1, 1.05, 1.2};
@@ -71,7 +71,7 @@ TEST_CASE("cubic B-splines are those of GSL, on any scalar", "[lugre-spline]") {
 }
 
 TEST_CASE("the curve's derivative by a coefficient is that basis function", "[lugre-spline]") {
-  const auto law = law_of();
+  const auto law = spline();
   using D = Dual<1>;
   const std::vector<D> knots(law.velocity.begin(), law.velocity.end());
   for (std::size_t k = 0; k < law.coefficients.size(); ++k) {
@@ -86,7 +86,7 @@ TEST_CASE("the curve's derivative by a coefficient is that basis function", "[lu
 
 TEST_CASE("spline LuGre: even level, steady state, bound, odd", "[lugre-spline]") {
   CHECK(LuGreSpline<double>{}.states() == 1);
-  const auto law = law_of();
+  const auto law = spline();
   CHECK(law.odd());
   CHECK(law.level(0.0) == 1.5);
   CHECK(law.level(1.0) == 1.2);
@@ -108,7 +108,7 @@ TEST_CASE("spline LuGre: even level, steady state, bound, odd", "[lugre-spline]"
 }
 
 TEST_CASE("spline LuGre: passive with the stated sigma2", "[lugre-spline]") {
-  auto law = law_of();
+  auto law = spline();
   law.sigma2 = law.sigma1 * 0.5;  // (max g - min g)/min g <= (1.5 - 1)/1
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
@@ -122,7 +122,7 @@ TEST_CASE("spline LuGre: passive with the stated sigma2", "[lugre-spline]") {
 }
 
 TEST_CASE("spline LuGre: the mode is the span of the speed", "[lugre-spline]") {
-  const auto law = law_of();
+  const auto law = spline();
   Mode mode = law.start({0.0, 0.0, 1.0}, {});
   CHECK(mode.value == 0);
   int switches = 0;
@@ -147,20 +147,20 @@ TEST_CASE("spline LuGre: the mode is the span of the speed", "[lugre-spline]") {
 }
 
 TEST_CASE("spline LuGre: what is refused", "[lugre-spline]") {
-  CHECK_FALSE(law_of().validate());
-  auto law = law_of();
+  CHECK_FALSE(spline().validate());
+  auto law = spline();
   law.velocity[0] = 1e-5;
   CHECK(law.validate()->key == "velocity");
-  law = law_of();
+  law = spline();
   law.velocity[2] = law.velocity[1];
   CHECK(law.validate()->key == "velocity");
-  law = law_of();
+  law = spline();
   law.velocity = {0.0};
   CHECK(law.validate()->key == "velocity");
-  law = law_of();
+  law = spline();
   law.coefficients.pop_back();
   CHECK(law.validate()->key == "coefficients");
-  law = law_of();
+  law = spline();
   law.coefficients[3] = 0.0;
   CHECK(law.validate()->key == "coefficients");
 }

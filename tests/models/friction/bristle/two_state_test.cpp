@@ -20,8 +20,8 @@ TwoState<double> law_of(double tau = 2e-3) {
   return law;
 }
 
-using March = test::LawMarch<TwoState<double>>;
-const test::MarchSteps steps{.displacement = 2e-6, .velocity = 1e-3, .time = 2e-4};
+using TwoStateMarch = test::LawMarch<TwoState<double>>;
+const test::MarchSteps two_state_steps{.displacement = 2e-6, .velocity = 1e-3, .time = 2e-4};
 double phi(double xi) { return xi * (1.0 - std::log(xi)); }
 
 }  // namespace
@@ -30,7 +30,7 @@ TEST_CASE("pre-sliding between return points, at the levels of each direction", 
   TwoState<double> law = law_of();
   law.Fs_minus = 1.2;
   law.Fc_minus = 0.8;
-  March march(law, steps);
+  TwoStateMarch march(law, two_state_steps);
   march.glide(4e-5, 1.0);
   const double up = 1.5 * phi(0.4);
   CHECK(march.force() == Approx(up).epsilon(1e-9));
@@ -46,7 +46,7 @@ TEST_CASE("pre-sliding between return points, at the levels of each direction", 
 }
 
 TEST_CASE("sliding begins at Fs, lags to the Stribeck level and hands its force to the next branch", "[two-state]") {
-  March march(law_of(), steps);
+  TwoStateMarch march(law_of(), two_state_steps);
   march.slide(1e-4 + 2e-5, 1.2e-2);  // v = 0.01: break-away after 10 ms, then 2 ms of lag
   const double g = 1.0 + 0.5 * std::exp(-100.0);
   const double level = g + (1.5 - g) * std::exp(-1.0);
@@ -65,11 +65,11 @@ TEST_CASE("steady sliding, bounds, oddness", "[two-state]") {
     for (const double speed : {3e-4, 2e-3, 0.1}) {
       TwoState<double> law = law_of(tau);
       law.sigma2 = 0.4;
-      March march(law, {.displacement = 1e-4, .time = 1e-3});
+      TwoStateMarch march(law, {.displacement = 1e-4, .time = 1e-3});
       march.slide(-speed, 1.0);
       CHECK(march.force() == Approx(-law.level(speed) - 0.4 * speed).epsilon(1e-9));
     }
-    March there(law_of(tau), steps), back(law_of(tau), steps);
+    TwoStateMarch there(law_of(tau), two_state_steps), back(law_of(tau), two_state_steps);
     double most = 0.0;
     there.watch = [&](const Input<double>& in, Mode mode, const std::vector<double>& z) {
       most = std::max(most, std::abs(there.law().output(in, mode, z)));
@@ -89,7 +89,7 @@ TEST_CASE("steady sliding, bounds, oddness", "[two-state]") {
 }
 
 TEST_CASE("closed pre-sliding loops dissipate and leave no trace", "[two-state]") {
-  March march(law_of(), steps);
+  TwoStateMarch march(law_of(), two_state_steps);
   march.glide(6e-5, 0.1);
   march.glide(-3e-5, 0.1);
   const double force = march.force();

@@ -28,7 +28,7 @@ Leuven<double> three_elements(double n) {
   return law;
 }
 
-constexpr Input<double> moving(double v) { return {0.0, v, v < 0.0 ? -infinite : infinite}; }
+constexpr Input<double> sliding(double v) { return {0.0, v, v < 0.0 ? -infinite : infinite}; }
 
 }  // namespace
 
@@ -46,10 +46,10 @@ TEST_CASE("leuven: one element that never slips is LuGre", "[friction]") {
     for (const double z : {-1.4e-5, -2e-6, 1e-6, 1.2e-5}) {
       const double s[] = {z};
       double ds[1], dz[1];
-      law.rate(moving(v), {}, s, ds);
-      lugre.rate(moving(v), {}, s, dz);
+      law.rate(sliding(v), {}, s, ds);
+      lugre.rate(sliding(v), {}, s, dz);
       CHECK(ds[0] == Approx(dz[0]).epsilon(1e-13));
-      CHECK(law.output(moving(v), {}, s) == Approx(lugre.output(moving(v), {}, s)).epsilon(1e-13));
+      CHECK(law.output(sliding(v), {}, s) == Approx(lugre.output(sliding(v), {}, s)).epsilon(1e-13));
     }
 }
 
@@ -61,9 +61,9 @@ TEST_CASE("leuven: steady sliding is the Stribeck curve for any n", "[friction]"
       const double direction = v < 0.0 ? -1.0 : 1.0, rest = law.level(v) - 0.8;
       const std::vector<double> s{direction * 0.3 / 2e4, direction * 0.5 / 1e4, direction * rest / 5e3};
       double ds[3];
-      law.rate(moving(v), {}, s, ds);
+      law.rate(sliding(v), {}, s, ds);
       for (const double rate : ds) CHECK(std::abs(rate) < 1e-14 * std::abs(v));
-      CHECK(law.output(moving(v), {}, s) == Approx(direction * law.level(v)).epsilon(1e-13));
+      CHECK(law.output(sliding(v), {}, s) == Approx(direction * law.level(v)).epsilon(1e-13));
     }
   }
 }
@@ -72,22 +72,22 @@ TEST_CASE("leuven: elements turn back with dz/dt, not with v", "[friction]") {
   const auto law = three_elements(1.0);
   const Mode slips = with_slider({}, 0, Slider::slips_forward);
   std::vector<double> s{0.3 / 2e4, 0.5 / 1e4, 0.4 / 5e3}, g(8);  // F_h = 1.2 N
-  law.guard(moving(1e-4), slips, s, g);
+  law.guard(sliding(1e-4), slips, s, g);
   CHECK(g[6] > 0.0);
-  law.guard(moving(0.1), slips, s, g);  // g has fallen to Fc < F_h
+  law.guard(sliding(0.1), slips, s, g);  // g has fallen to Fc < F_h
   CHECK(g[6] < 0.0);
-  CHECK(law.next(moving(0.1), slips, s, 6) == Mode{0});
-  law.guard(moving(-1e-4), slips, s, g);
+  CHECK(law.next(sliding(0.1), slips, s, 6) == Mode{0});
+  law.guard(sliding(-1e-4), slips, s, g);
   CHECK(g[6] < 0.0);
   s[2] = (1.0 - 0.8) / 5e3 * (1.0 + 1e-15);  // steady sliding to rounding
-  law.guard(moving(0.1), slips, s, g);
+  law.guard(sliding(0.1), slips, s, g);
   CHECK(g[6] >= 0.0);
   // A slipping element is exactly on its limit and does not move while it slips.
   s[0] *= 1.0 - 1e-9;
-  CHECK(law.next(moving(1e-4), {}, s, 0) == slips);
+  CHECK(law.next(sliding(1e-4), {}, s, 0) == slips);
   CHECK(s[0] == 0.3 / 2e4);
   double ds[3];
-  law.rate(moving(1e-4), slips, s, ds);
+  law.rate(sliding(1e-4), slips, s, ds);
   CHECK(ds[0] == 0.0);
   CHECK(ds[1] > 0.0);
 }
@@ -96,20 +96,20 @@ TEST_CASE("leuven: the kink of |F_h|^n is a switch, where there is one", "[frict
   std::vector<double> s(3, 1e-6), g(8);
   for (const double n : {1.0, 3.0}) {
     const auto law = three_elements(n);
-    law.guard(moving(-1e-3), {}, s, g);
+    law.guard(sliding(-1e-3), {}, s, g);
     CHECK(g[7] == 1.0);
-    CHECK(law.start(moving(-1e-3), s) == Mode{0});
+    CHECK(law.start(sliding(-1e-3), s) == Mode{0});
   }
   const auto law = three_elements(2.0);
-  law.guard(moving(-1e-3), {}, s, g);
+  law.guard(sliding(-1e-3), {}, s, g);
   CHECK(g[7] == Approx(0.035));
-  const Mode turned = law.next(moving(-1e-3), {}, s, 7);
-  law.guard(moving(-1e-3), turned, s, g);
+  const Mode turned = law.next(sliding(-1e-3), {}, s, 7);
+  law.guard(sliding(-1e-3), turned, s, g);
   CHECK(g[7] == Approx(-0.035));
   CHECK(law.mirror({}) == turned);
   std::vector<double> none(3, 0.0);
-  CHECK(law.start(moving(-1e-3), none) == turned);
-  CHECK(law.start(moving(1e-3), none) == Mode{0});
+  CHECK(law.start(sliding(-1e-3), none) == turned);
+  CHECK(law.start(sliding(1e-3), none) == Mode{0});
 }
 
 TEST_CASE("leuven is odd, modes included", "[friction]") {
@@ -129,11 +129,11 @@ TEST_CASE("leuven is odd, modes included", "[friction]") {
       const double v = 3e-3 * u(random);
       const Mode turned = law.mirror(mode);
       CHECK(law.mirror(turned) == mode);
-      CHECK(law.output(moving(v), mode, s) == -law.output(moving(-v), turned, minus));
-      law.rate(moving(v), mode, s, ds);
-      law.rate(moving(-v), turned, minus, minus_ds);
-      law.guard(moving(v), mode, s, g);
-      law.guard(moving(-v), turned, minus, minus_g);
+      CHECK(law.output(sliding(v), mode, s) == -law.output(sliding(-v), turned, minus));
+      law.rate(sliding(v), mode, s, ds);
+      law.rate(sliding(-v), turned, minus, minus_ds);
+      law.guard(sliding(v), mode, s, g);
+      law.guard(sliding(-v), turned, minus, minus_g);
       for (std::size_t i = 0; i < 3; ++i) {
         CHECK(ds[i] == -minus_ds[i]);
         CHECK(g[2 * i] == minus_g[2 * i + 1]);

@@ -1,0 +1,47 @@
+#include "limcycle/analysis/orbit/settle/growth.hpp"
+
+#include <algorithm>
+
+#include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/settle/displaced.hpp"
+
+namespace limcycle {
+
+bool grows_like_a_power(const TurningPoints& turning) {
+  constexpr std::size_t few = 64, averaged = 4;
+  constexpr double least_growth = 1.3, alike = 0.2;
+  const std::size_t count = turning.points().size();
+  if (count < few) return false;
+  const auto size = [&](std::size_t swings) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < averaged; ++k) sum += turning.swing(count - 1 - swings + k);
+    return sum;
+  };
+  const std::size_t all = count - 1;
+  const double last = size(all) / size(all / 2), before = size(all / 2) / size(all / 4),
+               first = size(all / 4) / size(all / 8);
+  const auto like = [](double one, double other) { return std::abs(one / other - 1.0) < alike; };
+  return std::min({last, before, first}) > least_growth && like(last, before) && like(before, first);
+}
+
+bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long most_steps,
+                     const std::function<bool()>& stop) {
+  constexpr double farther = 30.0;
+  constexpr std::size_t turns = 14, apart = 10;  // an even number, so that swings of one direction are compared
+  const LoopState far = scaled(loop, here, farther);
+  LoopField field(loop);
+  field.modes() = far.modes;
+  March march(field, StepperKind::automatic, loop_weights(loop, rtol));
+  march.begin(far.x, 0.0);
+  TurningPoints turning;
+  constexpr double end = 1e15;  // s, of a motion that hardly moves
+  while (turning.points().size() < turns) {
+    if (march.steps() > most_steps || march.t() >= end || (stop && stop())) return false;
+    if (march.step(end) != Status::converged) return false;
+    turning.feed(march.t(), field.y(march.x()));
+  }
+  return turning.swing(0) > (1.0 + 100.0 * rtol) * turning.swing(apart);
+}
+
+}  // namespace limcycle

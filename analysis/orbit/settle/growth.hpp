@@ -1,0 +1,22 @@
+#pragma once
+#include <functional>
+
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/orbit/settle/turning_points.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// True if the swings grow like a power of time, as a limited command allows an unstable loop, and not towards a cycle:
+/// each doubling of their number increases them by about the same factor. On the way to a cycle that factor falls
+/// towards 1; in an exponential growth, which may end in a cycle, it rises. Needs 64 swings.
+bool grows_like_a_power(const TurningPoints& turning);
+
+/// True if the motion from this state, moved thirty times as far from rest, grows too: its later swings are larger
+/// than its first ones. Where friction and other limited forces stand against a growth they are weaker there still;
+/// what bounds a growth, such as damping, is stronger. Cost: a dozen swings, or `most_steps` of the march without an
+/// answer.
+bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long most_steps,
+                     const std::function<bool()>& stop);
+
+}  // namespace limcycle

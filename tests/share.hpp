@@ -1,0 +1,26 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+/// How much of a repeated test is done. Where everything is watched (LIMCYCLE_SANITIZE) a repetition takes three to ten
+/// times as long and finds hardly more than the first: one in LIMCYCLE_TEST_SHARE is done there, set by
+/// tests/CMakeLists.txt, and all of them elsewhere. No test is left out.
+namespace limcycle::test {
+
+inline constexpr int one_in = LIMCYCLE_TEST_SHARE;
+
+/// This many of `all` random samples, at least one.
+constexpr int samples(int all) { return std::max(1, all / one_in); }
+
+/// True for the repetitions that are done: of number 0, 1, 2, ...
+constexpr bool is_done(int number) { return number % one_in == 0; }
+
+/// Those of a list that are done.
+template <class List>
+List some_of(List list) {
+  int number = 0;
+  std::erase_if(list, [&](const auto&) { return !is_done(number++); });
+  return list;
+}
+
+}  // namespace limcycle::test
