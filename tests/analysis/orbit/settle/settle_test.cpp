@@ -29,6 +29,21 @@ TEST_CASE("stick-slip that decays for ever (Fs = Fc under integral action) is ne
   }
 }
 
+TEST_CASE("step limit: a motion that has hardly turned is followed four times as long") {
+  const Loop loop = servo(lugre());
+  const auto followed = [&](std::size_t fewest_turns) {
+    SettleOptions options;
+    options.max_steps = 300;
+    options.fewest_turns = fewest_turns;
+    return settle(loop, displaced(loop, 1.0), options);
+  };
+  const Settled briefly = followed(0), longer = followed(1000);
+  CHECK(briefly.outcome == Outcome::undecided);
+  CHECK(briefly.steps == 301);
+  CHECK((longer.outcome == Outcome::cycle || longer.steps == 1201));
+  CHECK(longer.steps > briefly.steps);
+}
+
 TEST_CASE("slow hunting is never rest: Fs 1 % and 0.1 % above Fc") {
   // Ideal stiction: amplitude is proportional to Fs - Fc, the waiting time to its inverse (claim B7).
   for (const double excess : {1e-2, 1e-3}) {
