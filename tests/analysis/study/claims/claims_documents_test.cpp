@@ -2,7 +2,6 @@
 
 #include "limcycle/analysis/study/claims/run_claims.hpp"
 #include "limcycle/analysis/study/claims/sources/source_documents.hpp"
-#include "limcycle/tests/share.hpp"
 
 using namespace limcycle;
 using Catch::Matchers::Contains;
@@ -11,7 +10,7 @@ namespace {
 
 ClaimResult tested(const std::string& id, int random_points = 4) {
   ClaimRunOptions options;
-  options.random_points = limcycle::test::samples(random_points);
+  options.random_points = random_points;
   const auto result = run_claims(claims_named(source_document_claims(), id), options);
   REQUIRE(result.size() == 1);
   INFO(result[0].result.finding << " " << result[0].result.counterexample);

@@ -5,14 +5,13 @@
 #include <vector>
 
 #include "limcycle/analysis/study/claims/claim.hpp"
-#include "limcycle/tests/share.hpp"
 
 /// Checks of a list of claims.
 namespace limcycle::test {
 
 inline ClaimOptions at_random(int points, std::uint64_t seed = 1) {
   ClaimOptions options;
-  options.random_points = samples(points);
+  options.random_points = points;
   options.seed = seed;
   return options;
 }
