@@ -1,8 +1,9 @@
 #include "limcycle/reports/table.hpp"
-#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <sstream>
+
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle;
 using namespace limcycle::test;

@@ -1,10 +1,11 @@
 #include "limcycle/reports/claims/claims.hpp"
-#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle;
 using Catch::Matchers::Contains;

@@ -1,11 +1,12 @@
 #include "limcycle/reports/experiments/experiment.hpp"
-#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
+
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle;
 using Catch::Matchers::Contains;

@@ -1,9 +1,10 @@
 #include "limcycle/reports/precision/atlas.hpp"
-#include "limcycle/tests/lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "limcycle/tests/lines.hpp"
 
 using namespace limcycle;
 using Catch::Matchers::Contains;
