@@ -11,7 +11,7 @@
 #include "limcycle/bench/measure.hpp"
 #include "limcycle/cases/loader/case.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
-#include "limcycle/models/assemble.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 namespace limcycle {
 
 PrecisionReport precision_of(const Case& from, const PrecisionOptions& options) {
-  const bool friction = from.element || (from.loop && from.loop->friction);
+  const bool friction = from.element || (from.loop && subject_of(*from.loop).opposes);
   const Element* element = from.df || friction ? &df_element(from) : nullptr;
   std::vector<DfPoint> points;
   if (from.df)

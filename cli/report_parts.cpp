@@ -93,7 +93,10 @@ std::optional<SimulateOptions> run_to_count(const ReportQuestion& ask, std::stri
 
 ReportPart<CountedRun> energy_part(const ReportQuestion& ask) {
   if (!has_energy(*ask.from.loop))
-    return {{}, "The loop has neither friction nor a mechanical plant: there is no energy balance."};
+    return {{},
+            ask.from.loop->diagram ? "The energy balance of a diagram is not computed."
+                                   : "The loop has neither friction nor a mechanical plant: there is no energy "
+                                     "balance."};
   CountedRun counted;
   auto options = run_to_count(ask, counted.which);
   if (!options)
@@ -115,8 +118,11 @@ ReportPart<CountedRun> energy_part(const ReportQuestion& ask) {
 
 ReportPart<DissipativityReport> dissipativity_part(const ReportQuestion& ask) {
   const LoopParts& parts = *ask.from.loop;
-  if (!parts.friction && !parts.element)
-    return {{}, "The loop has neither friction nor an element in series: there is no law to examine."};
+  const Subject subject = subject_of(parts);
+  if (subject.element == nullptr || subject.path == "loop.error")
+    return {{},
+            parts.diagram ? "The diagram has several friction laws or elements: one is examined at a time."
+                          : "The loop has neither friction nor an element in series: there is no law to examine."};
   DissipativityOptions options;
   options.speed = ask.from.dissipativity.speed;
   options.passivity.top_speed = ask.from.dissipativity.top_speed;

@@ -1,10 +1,24 @@
 #include "limcycle/cli/units_of.hpp"
 
-#include "limcycle/cases/loader/case.hpp"
-
 namespace limcycle {
 
-Units units_of(const LoopParts& loop) {
+namespace {
+
+/// A diagram is mechanical if it has friction on a body, or a plant of masses.
+Units units_of_diagram(const Diagram& diagram) {
+  for (const Block& block : diagram.blocks) {
+    const auto* plant = std::get_if<Plant>(&block.what);
+    if (plant != nullptr && std::holds_alternative<FroudePendulum>(*plant)) return {"rad", "N m", "rad"};
+    const bool masses =
+        plant != nullptr && (std::holds_alternative<Mass>(*plant) || std::holds_alternative<Belt>(*plant) ||
+                             std::holds_alternative<TwoMass>(*plant));
+    if (masses || block.contact == Contact::opposes) return {};
+  }
+  return {"", "", ""};
+}
+
+Units units_of_loop(const LoopParts& loop) {
+  if (loop.diagram) return units_of_diagram(*loop.diagram);
   const auto plant = kind_of(loop.plant);
   if (plant == "froude-pendulum") return {"rad", loop.friction ? "N" : "N m", loop.friction ? "m" : "rad"};
   if (const auto* named = std::get_if<StateSpacePlant>(&loop.plant); named != nullptr && loop.friction) {
@@ -13,6 +27,17 @@ Units units_of(const LoopParts& loop) {
   }
   const bool mechanical = loop.friction || plant == "mass" || plant == "belt" || plant == "two-mass";
   return mechanical ? Units{} : Units{"", "", ""};
+}
+
+}  // namespace
+
+Units units_of(const Case& from) {
+  Units units = from.loop ? units_of_loop(*from.loop) : Units{};
+  if (from.y_unit) {
+    units.y = from.y_unit->symbol;
+    units.y_per_si = from.y_unit->per_si;
+  }
+  return units;
 }
 
 }  // namespace limcycle

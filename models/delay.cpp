@@ -46,16 +46,6 @@ void make_rates(Loop& loop) {
   }
 }
 
-/// Index of a relay in front of the plant that can take over the delay.
-std::optional<std::size_t> relay_before_plant(const Loop& loop) {
-  std::optional<std::size_t> relay;
-  for (std::size_t i = 0; i < loop.ports.size(); ++i) {
-    if (loop.ports[i].path == "loop.controller.friction_compensation") return std::nullopt;
-    if (loop.ports[i].path == "loop.element" && (loop.elements[i].as<Relay<double>>() != nullptr)) relay = i;
-  }
-  return relay;
-}
-
 Loop without_delay(Loop loop) {
   loop.A += loop.A_delayed;
   loop.A_delayed.setZero();
@@ -65,6 +55,29 @@ Loop without_delay(Loop loop) {
   }
   loop.delay = 0.0;
   return loop;
+}
+
+/// True for one element whose every way around the loop passes the delay once: it may then stand anywhere on that way.
+bool is_one_ring(const Loop& loop) {
+  if (loop.elements.size() != 1) return false;
+  const Loop undelayed = without_delay(loop);
+  for (const double angle : {0.3, 0.7, 1.2}) {
+    const auto s = std::polar(1.0 / loop.delay, angle);
+    const auto H = loop.element_response(s)(0, 0), H0 = std::exp(-s * loop.delay) * undelayed.element_response(s)(0, 0);
+    if (!(std::abs(H - H0) <= 1e-9 * (std::abs(H) + std::abs(H0)))) return false;
+  }
+  return true;
+}
+
+/// Index of a relay in front of the plant that can take over the delay.
+std::optional<std::size_t> relay_before_plant(const Loop& loop) {
+  std::optional<std::size_t> relay;
+  for (std::size_t i = 0; i < loop.ports.size(); ++i) {
+    if (loop.ports[i].rubs && !loop.ports[i].opposes) return std::nullopt;
+    const bool before = loop.ports[i].path == "loop.element" || is_one_ring(loop);
+    if (before && loop.elements[i].as<Relay<double>>() != nullptr) relay = i;
+  }
+  return relay;
 }
 
 TimeDomainLoop delay_relay(const Loop& from, std::size_t i) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/models/assemble.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
@@ -15,12 +15,6 @@ using Eigen::Index;
 using Row = Eigen::RowVectorXd;
 
 bool uses_rate(const Element& element) { return element.facts().uses_rate; }
-
-/// True if the row product C B is zero to rounding of its terms.
-bool vanishes(const Row& C, const Eigen::VectorXd& B) {
-  const double size = (C.cwiseAbs() * B.cwiseAbs()).value();
-  return std::abs((C * B).value()) <= 1e-12 * size;
-}
 
 /// Steady motion X_r t along a ramp: A X_r + E_r rate = 0 with every input constant (a rubbing displacement may move,
 /// but its velocity must not change). With an element between error and controller the first condition alone does not
@@ -46,17 +40,16 @@ Eigen::VectorXd steady_motion(const Loop& loop, double rate) {
 }
 
 /// Measures the states from the steadily moving point X_r t of a ramp reference.
-std::optional<BrokenRule> move_along(Loop& loop, double rate) {
+std::optional<BrokenRule> move_along(Loop& loop, double rate, const std::string& key) {
   const Eigen::VectorXd pull = loop.E.col(reference_value) * rate;
   const Eigen::VectorXd X_r = steady_motion(loop, rate);
   const double size = pull.norm() + loop.A.norm() * X_r.norm();
   if ((loop.A * X_r + pull).norm() > 1e-9 * size)
-    return BrokenRule{"loop.reference",
-                      "the loop has no steady motion along a ramp (it needs a controller that follows it)"};
+    return BrokenRule{key, "the loop has no steady motion along a ramp (it needs a controller that follows it)"};
   for (const auto& port : loop.ports) {
     const double drift = port.rubs ? (port.C_v * X_r).value() : (port.C * X_r).value() + port.c(reference_value) * rate;
     if (std::abs(drift) > 1e-9 * std::abs(rate))
-      return BrokenRule{"loop.reference", "the input of " + port.path + " would grow without limit along a ramp"};
+      return BrokenRule{key, "the input of " + port.path + " would grow without limit along a ramp"};
   }
   loop.external(reference_slope) = rate;
   loop.E.col(constant_one) -= X_r;
@@ -80,9 +73,10 @@ std::optional<BrokenRule> validate_ports(const Loop& loop) {
   for (std::size_t i = 0; i < loop.ports.size(); ++i) {
     const Port& port = loop.ports[i];
     if (port.rubs || !uses_rate(loop.elements[i])) continue;
+    const std::string lag = port.path.starts_with("diagram.") ? "put a low-pass between" : "add loop.controller.lag";
     if (!port.D.isZero())
       return BrokenRule{port.path, "needs the rate of its input, into which the output of " +
-                                       straight_into(loop, port) + " passes straight: add loop.controller.lag"};
+                                       straight_into(loop, port) + " passes straight: " + lag};
     const Row later = port.D_v.tail(port.D_v.size() - static_cast<Index>(i));
     const bool output_needs_rate = loop.elements[i].facts().needs_rate;
     if (output_needs_rate && !later.isZero(1e-12))
@@ -102,9 +96,7 @@ std::optional<BrokenRule> validate_error(const LoopParts& parts, double D_rate) 
                                               (jumps ? ", which jumps" : " on the error, whose rate is not known")};
 }
 
-}  // namespace
-
-std::optional<BrokenRule> validate(const LoopParts& parts) {
+std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
   const PlantModel plant = model_of(parts.plant);
   const ControllerModel controller = model_of(parts.controller);
   if (const auto* froude = std::get_if<FroudePendulum>(&parts.plant); froude && froude->clearance > 0.0)
@@ -114,26 +106,68 @@ std::optional<BrokenRule> validate(const LoopParts& parts) {
     return BrokenRule{"loop", "needs a nonlinear element: add [loop.friction], [loop.element] or [loop.error]"};
   if (parts.element && needs_applied_force(*parts.element))
     return BrokenRule{"loop.element", "needs the applied force: it can only stand as [loop.friction]"};
-  if (parts.friction && (!vanishes(plant.C_x, plant.B_F) || !vanishes(plant.C_y, plant.B_F)))
+  if (parts.friction && (!does_not_reach(plant.C_x, plant.B_F) || !does_not_reach(plant.C_y, plant.B_F)))
     return BrokenRule{"loop.plant", "needs relative degree 2 or more from force to position when there is friction"};
   if (actuator_of(parts.controller).friction_compensation > 0.0 && !parts.friction)
     return BrokenRule{"loop.controller.friction_compensation", "has nothing to compensate: add [loop.friction]"};
-  if (controller.D_rate != 0.0 && !vanishes(plant.C_y, plant.B_u))
+  if (controller.D_rate != 0.0 && !does_not_reach(plant.C_y, plant.B_u))
     return BrokenRule{"loop.controller.tf",
                       "must be > 0: the plant has relative degree 1 and kd differentiates its output"};
   if (auto broken = validate_error(parts, controller.D_rate)) return broken;
-  if (parts.reference_rate != 0.0 && plant.delay > 0.0)
-    return BrokenRule{"loop.reference", "a ramp and a delay cannot stand in one loop"};
+  return std::nullopt;
+}
+
+std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {
+  bool nonlinear = false;
+  for (const Block& block : diagram.blocks) {
+    if (const auto* plant = std::get_if<Plant>(&block.what)) {
+      nonlinear = nonlinear || std::holds_alternative<FroudePendulum>(*plant);
+      if (const auto* froude = std::get_if<FroudePendulum>(plant); froude && froude->clearance > 0.0)
+        return BrokenRule{block.path + ".clearance", "must be 0 in a loop"};
+    }
+    const auto* element = std::get_if<Element>(&block.what);
+    nonlinear = nonlinear || element != nullptr;
+    if (element != nullptr && block.contact == Contact::none && needs_applied_force(*element))
+      return BrokenRule{block.path, "needs the applied force: it can only act on a body, with `on`"};
+  }
+  if (!nonlinear) return BrokenRule{"diagram", "needs a nonlinear element, such as a friction law"};
+  return std::nullopt;
+}
+
+}  // namespace
+
+Subject subject_of(const LoopParts& parts) {
+  if (!parts.diagram) {
+    if (parts.friction) return {&*parts.friction, "loop.friction", true};
+    if (parts.element) return {&*parts.element, "loop.element", false};
+    return parts.error ? Subject{&*parts.error, "loop.error", false} : Subject{};
+  }
+  for (const Contact contact : {Contact::opposes, Contact::none}) {
+    const auto found = elements_of(*parts.diagram, contact);
+    if (found.size() == 1)
+      return {&std::get<Element>(found.front()->what), found.front()->path, contact == Contact::opposes};
+    if (!found.empty()) break;
+  }
+  return {};
+}
+
+std::optional<BrokenRule> validate(const LoopParts& parts) try {
+  if (auto broken = parts.diagram ? validate_diagram(*parts.diagram) : validate_slots(parts)) return broken;
   Loop loop = assemble(parts);
+  const std::string reference = parts.diagram ? "diagram.reference" : "loop.reference";
+  if (parts.reference_rate != 0.0 && loop.delay > 0.0)
+    return BrokenRule{reference, "a ramp and a delay cannot stand in one loop"};
   if (parts.reference_rate != 0.0)
-    if (auto broken = move_along(loop, parts.reference_rate)) return broken;
+    if (auto broken = move_along(loop, parts.reference_rate, reference)) return broken;
   return validate_ports(loop);
+} catch (const BrokenDiagram& broken) {
+  return broken.rule;
 }
 
 Loop build_loop(const LoopParts& parts) {
   if (const auto broken = validate(parts)) throw std::invalid_argument(broken->key + ": " + broken->rule);
   Loop loop = assemble(parts);
-  if (parts.reference_rate != 0.0) move_along(loop, parts.reference_rate);
+  if (parts.reference_rate != 0.0) move_along(loop, parts.reference_rate, {});
   loop.measure_from_rest();
   return loop;
 }

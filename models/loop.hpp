@@ -4,13 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/models/element/element.hpp"
-#include "limcycle/models/linear/controllers.hpp"
-#include "limcycle/models/linear/plants.hpp"
+#include "limcycle/models/diagram/diagram.hpp"
 
 namespace limcycle {
 
-/// Parts of a loop, as in a case file.
+/// Parts of a loop, as in a case file: five slots or, if that is present, a diagram in their place.
 struct LoopParts {
   Plant plant;
   Controller controller;
@@ -20,11 +18,22 @@ struct LoopParts {
   double reference = 0.0;           ///< set-point r at t = 0
   double reference_rate = 0.0;      ///< dr/dt of a ramp
   double load = 0.0;                ///< constant force added to the plant's input
+  std::optional<Diagram> diagram;   ///< the slots above are then empty, but for the reference
 };
 
 /// External signals, in the order of the columns below: the constant 1, r, dr/dt, force.
 using External = Eigen::Vector4d;
 enum ExternalIndex : Eigen::Index { constant_one = 0, reference_value = 1, reference_slope = 2, external_force = 3 };
+
+/// The nonlinear element that a question about one element is about: the friction law; without one the element in
+/// series, then the one on the error. Of a diagram the only friction law, else the only element; null if there are
+/// several.
+struct Subject {
+  const Element* element = nullptr;
+  std::string path;
+  bool opposes = false;  ///< friction on a body
+};
+Subject subject_of(const LoopParts& parts);
 
 /// Connections of element i: input x = C X + D w + c ext, rate v = C_v X + D_v w + c_v ext, with X the linear state, w
 /// the outputs of all elements. D is strictly lower triangular over the elements: they are evaluated in order. C_v
@@ -35,10 +44,11 @@ struct Port {
   Eigen::RowVectorXd C_delayed;  ///< part of the input row that reads X(t - delay)
   /// The set-valued friction law whose selection at v = 0 this element shares (friction compensation).
   std::optional<std::size_t> selection_of;
-  bool rubs = false;  ///< x and v are rubbing displacement and velocity: v matters, x may drift
-  std::string path;   ///< "loop.plant.gravity", "loop.error", "loop.error.rate",
-                      ///< "loop.controller.friction_compensation", "loop.controller.saturation", "loop.element",
-                      ///< "loop.friction": in this order, if present
+  bool rubs = false;     ///< x and v are rubbing displacement and velocity: v matters, x may drift
+  bool opposes = false;  ///< a friction law that opposes that velocity: these are the last elements of a loop
+  std::string path;      ///< "loop.plant.gravity", "loop.error", "loop.error.rate",
+                         ///< "loop.controller.friction_compensation", "loop.controller.saturation", "loop.element",
+                         ///< "loop.friction": in this order, if present; of a diagram "diagram.NAME"
 };
 
 /// Lur'e form: linear part  dX/dt = A X + A_delayed X(t - delay) + B w + E ext,  y = C_y X,  with nonlinear elements

@@ -20,10 +20,6 @@ constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 bool is_one_state(const auto& vector) { return (vector.array() != 0.0).count() == 1; }
 
-bool does_not_reach(const RowVectorXd& C, const VectorXd& B) {
-  return std::abs((C * B).value()) <= 1e-12 * (C.cwiseAbs() * B.cwiseAbs()).value();
-}
-
 bool needs_change(const PlantModel& plant) {
   if (plant.A.rows() < 2 || plant.C_v.size() == 0 || plant.gravity) return false;
   if (plant.C_x.isZero(0.0)) return false;  // no state holds the displacement

@@ -2,6 +2,7 @@
 
 #include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/figures/plotly.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
@@ -32,7 +33,7 @@ std::string predict_page(const PredictReport& report, const Provenance& provenan
                     .body = body,
                     .command = "predict",
                     .case_text = case_text,
-                    .result = predict_json(provenance, report),
+                    .result = predict_json(provenance, in_units(report, in_si(units))),
                     .scripts = {std::string(plotly_script()), std::string(page_script())}});
 }
 

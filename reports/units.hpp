@@ -9,6 +9,7 @@ struct Units {
   std::string y = "m";      ///< of the measured output; empty: none
   std::string force = "N";  ///< of the element's output
   std::string input = y;    ///< of the element's input: metres of rubbing on a pendulum, whose y is an angle
+  double y_per_si = 1.0;    ///< what y is multiplied by to be in its unit: see in_units()
 
   /// "0.0639 m", or the bare number where there is no unit.
   static std::string attach(const std::string& number, const std::string& unit) {

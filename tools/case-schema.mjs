@@ -1,7 +1,7 @@
 // Makes the JSON Schema of case files: kinds and their keys as the program tells them, sections by case-sections.mjs.
 //   limcycle laws --json - | node tools/case-schema.mjs >docs/schema/case.json
 import { readFileSync } from 'node:fs';
-import { by_kind, choice, definitions, sections, table } from './case-sections.mjs';
+import { by_kind, choice, definitions, diagram_of, sections, table } from './case-sections.mjs';
 
 const laws = JSON.parse(readFileSync(0, 'utf8')).laws;
 const of_group = (group) => laws.filter((law) => law.group === group);
@@ -50,6 +50,11 @@ const elements = of_group('element');
 // Two of the elements may act on the error too: ErrorElements of models/laws.hpp.
 const both = elements.filter(({ kind }) => ['dead-zone', 'saturation'].includes(kind));
 
+// Blocks of a diagram: every kind but the controllers other than pid, each once.
+const in_diagram = laws.filter((law) => law.group !== 'controller' || law.kind === 'pid');
+const block_kinds = [...new Set([...in_diagram.map(({ kind }) => kind), 'friction-compensation'])].sort();
+const block_meanings = in_diagram.flatMap((law) => law.parameters.map((p) => [p.key, with_unit(p)]));
+
 /// JSON in one line, and with what fits into a line of 120 in one.
 function in_line(value) {
   if (value === null || typeof value !== 'object') return JSON.stringify(value);
@@ -74,7 +79,10 @@ const simulate_needs_plant = { simulate: { properties: { loop: { required: ['pla
 const schema = {
   $schema: 'https://json-schema.org/draft/2020-12/schema',
   title: 'A case file of limcycle: TOML, read as JSON',
-  ...table(remark, sections, ['loop'], { dependentSchemas: simulate_needs_plant }),
+  ...table(remark, { ...sections, diagram: diagram_of(block_kinds, block_meanings) }, [], {
+    oneOf: [{ required: ['loop'] }, { required: ['diagram'] }],
+    dependentSchemas: simulate_needs_plant,
+  }),
   $defs: {
     ...definitions,
     plant: group('From u - F to the position y', of_group('plant')),

@@ -73,20 +73,45 @@ const signal = by_kind('A signal of time: a number, or a table', signal_names, s
 
 // ---- sections: cases/loader/case.cpp, read_loop.cpp, read_methods.cpp, read_sensitivity.cpp, read_claims.cpp
 
+const reference_of_loop = table('set-point r, in the unit of y: a number, or {kind = "ramp", rate}',
+  { kind: { const: 'ramp' }, rate }, ['kind', 'rate'], { type: ['number', 'object'], default: 0 });
+
 const loop = table('The loop, or one lone friction or element', {
   plant: ref('plant'),
   controller: ref('controller'),
   friction: ref('friction'),
   element: ref('series-element'),
   error: ref('error'),
-  reference: table('set-point r, in the unit of y: a number, or {kind = "ramp", rate}',
-    { kind: { const: 'ramp' }, rate }, ['kind', 'rate'], { type: ['number', 'object'], default: 0 }),
+  reference: reference_of_loop,
   load: number('a constant force on the plant, such as weight, N', { default: 0 }),
 }, [], {
   anyOf: ['friction', 'element', 'error'].map((key) => ({ required: [key] })),
   if: { maxProperties: 1, anyOf: ['friction', 'element'].map((key) => ({ required: [key] })) },
   else: { required: ['plant'] },
 });
+
+/// Which keys a block has depends on its kind, `on` and its lists: the program tells.
+export const diagram_of = (kinds, meanings) => {
+  const signal_words = { type: ['string', 'array'], items: { type: 'string' } };
+  const block = {
+    type: 'object',
+    properties: {
+      ...described(meanings),
+      name: text('a letter, then letters, digits and _', { pattern: '^[A-Za-z_][A-Za-z0-9_]*$' }),
+      kind: choice(kinds, 'which'),
+      input: { ...signal_words, description: 'sum of signals, such as "r - axis.y"; a list for several inputs' },
+      on: text('the plant that friction acts on'),
+      between: { type: 'array', items: { type: 'string' }, minItems: 2, maxItems: 2,
+        description: 'the two plants between which friction acts' },
+    },
+    required: ['name', 'kind'],
+  };
+  return table('A loop of any structure, in place of [loop]', {
+    output: text('the signal that is y, such as "axis.y"'),
+    reference: reference_of_loop,
+    block: { type: 'array', items: block, minItems: 1 },
+  }, ['output', 'block']);
+};
 
 const interval = (description) =>
   ({ type: 'array', items: { type: 'number', ...positive }, minItems: 2, maxItems: 2, description });
@@ -163,6 +188,18 @@ const claim = table('A claim of your own: quantity comparison formula', {
 export const sections = {
   title: text("a line for the reader; default: the file's name"),
   loop: ref('loop'),
+  units: table('How texts, pages and pictures show y', {
+    y: {
+      type: ['string', 'object'],
+      description: 'a symbol such as "mm", or {symbol, per_si}',
+      properties: {
+        symbol: text('as it is shown', { minLength: 1, maxLength: 12 }),
+        per_si: number('y in this unit over y in SI units', positive),
+      },
+      required: ['symbol', 'per_si'],
+      additionalProperties: false,
+    },
+  }, ['y']),
   search: table('Where predictions are looked for', {
     amplitude: interval("[from, to] of the element's input; with friction of the rubbing displacement, m"),
     frequency: interval('[from, to], rad/s'),

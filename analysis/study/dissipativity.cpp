@@ -137,17 +137,17 @@ DissipativityReport dissipativity(const Element& element, const std::string& pat
 }
 
 DissipativityReport dissipativity(const LoopParts& parts, const DissipativityOptions& options) {
-  if (!parts.friction && !parts.element)
-    throw std::invalid_argument("dissipativity needs a friction law or a forward element");
-  DissipativityReport report = parts.friction ? dissipativity(*parts.friction, "loop.friction", options)
-                                              : dissipativity(*parts.element, "loop.element", options);
+  const Subject subject = subject_of(parts);
+  if (subject.element == nullptr || subject.path == "loop.error")
+    throw std::invalid_argument("dissipativity needs one friction law or forward element");
+  DissipativityReport report = dissipativity(*subject.element, subject.path, options);
   if (report.status == Status::interrupted) return report;
   const Loop loop = build_loop(parts);
   LoopDissipationOptions energy;
   energy.stop = options.passivity.stop;
-  if (parts.friction && report.threshold) {
-    energy.deficit = report.threshold->value - parts.friction->number("sigma2").value_or(0.0);
-  } else if (parts.friction && report.passivity.passive == Passive::yes) {
+  if (subject.opposes && report.threshold) {
+    energy.deficit = report.threshold->value - subject.element->number("sigma2").value_or(0.0);
+  } else if (subject.opposes && report.passivity.passive == Passive::yes) {
     energy.deficit = 0.0;
   }
   report.loop = loop_dissipation(loop, energy);

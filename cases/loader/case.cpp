@@ -7,24 +7,41 @@
 namespace limcycle {
 namespace {
 
+/// The second derivative of a reference is not among the signals of a loop: it is zero, or the run would lack it.
+void check_feedforward(const case_file::Document& document, const Case& from) {
+  const auto* cascade = std::get_if<Cascade>(&from.loop->controller);
+  if (cascade == nullptr || cascade->acceleration_feedforward == 0.0 || !from.simulate->reference) return;
+  const auto kind = from.simulate->reference->kind;
+  if (kind == Signal::Kind::constant || kind == Signal::Kind::step || kind == Signal::Kind::ramp) return;
+  throw document.error_at("simulate.reference",
+                          "accelerates, and acceleration_feedforward is not simulated: use a constant, step or ramp");
+}
+
 Case read_document(const case_file::Document& document) {
   const case_file::Section top(document, document.root, "");
-  top.allow({"title", "loop", "search", "df", "simulate", "predict", "sensitivity", "dissipativity", "claim"});
+  top.allow({"title", "loop", "diagram", "units", "search", "df", "simulate", "predict", "sensitivity", "dissipativity",
+             "claim"});
   Case result;
   result.file = document.file;
   result.overrides = document.overrides;
   result.title = std::filesystem::path(document.file).stem().string();
   if (const auto title = top.find("title")) result.title = case_file::read_string(*title);
 
-  const auto loop = top.section("loop");
-  if (!loop) throw top.error("loop", "is required: a case needs [loop]");
-  case_file::read_loop(*loop, result);
+  const auto loop = top.section("loop"), diagram = top.section("diagram");
+  if (!loop && !diagram) throw top.error("loop", "is required: a case needs [loop] or [diagram]");
+  if (loop && diagram) throw top.error("diagram", "cannot stand beside [loop]: the diagram is the whole loop");
+  if (loop)
+    case_file::read_loop(*loop, result);
+  else
+    case_file::read_diagram(*diagram, result);
+  if (const auto units = top.section("units")) result.y_unit = case_file::read_units(*units);
   if (const auto search = top.section("search")) result.predict.search = case_file::read_search(*search);
   if (const auto df = top.section("df")) result.df = case_file::read_df(*df);
   if (const auto predict = top.section("predict")) case_file::read_predict(*predict, result);
   if (const auto simulate = top.section("simulate")) {
     if (!result.loop) throw simulate->document().error_at("simulate", "needs a loop: add [loop.plant]");
     result.simulate = case_file::read_simulate(*simulate, state_names(build_loop(*result.loop)));
+    check_feedforward(simulate->document(), result);
   }
   if (const auto energy = top.section("dissipativity")) result.dissipativity = case_file::read_dissipativity(*energy);
   if (const auto sensitivity = top.section("sensitivity"))
@@ -80,8 +97,10 @@ const SimulateOptions& need_simulate(const Case& from) {
 
 const Element& df_element(const Case& from) {
   if (!from.loop) return *from.element;
-  const LoopParts& parts = *from.loop;
-  return parts.friction ? *parts.friction : parts.element ? *parts.element : *parts.error;
+  const Subject subject = subject_of(*from.loop);
+  if (subject.element == nullptr)
+    throw missing(from, "diagram", "has several friction laws or elements: a describing function is of one");
+  return *subject.element;
 }
 
 }  // namespace limcycle

@@ -30,6 +30,12 @@ struct DissipativitySection {
   double top_speed = infinite;  ///< largest |v| of the motions from which energy may be extracted, m/s
 };
 
+/// [units]: the unit in which texts, pages and pictures show y; documents stay in the units of the case.
+struct OutputUnit {
+  std::string symbol;
+  double per_si = 1.0;  ///< y in this unit over y in the unit of the case
+};
+
 /// A case file, read and validated.
 struct Case {
   std::string title;                   ///< default: name of the file without folder and extension
@@ -42,6 +48,7 @@ struct Case {
   std::optional<Element> element;  ///< the lone element; empty if there is a loop
   std::string element_path;        ///< "loop.friction", "loop.element" or "loop.error": the subject of `df`
 
+  std::optional<OutputUnit> y_unit;
   std::optional<DfSection> df;
   std::optional<SimulateOptions> simulate;  ///< duration, initial, force, reference, stepper, rtol, sample are set
   std::optional<ParameterSpread> sensitivity;

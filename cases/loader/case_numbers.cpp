@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "limcycle/cases/loader/owned_parts.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -18,34 +20,23 @@ void append(std::vector<CaseNumber>& list, const std::string& section, const std
   }
 }
 
-void append(std::vector<CaseNumber>& list, const std::string& section, const Element& element) {
-  append(list, section, element.parameters(), element.values());
-}
-
-template <class... Kinds>
-void append(std::vector<CaseNumber>& list, const std::string& section, const std::variant<Kinds...>& any) {
-  std::visit([&]<class Owner>(const Owner& owner) { append(list, section, rows_of<Owner>(), values_of(owner)); }, any);
-}
-
 }  // namespace
 
 std::vector<CaseNumber> numbers_of(const Case& from) {
   std::vector<CaseNumber> list;
   if (!from.loop) {
-    append(list, from.element_path, *from.element);
+    append(list, from.element_path, from.element->parameters(), from.element->values());
     return list;
   }
   const LoopParts& parts = *from.loop;
-  append(list, "loop.plant", parts.plant);
-  append(list, "loop.controller", parts.controller);
-  if (parts.friction) append(list, "loop.friction", *parts.friction);
-  if (parts.element) append(list, "loop.element", *parts.element);
-  if (parts.error) append(list, "loop.error", *parts.error);
+  for (const auto& part : case_file::owned_parts(parts))
+    append(list, part.section, part.rows(parts), part.values(parts));
+  const std::string reference = parts.diagram ? "diagram.reference" : "loop.reference";
   if (parts.reference_rate != 0.0)
-    list.push_back({"loop.reference.rate", "1/s", "slope of the reference", parts.reference_rate, false});
+    list.push_back({reference + ".rate", "1/s", "slope of the reference", parts.reference_rate, false});
   else
-    list.push_back({"loop.reference", "1", "set-point", parts.reference, false});
-  list.push_back({"loop.load", "N", "constant force", parts.load, false});
+    list.push_back({reference, "1", "set-point", parts.reference, false});
+  if (!parts.diagram) list.push_back({"loop.load", "N", "constant force", parts.load, false});
   return list;
 }
 

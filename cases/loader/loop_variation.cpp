@@ -5,64 +5,18 @@
 #include <stdexcept>
 
 #include "limcycle/cases/loader/case_numbers.hpp"
+#include "limcycle/cases/loader/owned_parts.hpp"
 #include "limcycle/cases/loader/sections.hpp"
 #include "limcycle/cases/loader/value.hpp"
 
 namespace limcycle {
 namespace {
 
+using case_file::owned_parts;
+using case_file::OwnedPart;
 using case_file::Value;
 
 constexpr Range no_number{infinite, -infinite};
-
-/// A part of a loop that has parameters, of any type.
-struct Part {
-  const char* section;
-  const std::vector<ParameterRow>& (*rows)(const LoopParts& parts);
-  std::vector<ParameterValue> (*values)(const LoopParts& parts);
-  void (*set)(LoopParts& parts, const std::vector<ParameterValue>& values);
-  bool (*valid)(const LoopParts& parts);
-};
-
-/// Part for a plant or controller: `member` is a variant of kinds.
-template <auto member>
-Part part_of_kinds(const char* section) {
-  return {section,
-          [](const LoopParts& parts) -> const std::vector<ParameterRow>& {
-            return std::visit(
-                []<class Owner>(const Owner&) -> const auto& { return rows_of<Owner>(); }, parts.*member);
-          },
-          [](const LoopParts& parts) {
-            return std::visit([](const auto& owner) { return values_of(owner); }, parts.*member);
-          },
-          [](LoopParts& parts, const std::vector<ParameterValue>& values) {
-            std::visit([&](auto& owner) { set_values(owner, values); }, parts.*member);
-          },
-          [](const LoopParts& parts) {
-            return std::visit([](const auto& owner) { return !owner.validate(); }, parts.*member);
-          }};
-}
-
-/// Part for an element that is present.
-template <auto member>
-Part part_of_element(const char* section) {
-  return {section,
-          [](const LoopParts& parts) -> const std::vector<ParameterRow>& { return (parts.*member)->parameters(); },
-          [](const LoopParts& parts) { return (parts.*member)->values(); },
-          [](LoopParts& parts, const std::vector<ParameterValue>& values) {
-            parts.*member = (parts.*member)->with(values);
-          },
-          [](const LoopParts& parts) { return !(parts.*member)->validate(); }};
-}
-
-std::vector<Part> parts_of(const LoopParts& parts) {
-  std::vector<Part> list{part_of_kinds<&LoopParts::plant>("loop.plant"),
-                         part_of_kinds<&LoopParts::controller>("loop.controller")};
-  if (parts.friction) list.push_back(part_of_element<&LoopParts::friction>("loop.friction"));
-  if (parts.element) list.push_back(part_of_element<&LoopParts::element>("loop.element"));
-  if (parts.error) list.push_back(part_of_element<&LoopParts::error>("loop.error"));
-  return list;
-}
 
 /// The value at a dotted path, or null.
 const Value* value_at(const Value& root, std::string_view path) {
@@ -77,7 +31,7 @@ const Value* value_at(const Value& root, std::string_view path) {
 
 /// True if every part obeys its own rules.
 bool parts_are_valid(const LoopParts& parts) {
-  return std::ranges::all_of(parts_of(parts), [&](const Part& part) { return part.valid(parts); });
+  return std::ranges::all_of(owned_parts(parts), [&](const OwnedPart& part) { return part.valid(parts); });
 }
 
 }  // namespace
@@ -95,8 +49,8 @@ LoopVariation::LoopVariation(const Case& from, const std::string& flag, std::spa
     for (std::size_t i = 0; i < paths.size(); ++i)
       if (paths[i] == path) numbers_[i] = {set, range};
   };
-  for (const Part& part : parts_of(parts_)) {
-    const std::string section(part.section);
+  for (const OwnedPart& part : owned_parts(parts_)) {
+    const std::string& section = part.section;
     const bool there = value_at(document.root, section) != nullptr;  // a loop without a controller has none to change
     const auto& rows = part.rows(parts_);
     const auto values = part.values(parts_);
@@ -124,11 +78,12 @@ LoopVariation::LoopVariation(const Case& from, const std::string& flag, std::spa
       part.set(p, changed);
     });
   }
+  const std::string reference = parts_.diagram ? "diagram.reference" : "loop.reference";
   if (parts_.reference_rate != 0.0)
-    found("loop.reference.rate", any_number, [](LoopParts& p, double value) { p.reference_rate = value; });
+    found(reference + ".rate", any_number, [](LoopParts& p, double value) { p.reference_rate = value; });
   else
-    found("loop.reference", any_number, [](LoopParts& p, double value) { p.reference = value; });
-  found("loop.load", any_number, [](LoopParts& p, double value) { p.load = value; });
+    found(reference, any_number, [](LoopParts& p, double value) { p.reference = value; });
+  if (!parts_.diagram) found("loop.load", any_number, [](LoopParts& p, double value) { p.load = value; });
   for (std::size_t i = 0; i < paths.size(); ++i)
     if (!numbers_[i].set) static_cast<void>(number_at(from, flag, paths[i]));  // throws
 }

@@ -71,12 +71,15 @@ NamedKind read_kind(const Section& section, const std::vector<std::string>& avai
   return {place, read_string(place)};
 }
 
-Element read_element(const Section& section, const std::vector<Element>& list, const KindNames& names) {
+Element read_element(const Section& section, const std::vector<Element>& list, const KindNames& names,
+                     const std::vector<std::string>& extra) {
   const auto available = limcycle::kinds_of(list);
   const NamedKind named = read_kind(section, available, names);
   const Element* kind = find_kind(list, named.kind);
   if (kind == nullptr) throw unknown_kind(named.place, available, names);
-  const auto values = read_values(section, kind->parameters(), kind->values(), {"kind"});
+  std::vector<std::string> keys{"kind"};
+  keys.insert(keys.end(), extra.begin(), extra.end());
+  const auto values = read_values(section, kind->parameters(), kind->values(), std::move(keys));
   Element element = kind->with(values);
   if (const auto broken = element.validate()) throw broken_rule(section, *broken, kind->parameters(), values);
   return element;

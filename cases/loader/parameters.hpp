@@ -74,7 +74,9 @@ Variant read_any(const Section& section, const KindNames& names) {
   return *std::move(result);
 }
 
-/// Reads the element of a list that the section's `kind` names.
-Element read_element(const Section& section, const std::vector<Element>& list, const KindNames& names);
+/// Reads the element of a list that the section's `kind` names. `extra`: keys of the section besides `kind` and those
+/// of the element.
+Element read_element(const Section& section, const std::vector<Element>& list, const KindNames& names,
+                     const std::vector<std::string>& extra = {});
 
 }  // namespace limcycle::case_file

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "limcycle/cases/loader/parameters.hpp"
 #include "limcycle/cases/loader/sections.hpp"
 
@@ -36,6 +38,29 @@ Controller read_controller(const std::optional<Section>& section) {
   return read_any<Controller>(*section, {.what = "controller", .elsewhere = {}, .elsewhere_hint = {}});
 }
 
+/// Parameters that are valid one by one may still overflow together (a mass of 1e-320 kg has no finite inverse).
+bool is_finite(const Plant& plant) {
+  const PlantModel model = std::visit([](const auto& p) { return p.model(); }, plant);
+  return model.A.allFinite() && model.B_u.allFinite() && model.C_y.allFinite() && model.C_v.allFinite();
+}
+
+bool is_finite(const Loop& loop) {
+  bool finite = loop.A.allFinite() && loop.A_delayed.allFinite() && loop.B.allFinite() && loop.E.allFinite();
+  for (const auto& port : loop.ports)
+    finite = finite && port.C.allFinite() && port.D.allFinite() && port.C_v.allFinite() && port.D_v.allFinite();
+  return finite;
+}
+
+bool plants_are_finite(const LoopParts& parts) {
+  if (!parts.diagram) return is_finite(parts.plant);
+  return std::ranges::all_of(parts.diagram->blocks, [](const Block& block) {
+    const auto* plant = std::get_if<Plant>(&block.what);
+    return plant == nullptr || is_finite(*plant);
+  });
+}
+
+}  // namespace
+
 void read_reference(const Place& place, LoopParts& parts) {
   if (place.value.as<Value::Table>() == nullptr) {
     if (place.value.as<double>() == nullptr && place.value.as<std::int64_t>() == nullptr)
@@ -50,32 +75,16 @@ void read_reference(const Place& place, LoopParts& parts) {
   parts.reference_rate = read_number(section.at("rate", "slope of the ramp, 1/s"));
 }
 
-/// Parameters that are valid one by one may still overflow together (a mass of 1e-320 kg has no finite inverse).
-bool is_finite(const Plant& plant) {
-  const PlantModel model = std::visit([](const auto& p) { return p.model(); }, plant);
-  return model.A.allFinite() && model.B_u.allFinite() && model.C_y.allFinite() && model.C_v.allFinite();
-}
-
-bool is_finite(const Loop& loop) {
-  bool finite = loop.A.allFinite() && loop.A_delayed.allFinite() && loop.B.allFinite() && loop.E.allFinite();
-  for (const auto& port : loop.ports)
-    finite = finite && port.C.allFinite() && port.D.allFinite() && port.C_v.allFinite() && port.D_v.allFinite();
-  return finite;
-}
-
-void check_together(const Section& section, const LoopParts& parts) {
+void check_together(const Section& section, const std::string& key, const LoopParts& parts) {
   const auto& document = section.document();
-  if (!is_finite(parts.plant))
-    throw document.error_at("loop.plant", "overflows: its parameters differ too much in size");
+  const std::string overflows = "overflows: its parameters differ too much in size";
+  if (!plants_are_finite(parts)) throw document.error_at(key + (parts.diagram ? "" : ".plant"), overflows);
   if (const auto broken = validate(parts)) throw document.error_at(broken->key, broken->rule);
-  if (!is_finite(build_loop(parts)))
-    throw document.error_at("loop", "overflows: its parameters differ too much in size");
+  if (!is_finite(build_loop(parts))) throw document.error_at(key, overflows);
 }
-
-}  // namespace
 
 std::optional<Loop> finite_loop(const LoopParts& parts) {
-  if (!is_finite(parts.plant) || validate(parts)) return std::nullopt;
+  if (!plants_are_finite(parts) || validate(parts)) return std::nullopt;
   Loop loop = build_loop(parts);
   return is_finite(loop) ? std::optional(std::move(loop)) : std::nullopt;
 }
@@ -102,7 +111,7 @@ void read_loop(const Section& section, Case& into) {
   if (error) parts.error = read_error(*error);
   if (const auto reference = section.find("reference")) read_reference(*reference, parts);
   if (const auto load = section.find("load")) parts.load = read_number(*load);
-  check_together(section, parts);
+  check_together(section, "loop", parts);
   into.loop = std::move(parts);
 }
 

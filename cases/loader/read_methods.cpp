@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "limcycle/cases/loader/sections.hpp"
 
@@ -76,6 +77,32 @@ DissipativitySection read_dissipativity(const Section& section) {
   if (const auto speed = section.find("speed")) result.speed = read_number(*speed, positive, "m/s");
   if (const auto top = section.find("top_speed")) result.top_speed = read_number(*top, positive, "m/s");
   return result;
+}
+
+OutputUnit read_units(const Section& section) {
+  section.allow({"y"});
+  const Place y = section.at("y", "a unit such as \"mm\", or {symbol = \"mm\", per_si = 1000.0}");
+  constexpr std::size_t longest = 12;
+  const auto symbol_of = [&](const Place& place) {
+    std::string symbol = read_string(place);
+    const bool printable = std::ranges::none_of(symbol, [](char c) { return static_cast<unsigned char>(c) <= ' '; });
+    if (symbol.empty() || symbol.size() > longest || !printable)
+      throw place.error("must be 1 to " + std::to_string(longest) + " letters or signs without spaces");
+    return symbol;
+  };
+  if (y.value.as<Value::Table>() != nullptr) {
+    const Section table(y.document, y.value, y.path);
+    table.allow({"symbol", "per_si"});
+    return {symbol_of(table.at("symbol", "as it is shown")),
+            read_number(table.at("per_si", "y in this unit over y in SI units"), positive)};
+  }
+  // A length or an angle in SI units; any other symbol names the unit that the case is written in.
+  constexpr std::array<std::pair<std::string_view, double>, 5> known{
+      {{"mm", 1e3}, {"um", 1e6}, {"nm", 1e9}, {"cm", 1e2}, {"deg", 180.0 / std::numbers::pi}}};
+  OutputUnit unit{symbol_of(y), 1.0};
+  for (const auto& [symbol, per_si] : known)
+    if (unit.symbol == symbol) unit.per_si = per_si;
+  return unit;
 }
 
 DfSection read_df(const Section& section) {

@@ -64,6 +64,8 @@ class Section {
                                  const std::string& value_by_default = {}) const;
 
   std::string path_of(std::string_view key) const;
+  /// All keys with their values, in the order of the file.
+  const Value::Table& table() const { return *value_.as<Value::Table>(); }
   const std::string& path() const { return path_; }
   const Document& document() const { return document_; }
 

@@ -10,10 +10,20 @@ namespace limcycle::case_file {
 /// [loop]: either all parts of a loop, or one lone element.
 void read_loop(const Section& section, Case& into);
 
+/// [diagram]: blocks joined by the names of their signals, as the file is after name_blocks().
+void read_diagram(const Section& section, Case& into);
+
+/// The reference of a loop: a number or {kind = "ramp", rate = ...}.
+void read_reference(const Place& place, LoopParts& parts);
+
+/// Checks the parts of a loop together; `key`: "loop" or "diagram".
+void check_together(const Section& section, const std::string& key, const LoopParts& parts);
+
 /// The parts joined; empty if they do not fit together and read_loop() would reject them.
 std::optional<Loop> finite_loop(const LoopParts& parts);
 
 SearchBox read_search(const Section& section);
+OutputUnit read_units(const Section& section);
 DfSection read_df(const Section& section);
 void read_predict(const Section& section, Case& into);
 DissipativitySection read_dissipativity(const Section& section);

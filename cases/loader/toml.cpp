@@ -52,6 +52,7 @@ Document parse(std::string_view text, const std::string& file) {
     document.file = file;
     document.root = convert(toml::parse(text), -1);
     document.root.line = 1;
+    name_blocks(document);
     return document;
   } catch (const toml::parse_error& error) {
     throw InputError(

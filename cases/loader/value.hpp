@@ -73,6 +73,11 @@ std::size_t nested_too_deep(std::string_view text);
 /// Parses TOML 1.0. Throws InputError with line and column.
 Document parse(std::string_view text, const std::string& file);
 
+/// Names the blocks of a diagram: each table of the list `diagram.block` becomes the table `diagram.NAME`, so that its
+/// numbers have paths as all others do. Called by parse(). Throws InputError for a name that is missing, taken or no
+/// name.
+void name_blocks(Document& document);
+
 /// Applies "PATH=VALUE": replaces or creates the value at PATH. Throws InputError naming the override.
 void apply_override(Document& document, const std::string& override);
 

@@ -11,6 +11,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/adequacy/adequate.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
@@ -34,7 +35,9 @@ const LoopParts& need_friction(const Case& from) {
                     .override = {},
                     .key = "loop.friction",
                     .value = {},
-                    .rule = "is missing: `adequate` compares friction laws and needs one",
+                    .rule = parts.diagram
+                                ? "is needed: `adequate` puts other laws in its place, and does not do so in a diagram"
+                                : "is missing: `adequate` compares friction laws and needs one",
                     .suggestion = "`limcycle precision` compares methods on any loop"});
 }
 
@@ -85,14 +88,15 @@ int run(AdequateFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   const LoopParts& parts = need_friction(from);
-  const Units units = units_of(parts);
+  const Units units = units_of(from);
   Output output(flags);
   output.check_file("--html", flags.html);
   const AdequateReport report = compute(from, parts, flags);
   const auto made = provenance(flags, &from);
-  std::string text = adequate_text(from.title, report, units);
+  const AdequateReport shown = in_units(report, units);
+  std::string text = adequate_text(from.title, shown, units);
   if (!flags.html.empty()) {
-    output.file(flags.html, adequate_page(report, made, from.text, units));
+    output.file(flags.html, adequate_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
   output.text(first_line(flags, report.status) + text);

@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/output.hpp"
+#include "limcycle/cli/units_of.hpp"
 #include "limcycle/models/linear/dense.hpp"
+#include "limcycle/reports/figures/block_diagram.hpp"
+#include "limcycle/reports/figures/staircase.hpp"
 
 namespace limcycle {
 namespace {
@@ -27,12 +32,34 @@ void describe_poles(const Loop& loop, CheckSummary& summary) {
   summary.stable = *summary.slowest_pole < 0.0;
 }
 
+std::string kind_in(const Block& block) {
+  if (const auto* element = std::get_if<Element>(&block.what)) return std::string(element->kind());
+  if (const auto* plant = std::get_if<Plant>(&block.what)) return std::string(kind_of(*plant));
+  if (const auto* controller = std::get_if<Controller>(&block.what)) return std::string(kind_of(*controller));
+  return std::string(kind_of(std::get<LinearBlock>(block.what)));
+}
+
+std::vector<CheckSummary::Block> blocks_of(const Diagram& diagram) {
+  std::vector<CheckSummary::Block> blocks;
+  for (const Block& block : diagram.blocks) {
+    std::vector<std::string> inputs;
+    for (const SignalSum& sum : block.inputs) inputs.push_back(sum_in_words(sum));
+    if (!block.on.empty()) inputs.push_back(block.on + (block.against.empty() ? "" : ", " + block.against));
+    blocks.push_back({block.name, kind_in(block), std::move(inputs), block.contact != Contact::none});
+  }
+  return blocks;
+}
+
 CheckSummary summary_of(const Case& from) {
   CheckSummary summary;
   if (from.loop) {
     const Loop loop = build_loop(*from.loop);
-    summary.plant = kind_of(from.loop->plant);
-    summary.controller = kind_of(from.loop->controller);
+    if (from.loop->diagram) {
+      summary.blocks = blocks_of(*from.loop->diagram);
+    } else {
+      summary.plant = kind_of(from.loop->plant);
+      summary.controller = kind_of(from.loop->controller);
+    }
     for (std::size_t i = 0; i < loop.elements.size(); ++i)
       summary.elements.push_back({loop.ports[i].path, std::string(loop.elements[i].kind())});
     summary.states = state_names(loop);
@@ -56,13 +83,22 @@ CheckSummary summary_of(const Case& from) {
   return summary;
 }
 
-int check(const CommonFlags& flags) {
+struct CheckFlags : CommonFlags {
+  std::string picture;  ///< --svg
+};
+
+int check(CheckFlags flags) {
+  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
   const Case from = load_case(flags);
+  if (!flags.picture.empty() && !from.loop)
+    throw std::invalid_argument("--svg: the case holds a lone element; there is no loop to draw");
   const auto summary = summary_of(from);
   const auto made = provenance(flags, &from);
   Output output(flags);
   Provenance shown = made;
   shown.file = one_line(made.file);
+  output.check_file("--svg", flags.picture);
+  if (!flags.picture.empty()) output.file(flags.picture, block_diagram(*from.loop, units_of(from)));
   output.text(check_text(shown, summary));
   if (output.wants_json()) output.json(check_json(made, summary));
   if (output.wants_csv()) output.csv(check_csv(made, summary));
@@ -73,9 +109,11 @@ int check(const CommonFlags& flags) {
 }  // namespace
 
 void add_check(CLI::App& program, Action& action) {
-  const auto flags = std::make_shared<CommonFlags>();
-  add_command(program, action, "check", "Validate a case file and print a summary", true, flags,
-              [flags] { return check(*flags); });
+  const auto flags = std::make_shared<CheckFlags>();
+  CLI::App* command = add_command(program, action, "check", "Validate a case file and print a summary", true, flags,
+                                  [flags] { return check(*flags); });
+  command->add_option("--svg", flags->picture, "Write a block diagram of the loop to FILE (so does -o FILE.svg)")
+      ->type_name("FILE");
 }
 
 }  // namespace limcycle

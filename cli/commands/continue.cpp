@@ -11,6 +11,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/continuation/continue.hpp"
+#include "limcycle/reports/in_units.hpp"
 
 namespace limcycle {
 namespace {
@@ -31,7 +32,7 @@ int run(ContinueFlags flags) {
   if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
   const ParameterRange range = parameter_range("--parameter", flags.parameter);
   const Case from = load_case(flags);
-  const Units units = units_of(need_loop(from));
+  const Units units = units_of(from);
   const CaseNumber number = number_at(from, "--parameter", range.path);
   Output output(flags);
   output.check_file("--html", flags.html);
@@ -51,12 +52,13 @@ int run(ContinueFlags flags) {
     report.found = follow(LoopVariation(from, "--parameter", range.path), options);
   }
   const auto made = provenance(flags, &from);
-  std::string text = continue_text(from.title, report, units);
+  const ContinueReport shown = in_units(report, units);
+  std::string text = continue_text(from.title, shown, units);
   if (!flags.html.empty()) {
-    output.file(flags.html, continue_page(report, made, from.text, units));
+    output.file(flags.html, continue_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
-  if (!flags.picture.empty()) output.file(flags.picture, continue_picture(report, units));
+  if (!flags.picture.empty()) output.file(flags.picture, continue_picture(shown, units));
   output.text(first_line(flags, report.found.status) + text);
   if (output.wants_json()) output.json(continue_json(made, report));
   if (output.wants_csv()) output.csv(continue_csv(report));

@@ -23,7 +23,7 @@ struct DissipativityFlags : CommonFlags {
 /// The number of the element that a flag names, checked against the element.
 PassivityRange range_of(const Case& from, const DissipativityFlags& flags) {
   const ParameterRange range = parameter_range("--parameter", flags.parameter);
-  const std::string path = !from.loop ? from.element_path : from.loop->friction ? "loop.friction" : "loop.element";
+  const std::string path = !from.loop ? from.element_path : subject_of(*from.loop).path;
   const auto refuse = [&](const std::string& rule) {
     return InputError({.file = {},
                        .line = 0,
@@ -56,14 +56,18 @@ DissipativityReport compute(const Case& from, const DissipativityFlags& flags) {
   options.passivity.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
   catch_interrupts();
   if (!from.loop) return dissipativity(*from.element, from.element_path, options);
-  if (!from.loop->friction && !from.loop->element)
-    throw InputError({.file = from.file,
-                      .line = 0,
-                      .override = {},
-                      .key = "loop.friction",
-                      .value = {},
-                      .rule = "is required by this command: the loop holds neither friction nor a forward element",
-                      .suggestion = {}});
+  const Subject subject = subject_of(*from.loop);
+  if (subject.element == nullptr || subject.path == "loop.error")
+    throw InputError(
+        {.file = from.file,
+         .line = 0,
+         .override = {},
+         .key = from.loop->diagram ? "diagram" : "loop.friction",
+         .value = {},
+         .rule = from.loop->diagram
+                     ? "has several friction laws or elements: this command examines one"
+                     : "is required by this command: the loop holds neither friction nor a forward element",
+         .suggestion = {}});
   return dissipativity(*from.loop, options);
 }
 

@@ -13,7 +13,8 @@
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/ranks/sweep.hpp"
 #include "limcycle/cli/units_of.hpp"
-#include "limcycle/models/assemble.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/map/map.hpp"
 #include "limcycle/reports/number.hpp"
 
@@ -78,7 +79,7 @@ int run(MapFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
   const Case from = load_case(flags);
-  const Units units = units_of(need_loop(from));
+  const Units units = units_of(from);
   const Methods methods = chosen_methods(flags.methods);
   MapReport report = map_of(from, flags.x, flags.y, methods);
   Output output(flags);
@@ -96,10 +97,10 @@ int run(MapFlags flags) {
   const auto made = provenance(flags, &from);
   std::string text = map_text(from.title, report);
   if (!flags.html.empty()) {
-    output.file(flags.html, map_page(report, made, from.text, units, flags_text(report.map, flags)));
+    output.file(flags.html, map_page(in_units(report, units), made, from.text, units, flags_text(report.map, flags)));
     text += page_line(flags.html);
   }
-  if (!flags.picture.empty()) output.file(flags.picture, map_picture(report, units));
+  if (!flags.picture.empty()) output.file(flags.picture, map_picture(in_units(report, units), units));
   output.text(first_line(flags, swept.status) + text);
   if (output.wants_json()) output.json(map_json(made, report, swept.status));
   if (output.wants_csv()) output.csv(map_csv(report));

@@ -11,6 +11,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/continuation/margin.hpp"
+#include "limcycle/reports/in_units.hpp"
 
 namespace limcycle {
 namespace {
@@ -67,7 +68,7 @@ int run(MarginFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   const LoopParts& parts = need_loop(from);
-  const Units units = units_of(parts);
+  const Units units = units_of(from);
   std::vector<std::string> notes;
   const auto parameters = parameters_of(from, flags, notes);
   Output output(flags);
@@ -86,9 +87,10 @@ int run(MarginFlags flags) {
   }
   report.notes.insert(report.notes.end(), notes.begin(), notes.end());
   const auto made = provenance(flags, &from);
-  std::string text = margin_text(from.title, report, units);
+  const MarginReport shown = in_units(report, units);
+  std::string text = margin_text(from.title, shown, units);
   if (!flags.html.empty()) {
-    output.file(flags.html, margin_page(report, made, from.text, units));
+    output.file(flags.html, margin_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
   output.text(first_line(flags, report.status) + text);

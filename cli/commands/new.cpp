@@ -13,7 +13,7 @@ namespace {
 
 struct NewFlags : CommonFlags {
   std::string plant, controller, friction, element, error;  ///< empty: not given; "none": none
-  bool all = false, force = false;
+  bool all = false, force = false, diagram = false;
 };
 
 /// The requested case: without friction and element the servo with LuGre friction; an element alone replaces the
@@ -46,7 +46,10 @@ int run(NewFlags flags) {
   check_kind("--friction", flags.friction);
   check_kind("--element", flags.element);
   check_kind("--error", flags.error);
-  const std::string text = new_case(wanted_case(flags));
+  for (const std::string* kind : {&flags.plant, &flags.controller, &flags.friction, &flags.element, &flags.error})
+    if (flags.diagram && !kind->empty())
+      throw refusal("--diagram", "writes a cascade of blocks: kinds of slots do not go with it");
+  const std::string text = flags.diagram ? new_diagram() : new_case(wanted_case(flags));
   try {
     read_case(text, "the new case");
   } catch (const InputError& error) {  // each part is valid by itself
@@ -75,6 +78,7 @@ void add_new(CLI::App& program, Action& action) {
   command->add_option("--friction", flags->friction, "Friction law, or none")->type_name("KIND");
   command->add_option("--element", flags->element, "Element between controller and plant")->type_name("KIND");
   command->add_option("--error", flags->error, "Element on the error")->type_name("KIND");
+  command->add_flag("--diagram", flags->diagram, "Write a cascade as a diagram of blocks instead");
   command->add_flag("--all", flags->all, "Write the optional sections too, not as comments");
   command->add_flag("--force", flags->force, "Replace a file that exists");
 }

@@ -8,6 +8,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/models/friction/own_law.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/precision/atlas.hpp"
 #include "limcycle/reports/precision/precision.hpp"
 
@@ -43,7 +44,8 @@ PrecisionReport compute(const Case& from, const PrecisionFlags& flags) {
 
 StepperAtlas compute_atlas(const Case& from, const PrecisionFlags& flags) {
   if (!from.loop || !from.loop->friction)
-    throw std::invalid_argument("loop.friction: precision --stability needs a loop with friction");
+    throw std::invalid_argument("loop.friction: precision --stability needs a loop with [loop.friction]" +
+                                std::string(from.loop && from.loop->diagram ? ", not a diagram" : ""));
   Progress progress(flags.quiet, flags.verbose);
   AtlasOptions options;
   options.predict = from.predict;
@@ -79,14 +81,15 @@ int run(PrecisionFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   if (flags.stability) return run_atlas(from, flags);
-  const Units units = from.loop ? units_of(*from.loop) : Units{};
+  const Units units = units_of(from);
   Output output(flags);
   output.check_file("--html", flags.html);
   const PrecisionReport report = compute(from, flags);
   const auto made = provenance(flags, &from);
-  std::string text = precision_text(from.title, report, units);
+  const PrecisionReport shown = in_units(report, units);
+  std::string text = precision_text(from.title, shown, units);
   if (!flags.html.empty()) {
-    output.file(flags.html, precision_page(report, made, from.text, units));
+    output.file(flags.html, precision_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
   output.text(first_line(flags, report.status) + text);

@@ -12,6 +12,7 @@
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/figures/picture.hpp"
 #include "limcycle/reports/html.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/text.hpp"
 
@@ -50,7 +51,7 @@ int run(PredictFlags flags) {
   const CaseWithPage loaded = load_case_or_page(flags, flags.from);
   const Case& from = loaded.from;
   const LoopParts& parts = need_loop(from);
-  const Units units = units_of(parts);
+  const Units units = units_of(from);
   Output output(flags);
   output.keep("the page to be made again", flags.from);
   output.check_file("--html", flags.html);
@@ -66,13 +67,14 @@ int run(PredictFlags flags) {
     report = answer_of([&] { return predict(build_loop(parts), options); });
   }
   const auto made = provenance(flags, &from);
-  std::string text = predict_text(from.title, report, units);
-  if (flags.verbose) text += predict_efforts(report, from.predict.methods, units);
+  const PredictReport shown = in_units(report, units);
+  std::string text = predict_text(from.title, shown, units);
+  if (flags.verbose) text += predict_efforts(shown, from.predict.methods, units);
   if (!flags.html.empty()) {
-    output.file(flags.html, predict_page(report, made, from.text, units));
+    output.file(flags.html, predict_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
-  if (!flags.pictures.empty()) output.file(flags.pictures, predict_picture(report, units));
+  if (!flags.pictures.empty()) output.file(flags.pictures, predict_picture(shown, units));
   output.text(first_line(flags, report.status) + text);
   const std::string document = predict_json(made, report);
   if (output.wants_json()) output.json(document);

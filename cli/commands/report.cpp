@@ -14,6 +14,7 @@
 #include "limcycle/cli/report_parts.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/csv.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/text.hpp"
 
@@ -61,7 +62,7 @@ int run(ReportFlags flags) {
   const CaseWithPage loaded = load_case_or_page(flags, flags.from);
   const Case& from = loaded.from;
   if (loaded.page) take_over(flags, *loaded.page);
-  const Units units = units_of(need_loop(from));
+  const Units units = units_of(from);
   check_wishes(from, flags.wishes);
   const std::string page = page_file(flags, from);
   if (page == "-" && (flags.json == "-" || flags.csv == "-")) throw refusal("-o -", "stdout holds one document only");
@@ -76,9 +77,9 @@ int run(ReportFlags flags) {
     return report_parts(from, flags.wishes, flags, progress);
   }();
   const auto made = provenance(flags, &from);
-  output.file(page, report_page(report, made, from.text, units, flags_text(flags)));
-  output.text(first_line(flags, report.predict.status) + predict_text(from.title, report.predict, units) +
-              page_line(page));
+  output.file(page, report_page(in_units(report, units), made, from.text, units, flags_text(flags)));
+  output.text(first_line(flags, report.predict.status) +
+              predict_text(from.title, in_units(report.predict, units), units) + page_line(page));
   const std::string document = predict_json(made, report.predict);
   if (output.wants_json()) output.json(document);
   if (output.wants_csv()) output.csv(predict_csv(report.predict));

@@ -22,7 +22,8 @@
 #include "limcycle/cli/ranks/ranks.hpp"
 #include "limcycle/cli/ranks/sweep.hpp"
 #include "limcycle/cli/units_of.hpp"
-#include "limcycle/models/assemble.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 
@@ -233,7 +234,7 @@ int run(SensitivityFlags flags) {
     if (!std::isfinite(factor) || factor == 0.0) throw std::invalid_argument("--factors must be finite and not 0");
   const Case from = load_case(flags);
   threshold_numbers(from, flags.thresholds);  // reports errors before anything is computed
-  const Units units = units_of(need_loop(from));
+  const Units units = units_of(from);
   const Loop loop = build_loop(need_loop(from));
   Output output(flags);
   output.keep("the store", flags.store);
@@ -242,9 +243,10 @@ int run(SensitivityFlags flags) {
   const SensitivityReport report = study(from, loop, flags, status);
   auto made = provenance(flags, &from);
   made.isa = to_string(instruction_set(flags));
-  std::string text = sensitivity_text(from.title, report, units);
+  const SensitivityReport shown = in_units(report, units);
+  std::string text = sensitivity_text(from.title, shown, units);
   if (!flags.html.empty()) {
-    output.file(flags.html, sensitivity_page(report, made, from.text, units, flags_text(flags)));
+    output.file(flags.html, sensitivity_page(shown, made, from.text, units, flags_text(flags)));
     text += page_line(flags.html);
   }
   output.text(first_line(flags, status) + text);

@@ -8,6 +8,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/reports/csv.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/text.hpp"
 
@@ -67,7 +68,8 @@ int run(SimulateFlags flags) {
   need_memory_for(from, flags);
   Output output(flags);
   const auto [result, second, energy] = compute(from, flags);
-  std::string text = simulate_text(from.title, result, second, energy, units_of(*from.loop));
+  const Units units = units_of(from);
+  std::string text = simulate_text(from.title, in_units(result, units), second, energy, units);
   if (!output.wants_csv() && !output.wants_json()) text += "\nThe samples: --csv FILE, --csv - or -o FILE.\n";
   output.text(first_line(flags, result.status) + text);
   if (output.wants_json()) output.json(simulate_json(provenance(flags, &from), result, second, energy));

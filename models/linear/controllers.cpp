@@ -1,5 +1,7 @@
 #include "limcycle/models/linear/controllers.hpp"
 
+#include <cmath>
+
 namespace limcycle {
 namespace {
 
@@ -42,6 +44,23 @@ ControllerModel Pid::model() const {
     controller.state_names.emplace_back("e_filtered");
   }
   return controller;
+}
+
+std::optional<BrokenRule> Cascade::validate() const {
+  if (anti_windup.index == clamp)
+    return BrokenRule{"anti_windup", "cannot be \"clamp\" yet: \"back-calculation\" is there, and \"none\""};
+  if (anti_windup.index == 0) return std::nullopt;
+  if (!std::isfinite(limit)) return BrokenRule{"anti_windup", "needs a limit"};
+  if (velocity_ki == 0.0) return BrokenRule{"anti_windup", "needs velocity_ki: there is no integral to hold back"};
+  if (!(velocity_kp > 0.0)) return BrokenRule{"anti_windup", "needs velocity_kp > 0"};
+  return std::nullopt;
+}
+
+ControllerModel Cascade::model() const {
+  Pid position;
+  position.kp = position_kp;
+  position.ki = position_ki;
+  return position.model();
 }
 
 std::optional<BrokenRule> TransferFunctionController::validate() const {

@@ -97,7 +97,47 @@ struct StateSpaceController : Actuator {
   ControllerModel model() const;
 };
 
-using Controller = std::variant<NoController, Pid, TransferFunctionController, StateSpaceController>;
+/// Cascade of a P or PI position loop around a PI velocity loop, with the derivative on the measured velocity v =
+/// dy/dt:
+///   w = position_kp e + position_ki int(e) + velocity_feedforward dr/dt   (the velocity commanded),
+///   u = velocity_kp (w - v) + velocity_ki x,  limited to +-limit,
+///   dx/dt = w - v + anti-windup;  back-calculation: (limited u - u)/velocity_kp, time constant
+///   velocity_kp/velocity_ki.
+/// acceleration_feedforward multiplies d2r/dt2, which is zero for a constant reference and for a ramp.
+/// Back-calculation: Astrom and Hagglund (1995), PID Controllers, ch. 3.5.
+struct Cascade : Actuator {
+  double position_kp{}, position_ki{0.0}, velocity_kp{}, velocity_ki{0.0}, velocity_feedforward{0.0},
+      acceleration_feedforward{0.0}, limit{infinite};
+  Choice anti_windup{};
+  static constexpr std::string_view kind = "cascade";
+  static constexpr std::string_view equation =
+      "w = position_kp e + position_ki int(e) + velocity_feedforward dr/dt;  u = velocity_kp (w - v) + velocity_ki x, "
+      "limited to +-limit;  dx/dt = w - v, with back-calculation + (limited u - u)/velocity_kp;  v = dy/dt";
+  static constexpr std::string_view ways[] = {"none", "clamp", "back-calculation"};
+  static constexpr int clamp = 1, back_calculation = 2;
+  static std::vector<Parameter<Cascade, double>> parameters() {
+    std::vector<Parameter<Cascade, double>> table{
+        {"position_kp", "1/s", "proportional gain of the position loop", &Cascade::position_kp, any_number},
+        {"position_ki", "1/s^2", "integral gain of the position loop", &Cascade::position_ki, any_number, false},
+        {"velocity_kp", "N s/m", "proportional gain of the velocity loop", &Cascade::velocity_kp, any_number},
+        {"velocity_ki", "N/m", "integral gain of the velocity loop", &Cascade::velocity_ki, any_number, false},
+        {"velocity_feedforward", "1", "share of dr/dt in the velocity commanded", &Cascade::velocity_feedforward,
+         any_number, false},
+        {"acceleration_feedforward", "N s^2/m", "force for d2r/dt2", &Cascade::acceleration_feedforward, any_number,
+         false},
+        {"limit", "N", "limit of the command", &Cascade::limit, {0.0, infinite, true, false}, false},
+        {"anti_windup", "1", "what the integral does at the limit", &Cascade::anti_windup, any_number, false, "",
+         ways}};
+    append_table(table);
+    return table;
+  }
+  std::optional<BrokenRule> validate() const;
+  /// The position loop, from e to w; the velocity loop reads v too: see short_form().
+  ControllerModel model() const;
+  int states() const { return (position_ki != 0.0 ? 1 : 0) + (velocity_ki != 0.0 ? 1 : 0); }
+};
+
+using Controller = std::variant<NoController, Pid, TransferFunctionController, StateSpaceController, Cascade>;
 
 inline ControllerModel model_of(const Controller& controller) {
   return std::visit([](const auto& c) { return c.model(); }, controller);

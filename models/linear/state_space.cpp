@@ -71,6 +71,10 @@ Polynomial product(const Polynomial& a, const Polynomial& b) {
 
 }  // namespace
 
+bool does_not_reach(const Eigen::RowVectorXd& C, const Eigen::VectorXd& B) {
+  return std::abs((C * B).value()) <= 1e-12 * (C.cwiseAbs() * B.cwiseAbs()).value();
+}
+
 Eigen::MatrixXcd StateSpace::at(std::complex<double> s) const {
   if (states() == 0) return D.cast<Complex>();
   const Eigen::MatrixXcd resolvent = s * Eigen::MatrixXcd::Identity(states(), states()) - A.cast<Complex>();

@@ -16,6 +16,9 @@ struct StateSpace {
   Eigen::MatrixXcd at(std::complex<double> s) const;
 };
 
+/// True if the product C B is zero to rounding of its terms: B does not change C x at once.
+bool does_not_reach(const Eigen::RowVectorXd& C, const Eigen::VectorXd& B);
+
 /// Single-input single-output realisation of numerator/denominator (highest power first) in controllable form, with the
 /// time scaled so that the coefficients are balanced. Throws std::invalid_argument if it is improper or empty.
 StateSpace realise(std::span<const double> numerator, std::span<const double> denominator);

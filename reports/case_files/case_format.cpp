@@ -15,6 +15,23 @@ CaseSection loop() {
            {"load", "0.0", "constant force on the plant, N", "0"}}};
 }
 
+CaseSection diagram() {
+  return {
+      "diagram",
+      "In place of [loop]: blocks joined by the names of their signals. Each begins with [[diagram.block]], its "
+      "name and kind, and its input, a sum such as \"r - axis.y\"; a friction law has on = \"axis\", or between two "
+      "plants, in place of an input. `limcycle laws` lists the kinds.",
+      {{"output", "\"axis.y\"", "the signal that is y", "", true},
+       {"reference", "0.0", "set-point, the signal r; or {kind = \"ramp\", rate = 0.01}", "0"}}};
+}
+
+CaseSection units() {
+  return {
+      "units",
+      "The unit in which texts, pages and pictures show y. Documents stay in the units of the case.",
+      {{"y", "\"mm\"", "mm, um, nm, cm, deg, the name of another, or { symbol = \"mm\", per_si = 1000.0 }", "", true}}};
+}
+
 CaseSection search() {
   return {
       "search",
@@ -96,8 +113,8 @@ CaseSection claim() {
 }  // namespace
 
 const std::vector<CaseSection>& case_sections() {
-  static const std::vector<CaseSection> all{before_any(), loop(),          search(),      predict(), simulate(),
-                                            df(),         dissipativity(), sensitivity(), claim()};
+  static const std::vector<CaseSection> all{before_any(), loop(), diagram(),       units(),       search(), predict(),
+                                            simulate(),   df(),   dissipativity(), sensitivity(), claim()};
   return all;
 }
 

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "limcycle/models/catalogue.hpp"
+#include "limcycle/models/diagram/linear_blocks.hpp"
 #include "limcycle/models/linear/controllers.hpp"
 #include "limcycle/models/linear/plants.hpp"
 
@@ -54,8 +55,11 @@ std::optional<int> states_with(bool optional_too) {
       return std::nullopt;
     }
   }
-  const auto model = owner.model();
-  int states = static_cast<int>(model.state_names.size());
+  int states = 0;
+  if constexpr (requires { owner.states(); })
+    states = owner.states();
+  else if constexpr (requires { owner.model(); })
+    states = static_cast<int>(owner.model().state_names.size());
   if constexpr (std::is_base_of_v<Actuator, Owner>) states += owner.lag > 0.0 ? 1 : 0;
   return states;
 }
@@ -124,6 +128,7 @@ std::vector<CatalogueEntry> catalogue() {
       all.push_back(entry_of("error element", element));
   append(all, "plant", std::type_identity<Plant>{});
   append(all, "controller", std::type_identity<Controller>{});
+  append(all, "block", std::type_identity<LinearBlock>{});
   return all;
 }
 

@@ -37,9 +37,15 @@ std::vector<std::string> parts(const CheckSummary& summary) {
 std::string check_text(const Provenance& provenance, const CheckSummary& summary) {
   std::string text = line("title", provenance.title) + fmt::format("{:<12}{}\n", "file", provenance.file);
   if (summary.plant) text += line("plant", *summary.plant) + line("controller", *summary.controller);
+  for (std::size_t i = 0; i < summary.blocks.size(); ++i) {
+    const auto& block = summary.blocks[i];
+    const std::string inputs = fmt::format("{}", fmt::join(block.inputs, "; "));
+    text += line(i == 0 ? "blocks" : "", block.name + ": " + block.kind +
+                                             (block.inputs.empty() ? "" : (block.touches ? " on " : " of ") + inputs));
+  }
   text += line("elements", fmt::format("{}", fmt::join(parts(summary), ", ")));
   text += line("states", summary.states.empty() ? "none" : fmt::format("{}", fmt::join(summary.states, ", ")));
-  if (summary.plant) {
+  if (summary.plant || !summary.blocks.empty()) {
     text += line("order", fmt::format("{} (linear part{})", summary.order,
                                       summary.delay > 0.0 ? ", delay " + shortest(summary.delay) + " s" : ""));
     text += line("poles", poles_text(summary));
@@ -52,6 +58,9 @@ std::string check_text(const Provenance& provenance, const CheckSummary& summary
 std::string check_json(const Provenance& provenance, const CheckSummary& summary) {
   Json elements = Json::array();
   for (const auto& part : summary.elements) elements.push_back({{"path", part.path}, {"kind", part.kind}});
+  Json blocks = Json::array();
+  for (const auto& block : summary.blocks)
+    blocks.push_back({{"name", block.name}, {"kind", block.kind}, {"inputs", block.inputs}});
   Json search = nullptr;
   if (const auto& box = summary.search)
     search = {{"amplitude", {box->amplitude_min, box->amplitude_max}},
@@ -59,6 +68,7 @@ std::string check_json(const Provenance& provenance, const CheckSummary& summary
               {"from_case", summary.search_from_case}};
   const Json body{{"plant", or_null(summary.plant)},
                   {"controller", or_null(summary.controller)},
+                  {"blocks", blocks},
                   {"elements", elements},
                   {"states", summary.states},
                   {"order", summary.order},

@@ -13,7 +13,14 @@ struct CheckSummary {
   struct Part {
     std::string path, kind;
   };
-  std::optional<std::string> plant, controller;  ///< kinds; empty for a case of a lone element
+  /// A block of a diagram; `inputs`: what it reads, or the bodies that it touches.
+  struct Block {
+    std::string name, kind;
+    std::vector<std::string> inputs;
+    bool touches = false;
+  };
+  std::optional<std::string> plant, controller;  ///< kinds; empty for a lone element and for a diagram
+  std::vector<Block> blocks;                     ///< of a diagram
   std::vector<Part> elements;                    ///< in the order of evaluation
   std::vector<std::string> states;               ///< linear part, then elements
   int order = 0;                                 ///< of the linear part
@@ -27,7 +34,8 @@ struct CheckSummary {
 
 std::string check_text(const Provenance& provenance, const CheckSummary& summary);
 
-/// {"plant", "controller", "elements": [{"path", "kind"}], "states", "order", "delay", "slowest_pole", "stable",
+/// {"plant", "controller", "blocks": [{"name", "kind", "inputs"}], "elements": [{"path", "kind"}], "states", "order",
+/// "delay", "slowest_pole", "stable",
 ///  "search": {"amplitude": [from, to], "frequency": [from, to], "from_case"}|null}
 std::string check_json(const Provenance& provenance, const CheckSummary& summary);
 

@@ -17,7 +17,8 @@ std::string heading(const std::string& group) {
   if (group == "friction") return "Friction laws ([loop.friction], or [loop.element])";
   if (group == "element") return "Elements ([loop.element])";
   if (group == "error element") return "Elements on the error ([loop.error]; also dead-zone and saturation)";
-  return group == "plant" ? "Plants ([loop.plant])" : "Controllers ([loop.controller])";
+  if (group == "plant") return "Plants ([loop.plant])";
+  return group == "controller" ? "Controllers ([loop.controller])" : "Linear blocks ([[diagram.block]])";
 }
 
 /// Cut at a word, so that a listing has one line a kind.

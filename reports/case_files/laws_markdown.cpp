@@ -73,7 +73,10 @@ std::string other_groups(const std::vector<CatalogueEntry>& entries) {
       {"plant", "Plants", "In `[loop.plant]`. F is the friction, u the command."},
       {"controller", "Controllers",
        "In `[loop.controller]`. Any of them may have a friction compensation, a saturation and a lag behind it, in "
-       "this order."}};
+       "this order."},
+      {"block", "Linear blocks",
+       "In `[[diagram.block]]`, besides all friction laws, elements and plants and the controller `pid`. u is the sum "
+       "written as `input`."}};
   std::string text;
   for (const auto& group : groups) {
     text += fmt::format("\n## {}\n\n{}\n", group.heading, group.words);
@@ -100,7 +103,9 @@ std::string laws_markdown(const std::vector<CatalogueEntry>& entries) {
          "knows; a test compares the two. "
          "-->\n\n"
          "What a case file may name as a `kind`, with its equation, keys and sources: the friction laws, then "
-         "[elements](#elements),\n[plants](#plants) and [controllers](#controllers).\n\n"
+         "[elements](#elements),\n[plants](#plants), [controllers](#controllers) and the [linear "
+         "blocks](#linear-blocks) of "
+         "diagrams.\n\n"
          "F opposes the velocity v; z is a deflection, g(v) the Stribeck level, sgn the sign. *States* counts the "
          "continuous\nones (N: as many as the lists have entries). *Memory*: local is the present state alone, "
          "non-local the return points,\nso that closed minor loops close. *Drift*: does a bounded periodic force "

@@ -160,6 +160,56 @@ std::string other_kinds(const NewPart& part) {
 
 }  // namespace
 
+std::string new_diagram() {
+  return commented(
+             "A cascade as machine axes have it: a P position loop around a PI velocity loop, a limited command, a "
+             "drive with a lag, friction at the axis. It is valid as it is: replace the numbers by your own, add "
+             "blocks, "
+             "join them by the names of their signals. `limcycle check FILE --svg FILE.svg` draws it, `limcycle laws` "
+             "lists the kinds of blocks, `limcycle predict FILE` shows whether the loop hunts.") +
+         R"(title = "Axis with a P position loop around a PI velocity loop"
+
+[diagram]
+output = "axis.y"          # y of the loop
+reference = 0.0            # the signal r, m
+
+[[diagram.block]]
+name = "position"          # commands a velocity
+kind = "gain"
+gain = 30.0                # 1/s
+input = "r - axis.y"
+
+[[diagram.block]]
+name = "velocity"          # commands a force
+kind = "pid"
+kp = 2400.0                # N s/m
+ki = 120000.0              # N/m
+saturation = 800.0         # N
+input = "position - axis.v"
+
+[[diagram.block]]
+name = "drive"
+kind = "low-pass"
+time_constant = 0.0005     # s
+input = "velocity"
+
+[[diagram.block]]
+name = "axis"
+kind = "mass"
+mass = 12.0                # kg
+damping = 40.0             # N s/m
+input = "drive"
+
+[[diagram.block]]
+name = "guide"
+kind = "stribeck"
+on = "axis"                # friction acts on a plant; between = ["axis", "load"] on two
+Fs = 60.0                  # N
+Fc = 40.0                  # N
+vs = 0.002                 # m/s
+)";
+}
+
 std::string new_case(const NewCase& wanted) {
   const auto all = catalogue();
   const auto parts = parts_of(wanted, all);
@@ -179,7 +229,8 @@ std::string new_case(const NewCase& wanted) {
     text += section_of(part.section, *part.entry, part.typical_group, other_kinds(part));
   const std::string number = first_number(parts);
   for (const CaseSection& section : case_sections()) {
-    if (section.name.empty() || section.name == "loop" || section.name == "claim") continue;
+    if (section.name.empty() || section.name == "loop" || section.name == "diagram" || section.name == "claim")
+      continue;
     const bool spreadable = section.name != "sensitivity" || !number.empty();
     text +=
         optional_section(section, wanted.all && spreadable, fmt::format("[{{ path = \"{}\", factor = 1.2 }}]", number));

@@ -16,4 +16,7 @@ struct NewCase {
 /// of cases decides whether the parts fit together.
 std::string new_case(const NewCase& wanted);
 
+/// A commented case of a cascade as a diagram.
+std::string new_diagram();
+
 }  // namespace limcycle

@@ -143,12 +143,14 @@ BlockWords words_of(const std::string& role, std::string_view kind, std::string_
   return words;
 }
 
-/// Words of a plant or controller.
+/// Words of a plant or controller; `whole`: with the actuator, which has blocks of its own in a loop of slots.
 template <class Owner>
-BlockWords words_of_part(const std::string& role, const Owner& owner, const Units& units) {
+BlockWords words_of_part(const std::string& role, const Owner& owner, const Units& units, bool whole = false) {
   auto values = shown_values(rows_of<Owner>(), values_of(owner), values_of(Owner{}), units);
   if constexpr (std::is_base_of_v<Actuator, Owner>)
-    std::erase_if(values, [](const auto& one) { return std::ranges::find(of_actuator, one.key) != of_actuator.end(); });
+    if (!whole)
+      std::erase_if(values,
+                    [](const auto& one) { return std::ranges::find(of_actuator, one.key) != of_actuator.end(); });
   std::vector<BlockLine> fraction;
   if constexpr (requires { owner.denominator; }) add_fraction(fraction, owner.numerator, owner.denominator);
   return words_of(role, Owner::kind, Owner::equation, values, std::move(fraction));
@@ -216,6 +218,21 @@ std::optional<BlockWords> controller_words(const Controller& controller, const U
 BlockWords element_words(const std::string& role, const Element& element, const Units& units) {
   return words_of(role, element.kind(), element.facts().equation,
                   shown_values(element.parameters(), element.values(), element.defaults(), units), {});
+}
+
+BlockWords words_of_block(const Block& block, const Units& units) {
+  BlockWords words;
+  if (const auto* element = std::get_if<Element>(&block.what))
+    words = element_words(block.name, *element, units);
+  else if (const auto* plant = std::get_if<Plant>(&block.what))
+    words = plant_words(*plant, units);
+  else if (const auto* controller = std::get_if<Controller>(&block.what))
+    words = std::visit([&](const auto& one) { return words_of_part(block.name, one, units, true); }, *controller);
+  else
+    words = std::visit([&](const auto& one) { return words_of_part(block.name, one, units); },
+                       std::get<LinearBlock>(block.what));
+  words.title = block.name + words.title.substr(std::min(words.title.find(':'), words.title.size()));
+  return words;
 }
 
 BlockWords compensation_words(double level, const Units& units) {

@@ -29,6 +29,8 @@ BlockWords plant_words(const Plant& plant, const Units& units);
 std::optional<BlockWords> controller_words(const Controller& controller, const Units& units);
 /// `role`: "friction", "element", "on the error".
 BlockWords element_words(const std::string& role, const Element& element, const Units& units);
+/// Any block of a diagram; its title is its name and its kind.
+BlockWords words_of_block(const Block& block, const Units& units);
 BlockWords compensation_words(double level, const Units& units);
 BlockWords limit_words(double limit, const Units& units);
 BlockWords lag_words(double time_constant);

@@ -9,6 +9,7 @@
 #include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/figures/harmonics_figure.hpp"
 #include "limcycle/reports/figures/plotly.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
@@ -149,7 +150,7 @@ std::string report_page(const LoopReport& report, const Provenance& provenance, 
                     .command = "report",
                     .flags = flags,
                     .case_text = case_text,
-                    .result = predict_json(provenance, report.predict),
+                    .result = predict_json(provenance, in_units(report.predict, in_si(units))),
                     .scripts = {std::string(plotly_script()), std::string(page_script())}});
 }
 

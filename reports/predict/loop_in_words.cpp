@@ -2,9 +2,10 @@
 
 #include <cmath>
 
-#include "limcycle/models/assemble.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/reports/figures/block_diagram.hpp"
 #include "limcycle/reports/figures/block_words.hpp"
+#include "limcycle/reports/figures/staircase.hpp"
 
 namespace limcycle {
 
@@ -21,9 +22,10 @@ std::string rubbing_velocity(const Plant& plant) {
 }
 
 std::string reference_words(const LoopParts& parts, const Units& units) {
-  if (parts.reference_rate == 0.0) return "r = " + Units::attach(diagram_number(parts.reference), units.y);
+  if (parts.reference_rate == 0.0)
+    return "r = " + Units::attach(diagram_number(parts.reference * units.y_per_si), units.y);
   const std::string rate = units.y.empty() ? "1/s" : units.y + "/s";
-  return fmt::format("r = t \xC3\x97 {} {}", diagram_number(parts.reference_rate), rate);
+  return fmt::format("r = t \xC3\x97 {} {}", diagram_number(parts.reference_rate * units.y_per_si), rate);
 }
 
 std::string load_words(const LoopParts& parts, const Units& units) {
@@ -54,9 +56,29 @@ std::string command_in_words(const LoopParts& parts, const Units& units) {
          (stages.empty() ? std::string("straight to ") : fmt::format("through {} to ", fmt::join(stages, ", ")));
 }
 
+std::string diagram_in_words(const LoopParts& parts, const Units& units) {
+  std::string words = "The reference is " + reference_words(parts, units) + ".";
+  for (const Block& block : parts.diagram->blocks) {
+    words += " " + block.name + ", " + words_of_block(block, units).whole;
+    if (!block.inputs.empty()) {
+      std::vector<std::string> inputs;
+      for (const SignalSum& sum : block.inputs) inputs.push_back(sum_in_words(sum));
+      words += fmt::format(", reads {}.", fmt::join(inputs, " and "));
+    } else if (block.contact != Contact::none) {
+      words += (block.contact == Contact::opposes ? ", opposes the velocity of " : ", follows the velocity of ") +
+               block.on + (block.against.empty() ? "." : " relative to " + block.against + ".");
+    } else {
+      words += ", has no input.";
+    }
+  }
+  const Term& y = parts.diagram->output;
+  return words + " The output y is " + sum_in_words({y}) + ".";
+}
+
 }  // namespace
 
 std::string loop_in_words(const LoopParts& parts, const Units& units) {
+  if (parts.diagram) return diagram_in_words(parts, units);
   const BlockWords plant = plant_words(parts.plant, units);
   std::string words = command_in_words(parts, units) + "the plant " + plant.whole + ".";
   if (parts.load != 0.0) words += " A constant " + load_words(parts, units) + " acts on the plant.";

@@ -1,7 +1,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
-#include "limcycle/models/assemble.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/models/element/backlash.hpp"
 #include "limcycle/models/element/compensation.hpp"
 #include "limcycle/models/element/cubic.hpp"

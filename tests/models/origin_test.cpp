@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/models/assemble.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/models/element/dead_zone.hpp"
 #include "limcycle/tests/gantry.hpp"
 #include "limcycle/tests/loops.hpp"

@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/energy/loop/plant_energy.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/models/assemble.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/models/element/element.hpp"
 
 namespace limcycle {
@@ -207,6 +207,6 @@ void EnergyAudit::step(LoopField& field, March& march, const std::vector<Mode>& 
 
 const EnergyBalance& EnergyAudit::balance() const { return count_->balance(); }
 
-bool has_energy(const LoopParts& parts) { return parts.friction || energy_of(parts.plant); }
+bool has_energy(const LoopParts& parts) { return !parts.diagram && (parts.friction || energy_of(parts.plant)); }
 
 }  // namespace limcycle

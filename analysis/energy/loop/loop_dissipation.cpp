@@ -5,7 +5,7 @@ namespace {
 
 /// Answer on the absence of cycles, for a loop with friction or without.
 Answer absence(const LoopDissipation& of, const Loop& loop) {
-  return loop.ports.empty() || loop.ports.back().path != "loop.friction" ? of.sector.no_cycle() : of.passivity;
+  return loop.ports.empty() || !loop.ports.back().opposes ? of.sector.no_cycle() : of.passivity;
 }
 
 }  // namespace

@@ -48,8 +48,7 @@ RubbingImpedance::RubbingImpedance(const Loop& loop) { applies_ = check(loop); }
 /// Checks that the theorem applies to this loop; makes the impedance if so.
 Answer RubbingImpedance::check(const Loop& loop) {
   const auto not_applicable = [](std::string why) { return Answer{Decision::not_applicable, std::move(why)}; };
-  if (loop.ports.empty() || !loop.ports.back().rubs || loop.ports.back().path != "loop.friction")
-    return not_applicable("there is no friction in the loop");
+  if (loop.ports.empty() || !loop.ports.back().opposes) return not_applicable("there is no friction in the loop");
   if (loop.elements.size() > 1) return not_applicable("the rest of the loop is not linear: " + loop.ports.front().path);
   if (loop.delay > 0.0) return {Decision::undecided, "the rest of the loop has a delay, so that it is not rational"};
   const Port& port = loop.ports.back();

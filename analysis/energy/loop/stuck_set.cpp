@@ -233,7 +233,7 @@ void decide_attraction(const Loop& loop, const Equilibria& set, double middle, c
 
 /// Reason why the question does not apply to this loop, or nothing.
 std::optional<std::string> not_for(const Loop& loop) {
-  if (loop.elements.empty() || loop.ports.back().path != "loop.friction") return "there is no friction in the loop";
+  if (loop.elements.empty() || !loop.ports.back().opposes) return "there is no friction in the loop";
   if (loop.elements.size() > 1) return "the rest of the loop is not linear: " + loop.ports.front().path;
   if (loop.delay > 0.0) return "the loop has a delay";
   return std::nullopt;

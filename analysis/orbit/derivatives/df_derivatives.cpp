@@ -55,6 +55,7 @@ Loop driven_loop(const Element& element, const Driven& by) {
   port.rubs = element.is_friction();
   (port.rubs ? port.c_v : port.c)(constant_one) = by.bias;
   port.C_delayed = Eigen::RowVectorXd::Zero(of_oscillator);
+  port.opposes = port.rubs;
   port.path = port.rubs ? "loop.friction" : "loop.element";
   loop.ports.push_back(std::move(port));
   loop.elements.push_back(element);

@@ -218,7 +218,9 @@ std::vector<std::string> state_names(const Loop& loop) {
   auto names = loop.state_names;
   for (std::size_t i = 0; i < loop.elements.size(); ++i) {
     const int count = loop.elements[i].states();
-    const std::string base = loop.ports[i].path == "loop.friction" ? "z" : "z_element";
+    const std::string& path = loop.ports[i].path;
+    const bool slot = !path.starts_with("diagram.");
+    const std::string base = !slot ? path.substr(8) + ".z" : path == "loop.friction" ? "z" : "z_element";
     for (int k = 0; k < count; ++k) names.push_back(count == 1 ? base : base + std::to_string(k + 1));
   }
   return names;

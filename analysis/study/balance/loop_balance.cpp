@@ -14,6 +14,9 @@
 #include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/orbit/cycle/return_map.hpp"
 #include "limcycle/analysis/study/balance/quasi_linear.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/quantizer.hpp"
+#include "limcycle/models/element/saturation.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -49,6 +52,11 @@ double mean_output(const Element& element, double A, double w, double bias, doub
 }
 
 bool is_friction(const Loop& loop, std::size_t i) { return loop.ports[i].rubs; }
+
+/// True for the elements that may limit a command or stand on an error.
+bool is_limit_or_gap(const Element& element) {
+  return element.as<Saturation<double>>() || element.as<DeadZone<double>>() || element.as<Quantizer<double>>();
+}
 
 bool pulls_back(const Loop& loop, std::size_t i) { return loop.elements[i].pull(0.0, 0.0).has_value(); }
 
@@ -148,11 +156,12 @@ std::optional<std::string> LoopBalance::not_applicable(const Loop& loop) {
     return "the plain describing function is for one nonlinear element with at most one saturated command or error "
            "element beside it";
   const std::string other = sorted.others.empty() ? "" : loop.ports[sorted.others.front()].path;
-  if (other == "loop.element" || other == "loop.error.rate")
+  const bool block = other.starts_with("diagram.") && !is_limit_or_gap(loop.elements[sorted.others.front()]);
+  if (other == "loop.element" || other.ends_with(".rate") || block)
     return "the plain describing function is for one nonlinear element; this loop has others with inputs of their own";
   if (symmetry(loop)) return std::nullopt;
   for (const auto& [index, factor] : sorted.beside)
-    if (loop.ports[index].path != "loop.controller.friction_compensation" && !pulls_back(loop, index))
+    if (!loop.ports[index].rubs && !pulls_back(loop, index))
       return "the loop is biased (load, reference, belt) and has an element on the error";
   if (is_friction(loop, n - 1)) return std::nullopt;
   if (rank(loop.A) < loop.A.rows())

@@ -30,7 +30,7 @@ const Loop& applicable(const Loop& loop) {
 }  // namespace
 
 std::optional<std::string> CompositeBalance::not_applicable(const Loop& loop) {
-  if (loop.elements.empty() || loop.ports.back().path != "loop.friction")
+  if (loop.elements.empty() || !loop.ports.back().opposes)
     return "the composite describing function is of mass and friction; this loop has no friction";
   if (loop.elements.size() > 1)
     return "the composite describing function takes mass and friction as the one nonlinear element; this loop has " +

@@ -10,14 +10,14 @@ namespace limcycle {
 namespace {
 
 constexpr std::array factors{0.5, 1.0, 2.0};
-constexpr std::array names{"half", "default", "double"};
-constexpr double rate = 0.1;  // N/s
+constexpr std::array factor_names{"half", "default", "double"};
+constexpr double ramp_rate = 0.1;  // N/s
 
-std::string in_words(const std::string& key, double factor) {
+std::string parameter_in_words(const std::string& key, double factor) {
   return factor == 1.0 ? "default" : key + " x " + short_number(factor);
 }
 
-std::string trend(double low, double middle, double high) {
+std::string trend_over_parameter(double low, double middle, double high) {
   if (!std::isfinite(low) || !std::isfinite(middle) || !std::isfinite(high)) return "not known";
   const double least = 2e-5 * std::abs(middle);
   if (std::abs(low - middle) <= least && std::abs(high - middle) <= least) return "same";
@@ -26,10 +26,10 @@ std::string trend(double low, double middle, double high) {
   return "both ways";
 }
 
-LawPart one(const LawSetting& setting) {
+LawPart breakaway_of_law(const LawSetting& setting) {
   LawPart part;
   const double gross = gross_displacement(setting);
-  const BreakAway base = break_away(setting, rate, gross);
+  const BreakAway base = break_away(setting, ramp_rate, gross);
   part.status = base.run.status;
   const auto row = [&](const std::string& name, const BreakAway& b) {
     part.rows.push_back({"", name, {b.peak, b.displacement, b.velocity, b.applied, b.slope, b.fall_time}});
@@ -41,15 +41,16 @@ LawPart one(const LawSetting& setting) {
       // The gross displacement is kept: it is the reference for the applied force, not a parameter of the law.
       const auto changed = varied(setting, key, factors[i]);
       if (!changed) continue;
-      runs[i] = factors[i] == 1.0 ? base : break_away(*changed, rate, gross);
+      runs[i] = factors[i] == 1.0 ? base : break_away(*changed, ramp_rate, gross);
       if (runs[i].run.status != Status::converged) part.status = runs[i].run.status;
-      if (factors[i] != 1.0) row(in_words(key, factors[i]), runs[i]);
-      part.add(0, thinned(names[i], runs[i].run.x, runs[i].run.F, 120), key);
-      part.add(1, thinned(names[i], runs[i].run.v, runs[i].run.F, 120), key);
+      if (factors[i] != 1.0) row(parameter_in_words(key, factors[i]), runs[i]);
+      part.add(0, thinned(factor_names[i], runs[i].run.x, runs[i].run.F, 120), key);
+      part.add(1, thinned(factor_names[i], runs[i].run.v, runs[i].run.F, 120), key);
     }
     part.finding += (part.finding.empty() ? "" : "; ") + key + " up: peak " +
-                    trend(runs[0].peak, runs[1].peak, runs[2].peak) + " (" + quantity(runs[0].peak, "", 5) + ", " +
-                    quantity(runs[1].peak, "", 5) + ", " + quantity(runs[2].peak, "N", 5) + ")";
+                    trend_over_parameter(runs[0].peak, runs[1].peak, runs[2].peak) + " (" +
+                    quantity(runs[0].peak, "", 5) + ", " + quantity(runs[1].peak, "", 5) + ", " +
+                    quantity(runs[2].peak, "N", 5) + ")";
   }
   if (part.finding.empty()) part.finding = "nothing but levels to vary; peak " + quantity(base.peak, "N", 5);
   return part;
@@ -63,8 +64,8 @@ struct Triple {
 };
 
 Triple triple(const Experiment& e, const std::string& key, const std::string& number) {
-  return {e.value("non-drift", number, in_words(key, 0.5)), e.value("non-drift", number, "default"),
-          e.value("non-drift", number, in_words(key, 2.0))};
+  return {e.value("non-drift", number, parameter_in_words(key, 0.5)), e.value("non-drift", number, "default"),
+          e.value("non-drift", number, parameter_in_words(key, 2.0))};
 }
 
 ExperimentClaim decided(const std::string& statement, bool right, const std::string& measure) {
@@ -83,7 +84,7 @@ ExperimentClaim by_both(const std::string& statement, const Triple& peak, const 
   return claim;
 }
 
-std::vector<ExperimentClaim> claims(const Experiment& e) {
+std::vector<ExperimentClaim> parameter_claims(const Experiment& e) {
   const std::vector<std::string> statements{"sigma has little or no effect on the break-away force",
                                             "the break-away force falls as Zb rises",
                                             "gross sliding is reached sooner as Zb falls",
@@ -129,8 +130,8 @@ Experiment breakaway_parameters_experiment(const ExperimentOptions& options) {
                   {"slope", "fall over x", "N/m"},  {"fall_time", "fall time", "s"}};
   e.figures = {{"force-displacement", "Friction force over displacement (figures 3.38a to 3.41a)", "x", "m", "F", "N"},
                {"force-velocity", "Friction force over velocity (figures 3.38b to 3.41b)", "v", "m/s", "F", "N"}};
-  run_by_law(e, options, one);
-  e.claims = claims(e);
+  run_by_law(e, options, breakaway_of_law);
+  e.claims = parameter_claims(e);
   return e;
 }
 

@@ -9,10 +9,10 @@
 namespace limcycle {
 namespace {
 
-std::string in_words(double rate) { return quantity(rate, "N/s"); }
+std::string rate_in_words(double rate) { return quantity(rate, "N/s"); }
 
 /// "rises", "falls" or "stays" from the first to the last of some values, by the sign of every step.
-std::string trend(const std::vector<double>& values) {
+std::string trend_over_rate(const std::vector<double>& values) {
   bool up = true, down = true;
   const double least = 2e-5 * std::abs(values.front());
   for (std::size_t i = 1; i < values.size(); ++i) {
@@ -27,7 +27,7 @@ std::string trend(const std::vector<double>& values) {
 std::vector<double> column(const Experiment& e, const std::string& law, const std::string& key,
                            std::span<const double> rates) {
   std::vector<double> values;
-  for (const double rate : rates) values.push_back(e.value(law, key, in_words(rate)));
+  for (const double rate : rates) values.push_back(e.value(law, key, rate_in_words(rate)));
   return values;
 }
 
@@ -39,7 +39,7 @@ LawPart rates_of(const LawSetting& setting, std::span<const double> rates, bool 
     if (one.run.status != Status::converged) part.status = one.run.status;
     peaks.push_back(one.peak);
     applied.push_back(one.applied);
-    part.rows.push_back({"", in_words(rate), {one.peak, one.displacement, one.velocity, one.applied}});
+    part.rows.push_back({"", rate_in_words(rate), {one.peak, one.displacement, one.velocity, one.applied}});
     if (over_rate) continue;
     std::vector<double> u, F;
     for (std::size_t i = 0; i < one.run.u.size() && (one.run.u[i] < one.peak || one.run.F[i] > 0.93 * one.peak); ++i)
@@ -47,17 +47,17 @@ LawPart rates_of(const LawSetting& setting, std::span<const double> rates, bool 
         u.push_back(one.run.u[i]);
         F.push_back(one.run.F[i]);
       }
-    part.add(0, thinned(in_words(rate), one.run.x, one.run.F, 200));
-    part.add(1, thinned(in_words(rate), u, F, 200));
+    part.add(0, thinned(rate_in_words(rate), one.run.x, one.run.F, 200));
+    part.add(1, thinned(rate_in_words(rate), u, F, 200));
   }
   const std::vector<double> x(rates.begin(), rates.end());
   if (over_rate) {
     part.add(0, {"peak of friction", x, peaks});
     part.add(0, {"applied at gross displacement", x, applied});
   }
-  part.finding = "peak " + trend(peaks) + " with the rate (" + quantity(peaks.front(), "N", 5) + " to " +
+  part.finding = "peak " + trend_over_rate(peaks) + " with the rate (" + quantity(peaks.front(), "N", 5) + " to " +
                  quantity(peaks.back(), "N", 5) + "); applied force at " + quantity(gross_displacement(setting), "m") +
-                 " " + trend(applied) + " (" + quantity(applied.front(), "N", 5) + " to " +
+                 " " + trend_over_rate(applied) + " (" + quantity(applied.front(), "N", 5) + " to " +
                  quantity(applied.back(), "N", 5) + ")";
   return part;
 }
@@ -81,13 +81,13 @@ ExperimentClaim rises_with_rate(const Experiment& e) {
   if (!has_law(e, "non-drift")) return claim;
   const auto peaks = column(e, "non-drift", "peak", thesis_rates);
   const auto applied = column(e, "non-drift", "applied", thesis_rates);
-  const bool by_peak = trend(peaks) == "rises", by_applied = trend(applied) == "rises";
+  const bool by_peak = trend_over_rate(peaks) == "rises", by_applied = trend_over_rate(applied) == "rises";
   claim.outcome = by_peak && by_applied   ? ClaimOutcome::confirmed
                   : by_peak != by_applied ? ClaimOutcome::depends
                                           : ClaimOutcome::not_confirmed;
-  claim.measure = "from 0.05 to 0.2 N/s the peak " + trend(peaks) + " by " + change(peaks.front(), peaks.back()) +
-                  ", the applied force at gross displacement " + trend(applied) + " by " +
-                  change(applied.front(), applied.back());
+  claim.measure = "from 0.05 to 0.2 N/s the peak " + trend_over_rate(peaks) + " by " +
+                  change(peaks.front(), peaks.back()) + ", the applied force at gross displacement " +
+                  trend_over_rate(applied) + " by " + change(applied.front(), applied.back());
   return claim;
 }
 
@@ -96,9 +96,9 @@ ExperimentClaim lugre_falls(const Experiment& e, std::span<const double> rates) 
                         "pendulum paper, figure 1b and text", ClaimOutcome::not_tested, ""};
   if (!has_law(e, "lugre")) return claim;
   const auto peaks = column(e, "lugre", "peak", rates);
-  claim.outcome = trend(peaks) == "falls" ? ClaimOutcome::confirmed : ClaimOutcome::not_confirmed;
-  claim.measure =
-      "the peak " + trend(peaks) + " from " + quantity(peaks.front(), "N", 5) + " to " + quantity(peaks.back(), "N", 5);
+  claim.outcome = trend_over_rate(peaks) == "falls" ? ClaimOutcome::confirmed : ClaimOutcome::not_confirmed;
+  claim.measure = "the peak " + trend_over_rate(peaks) + " from " + quantity(peaks.front(), "N", 5) + " to " +
+                  quantity(peaks.back(), "N", 5);
   return claim;
 }
 

@@ -19,7 +19,7 @@ constexpr double reference_tolerance = 1e-10;
 /// A force that makes the mass stick, slip and stick again: a zig-zag of 1 N/s to 2 N either way. It stops the mass
 /// where the force is far below stiction: a stop close to stiction would test if the mass is caught, not the cost of a
 /// law.
-Signal force() {
+Signal reversing_force() {
   Signal zigzag;
   zigzag.kind = Signal::Kind::zigzag;
   zigzag.value = 2.0;
@@ -46,7 +46,7 @@ Timed timed(const Element& law, double rtol, const std::function<bool()>& stop) 
   options.stop = stop;
   for (int k = 1; k < static_cast<int>(duration); ++k) options.samples.push_back(k);
   const double begin = processor_seconds();
-  Timed result{run_forced(law, force(), options), 0.0};
+  Timed result{run_forced(law, reversing_force(), options), 0.0};
   result.seconds = processor_seconds() - begin;
   return result;
 }
@@ -73,7 +73,7 @@ double cost_at(const std::vector<double>& errors, const std::vector<double>& cos
   return NAN;
 }
 
-LawPart one(const LawSetting& setting) {
+LawPart cost_of_law(const LawSetting& setting) {
   const Element law = make_law(setting);
   const Timed reference = timed(law, reference_tolerance, setting.stop);
   LawPart part;
@@ -114,7 +114,7 @@ Experiment efficiency_experiment(const ExperimentOptions& options) {
       "one at 1e-10 of the same law; steps and processor time where the displacement is right to 1e-5";
   e.quantities = {{"error", "error", ""}, {"steps", "steps", ""}, {"time", "time", "ms"}};
   e.figures = {{"steps-error", "Steps over relative error", "error", "", "steps", "", true}};
-  run_by_law(e, options, one);
+  run_by_law(e, options, cost_of_law);
   ExperimentClaim claim{"laws that show more of friction than LuGre cost more: simulation efficiency",
                         "thesis, section 4.1", ClaimOutcome::not_tested, ""};
   const double plain = e.value("lugre", "time", "at 1e-5");

@@ -9,15 +9,15 @@
 namespace limcycle {
 namespace {
 
-constexpr double first_peak = 2.6, half_period = 1.0;  // of the zig-zag, s
-constexpr int cycles = 16, averaged = 4;
-constexpr double low = 0.2, high = 0.8;  // N
+constexpr double first_peak = 2.6, zigzag_half_period = 1.0;  // of the zig-zag, s
+constexpr int zigzag_cycles = 16, averaged = 4;
+constexpr double zigzag_low = 0.2, zigzag_high = 0.8;  // N
 
-Signal force() {
+Signal slide_and_zigzag() {
   std::vector<double> t{0.0, 2.0, 2.1}, u{0.0, 2.0, 0.5};
-  for (int k = 0; k <= 2 * cycles; ++k) {
-    t.push_back(first_peak + k * half_period);
-    u.push_back(k % 2 == 0 ? high : low);
+  for (int k = 0; k <= 2 * zigzag_cycles; ++k) {
+    t.push_back(first_peak + k * zigzag_half_period);
+    u.push_back(k % 2 == 0 ? zigzag_high : zigzag_low);
   }
   return signal_through(std::move(t), std::move(u));
 }
@@ -26,15 +26,15 @@ Signal force() {
 /// steps.
 bool drifts(double drift, double swing) { return std::abs(drift) > std::max(1e-3 * swing, 1e-11); }
 
-LawPart one(const LawSetting& printed) {
+LawPart zigzag_of_law(const LawSetting& printed) {
   const LawSetting setting = printed.with("vs", 0.01);
-  const double end = first_peak + 2.0 * cycles * half_period, before = end - 2.0 * half_period;
+  const double end = first_peak + 2.0 * zigzag_cycles * zigzag_half_period, before = end - 2.0 * zigzag_half_period;
   ForcedOptions options;
   options.duration = end;
   options.rtol = 1e-8;
   options.longest_step = 0.02;
   options.stop = setting.stop;
-  const ForcedRun run = run_forced(make_law(setting), force(), options);
+  const ForcedRun run = run_forced(make_law(setting), slide_and_zigzag(), options);
   LawPart part;
   part.status = run.status;
   part.add(0, thinned("friction force", run.t, run.F));
@@ -61,7 +61,7 @@ LawPart one(const LawSetting& printed) {
   const double peak = peak_of(run.t, run.F, run.F.size() - 1).value;
   // Laws without damping keep ringing: the drift is that of the mean over four cycles, with a weight that hides
   // ringing.
-  const double window = 2.0 * averaged * half_period;
+  const double window = 2.0 * averaged * zigzag_half_period;
   const auto mean = [&](double back) {
     return run.mean_displacement(end - (back + 1.0) * window, end - back * window);
   };
@@ -97,7 +97,7 @@ void claim_balance(Experiment& experiment) {
                         "thesis, section 3.6.1", ClaimOutcome::not_tested, ""};
   if (has_law(experiment, "non-drift")) {
     const double mismatch = experiment.value("non-drift", "mismatch");
-    claim.outcome = mismatch < 0.01 * high ? ClaimOutcome::confirmed : ClaimOutcome::not_confirmed;
+    claim.outcome = mismatch < 0.01 * zigzag_high ? ClaimOutcome::confirmed : ClaimOutcome::not_confirmed;
     claim.measure = "they differ by at most " + quantity(mismatch, "N") + " (inertia)";
   }
   experiment.claims.push_back(std::move(claim));
@@ -134,7 +134,7 @@ Experiment non_drift_experiment(const ExperimentOptions& options) {
       {"force-displacement", "Friction force over displacement since sliding ended (figures 3.28b to 3.31b)", "x", "m",
        "F", "N"},
       {"displacement-time", "Displacement since sliding ended (figure 3.32b)", "t", "s", "x", "m"}};
-  run_by_law(e, options, one);
+  run_by_law(e, options, zigzag_of_law);
   claim_balance(e);
   claim_drift(e, "non-drift", false, "thesis, section 3.6.1, figure 3.28b");
   claim_drift(e, "lugre", true, "thesis, section 3.6.1, figure 3.29b");

@@ -12,8 +12,8 @@ namespace {
 /// Turning points of the force, in units of its largest value. Number 5 closes the inner loop begun at 3, number 6 the
 /// middle one begun at 2, number 7 the outer one begun at 1.
 constexpr std::array<double, 8> turns{0.0, 1.0, -2.0 / 3.0, 5.0 / 9.0, -2.0 / 9.0, 5.0 / 9.0, -2.0 / 3.0, 1.0};
-constexpr double rate = 0.1, rest = 4.0;  // N/s, s
-constexpr std::array tops{0.9, 1.2};      // N
+constexpr double memory_loop_rate = 0.1, memory_loop_rest = 4.0;  // N/s, s
+constexpr std::array tops{0.9, 1.2};                              // N
 
 struct Programme {
   Signal force;
@@ -24,9 +24,9 @@ Programme programme(double top) {
   Programme made;
   std::vector<double> t{0.0}, u{0.0};
   for (std::size_t i = 1; i < turns.size(); ++i) {
-    t.push_back(t.back() + top * std::abs(turns[i] - turns[i - 1]) / rate);
+    t.push_back(t.back() + top * std::abs(turns[i] - turns[i - 1]) / memory_loop_rate);
     u.push_back(top * turns[i]);
-    t.push_back(t.back() + rest);
+    t.push_back(t.back() + memory_loop_rest);
     u.push_back(top * turns[i]);
     made.rested[i] = t.back();
   }
@@ -34,12 +34,12 @@ Programme programme(double top) {
   return made;
 }
 
-std::string in_words(double top) { return "to " + quantity(top, "N"); }
+std::string top_in_words(double top) { return "to " + quantity(top, "N"); }
 
 /// A loop that misses its beginning by less than this share of the outer loop's width is closed.
-constexpr double closed = 5e-3;
+constexpr double closed_gap = 5e-3;
 /// Loops that fill less than this share of their box are no hysteresis.
-constexpr double elastic = 1e-3;
+constexpr double elastic_fill = 1e-3;
 
 /// The runs of the law at one size of the force: a row, the curves, a finding.
 void one_size(const LawSetting& setting, std::size_t size, LawPart& part) {
@@ -52,32 +52,33 @@ void one_size(const LawSetting& setting, std::size_t size, LawPart& part) {
   options.stop = setting.stop;
   const ForcedRun run = run_forced(make_law(setting), made.force, options);
   part.add(size, thinned("", run.x, run.F, 300));
-  part.finding += (size == 0 ? "" : "; ") + in_words(top) + " ";
-  const double none = NAN;
+  part.finding += (size == 0 ? "" : "; ") + top_in_words(top) + " ";
+  const double unknown = NAN;
   if (run.status != Status::converged) {
     part.status = run.status;
     part.finding += "the run ended early at t = " + quantity(run.t.back(), "s");
     return;
   }
   if (run.t.back() < options.duration) {
-    part.rows.push_back({"", in_words(top), {none, none, none, none, none, none}});
+    part.rows.push_back({"", top_in_words(top), {unknown, unknown, unknown, unknown, unknown, unknown}});
     part.finding += "it slides away at t = " + quantity(run.t.back(), "s");
     return;
   }
   std::array<double, turns.size()> x{};
   for (std::size_t i = 1; i < turns.size(); ++i)
-    x[i] = run.mean_displacement(made.rested[i] - 0.5 * rest, made.rested[i]);
+    x[i] = run.mean_displacement(made.rested[i] - 0.5 * memory_loop_rest, made.rested[i]);
   const double width = std::abs(x[1] - x[2]), inner = x[5] - x[3], middle = x[6] - x[2], outer = x[7] - x[1];
   const double worst = std::max({std::abs(inner), std::abs(middle), std::abs(outer)}) / width;
   const bool moves = width > 1e-12;
   const double loop = area(run.x, run.F, run.at(made.rested[1]), run.x.size() - 1);
   const double fill = loop / (width * top * (turns[1] - turns[2]));
-  part.rows.push_back({"", in_words(top), {width, inner, middle, outer, moves ? worst : none, moves ? fill : none}});
+  part.rows.push_back(
+      {"", top_in_words(top), {width, inner, middle, outer, moves ? worst : unknown, moves ? fill : unknown}});
   if (!moves)
     part.finding += "it does not move: no loop";
-  else if (worst < closed && fill < elastic)
+  else if (worst < closed_gap && fill < elastic_fill)
     part.finding += "it is elastic: no loop to be wiped out";
-  else if (worst < closed)
+  else if (worst < closed_gap)
     part.finding += "non-local memory: every loop closes, to " + quantity(worst, "", 2) + " of the outer width of " +
                     quantity(width, "m");
   else
@@ -86,7 +87,7 @@ void one_size(const LawSetting& setting, std::size_t size, LawPart& part) {
                     quantity(width, "m");
 }
 
-LawPart one(const LawSetting& printed) {
+LawPart memory_of_law(const LawSetting& printed) {
   const LawSetting setting = printed.kind == "gms"     ? printed.with("vs", 1e-5)
                              : printed.kind == "xiong" ? printed.with("vs", 1e-4)
                                                        : printed;
@@ -96,16 +97,16 @@ LawPart one(const LawSetting& printed) {
 }
 
 /// Claim that the loops of a law close, or not, at the smaller and the larger force.
-ExperimentClaim claim(const Experiment& e, const std::string& law, bool closes, const std::string& statement,
-                      const std::string& source) {
+ExperimentClaim memory_claim(const Experiment& e, const std::string& law, bool closes, const std::string& statement,
+                             const std::string& source) {
   ExperimentClaim claim{statement, source, ClaimOutcome::not_tested, ""};
   if (!has_law(e, law)) return claim;
   int right = 0;
   for (const double top : tops) {
-    const double worst = e.value(law, "worst", in_words(top)), fill = e.value(law, "fill", in_words(top));
-    const bool loops = fill >= elastic;
-    if (loops && (worst < closed) == closes) ++right;
-    claim.measure += (claim.measure.empty() ? "" : "; ") + in_words(top) + " ";
+    const double worst = e.value(law, "worst", top_in_words(top)), fill = e.value(law, "fill", top_in_words(top));
+    const bool loops = fill >= elastic_fill;
+    if (loops && (worst < closed_gap) == closes) ++right;
+    claim.measure += (claim.measure.empty() ? "" : "; ") + top_in_words(top) + " ";
     claim.measure += std::isnan(worst) ? "it slides away"
                      : loops           ? "largest gap " + quantity(100.0 * worst, "%", 2) + " of the outer width"
                                        : "it is elastic, without a loop";
@@ -134,15 +135,18 @@ Experiment non_local_memory_experiment(const ExperimentOptions& options) {
   e.figures = {{"force-displacement", "Friction force over displacement, force to 0.9 N (figures 3.33 to 3.35)", "x",
                 "m", "F", "N"},
                {"force-displacement-high", "Friction force over displacement, force to 1.2 N", "x", "m", "F", "N"}};
-  run_by_law(e, options, one);
+  run_by_law(e, options, memory_of_law);
   e.claims = {
-      claim(e, "non-drift", true, "the proposed law has non-local memory in pre-sliding", "thesis, section 3.6.2"),
-      claim(e, "lugre", false, "LuGre's loops do not show non-local memory", "thesis, section 3.6.2, figure 3.35a"),
-      claim(e, "elasto-plastic", false, "the elasto-plastic law's loops are like LuGre's: they do not close",
-            "thesis, section 3.6.2, figure 3.35b"),
-      claim(e, "xiong", true, "Xiong's law has non-local memory as the proposed one",
-            "thesis, section 3.6.2, figure 3.35c"),
-      claim(e, "gms", true, "GMS has non-local memory as the proposed one", "thesis, section 3.6.2, figure 3.35d")};
+      memory_claim(e, "non-drift", true, "the proposed law has non-local memory in pre-sliding",
+                   "thesis, section 3.6.2"),
+      memory_claim(e, "lugre", false, "LuGre's loops do not show non-local memory",
+                   "thesis, section 3.6.2, figure 3.35a"),
+      memory_claim(e, "elasto-plastic", false, "the elasto-plastic law's loops are like LuGre's: they do not close",
+                   "thesis, section 3.6.2, figure 3.35b"),
+      memory_claim(e, "xiong", true, "Xiong's law has non-local memory as the proposed one",
+                   "thesis, section 3.6.2, figure 3.35c"),
+      memory_claim(e, "gms", true, "GMS has non-local memory as the proposed one",
+                   "thesis, section 3.6.2, figure 3.35d")};
   return e;
 }
 

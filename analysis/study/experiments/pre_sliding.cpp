@@ -8,31 +8,33 @@
 namespace limcycle {
 namespace {
 
-constexpr double top = 1.425, rate = 0.1425, hold = 5.0;  // N, N/s, s: the test of 1995
+// The test of 1995: N, N/s, s.
+constexpr double pre_sliding_top = 1.425, pre_sliding_rate = 0.1425, pre_sliding_hold = 5.0;
 
-Signal force() {
+Signal held_ramps() {
   std::vector<double> t{0.0}, u{0.0};
-  for (const double to : {top, -top, top}) {
-    t.push_back(t.back() + std::abs(to - u.back()) / rate);
+  for (const double to : {pre_sliding_top, -pre_sliding_top, pre_sliding_top}) {
+    t.push_back(t.back() + std::abs(to - u.back()) / pre_sliding_rate);
     u.push_back(to);
-    t.push_back(t.back() + hold);
+    t.push_back(t.back() + pre_sliding_hold);
     u.push_back(to);
   }
   return signal_through(std::move(t), std::move(u));
 }
 
-LawPart one(const LawSetting& setting) {
+LawPart pre_sliding_of_law(const LawSetting& setting) {
   ForcedOptions options;
-  options.duration = top / rate + 2.0 * (2.0 * top / rate) + 3.0 * hold;
+  options.duration =
+      pre_sliding_top / pre_sliding_rate + 2.0 * (2.0 * pre_sliding_top / pre_sliding_rate) + 3.0 * pre_sliding_hold;
   options.rtol = 1e-8;
   options.until_displacement = 100.0 * setting.break_away;
   options.stop = setting.stop;
-  const ForcedRun run = run_forced(make_law(setting), force(), options);
+  const ForcedRun run = run_forced(make_law(setting), held_ramps(), options);
   LawPart part;
   part.status = run.status;
   part.add(0, thinned("", run.x, run.F, 400));
   part.add(1, thinned("", run.t, run.x));
-  const double end_of_first = top / rate + hold;
+  const double end_of_first = pre_sliding_top / pre_sliding_rate + pre_sliding_hold;
   if (run.status != Status::converged) {
     part.finding = "the run ended early at t = " + quantity(run.t.back(), "s");
     return part;
@@ -40,10 +42,11 @@ LawPart one(const LawSetting& setting) {
   if (run.t.back() < options.duration) {
     part.rows.push_back({"", "", {NAN, NAN, NAN, NAN}});
     part.finding = "slides away " + std::string(run.t.back() < end_of_first ? "below" : "after") + " " +
-                   quantity(top, "N", 4) + ", at t = " + quantity(run.t.back(), "s");
+                   quantity(pre_sliding_top, "N", 4) + ", at t = " + quantity(run.t.back(), "s");
     return part;
   }
-  const double first = run.displacement(top / rate), after_hold = run.displacement(end_of_first);
+  const double first = run.displacement(pre_sliding_top / pre_sliding_rate),
+               after_hold = run.displacement(end_of_first);
   const double least = *std::ranges::min_element(run.x), greatest = *std::ranges::max_element(run.x);
   const std::size_t from = run.at(end_of_first), to = run.x.size() - 1;
   const double loop = area(run.x, run.F, from, to), gap = run.x.back() - after_hold;
@@ -62,7 +65,7 @@ void claim_hysteresis(Experiment& e) {
   ExperimentClaim claim{"friction over pre-sliding displacement is a hysteresis loop (LuGre)",
                         "pendulum paper, figure 1a", ClaimOutcome::not_tested, ""};
   if (has_law(e, "lugre")) {
-    const double loop = e.value("lugre", "loop"), box = 2.0 * top * e.value("lugre", "swing");
+    const double loop = e.value("lugre", "loop"), box = 2.0 * pre_sliding_top * e.value("lugre", "swing");
     claim.outcome = loop > 0.01 * box ? ClaimOutcome::confirmed : ClaimOutcome::not_confirmed;
     claim.measure = "the loop fills " + quantity(100.0 * loop / box, "%", 2) + " of its box";
   }
@@ -71,7 +74,7 @@ void claim_hysteresis(Experiment& e) {
                          "closed form of the slow law", ClaimOutcome::not_tested, ""};
   if (has_law(e, "lugre")) {
     // Printed values are 1.5 N and 1e5 N/m; the ramp is slow but not infinitely so.
-    const double x = e.value("lugre", "first"), exact = -1.5e-5 * std::log(1.0 - top / 1.5);
+    const double x = e.value("lugre", "first"), exact = -1.5e-5 * std::log(1.0 - pre_sliding_top / 1.5);
     closed.outcome = std::abs(x / exact - 1.0) < 0.02 ? ClaimOutcome::confirmed : ClaimOutcome::not_confirmed;
     closed.measure = quantity(x, "m", 5) + ", " + change(exact, x);
   }
@@ -93,7 +96,7 @@ Experiment pre_sliding_experiment(const ExperimentOptions& options) {
       {"first", "x at 1.425 N", "m"}, {"swing", "swing", "m"}, {"loop", "loop area", "J"}, {"gap", "gap", "m"}};
   e.figures = {{"force-displacement", "Friction force over displacement (figure 1a)", "x", "m", "F", "N"},
                {"displacement-time", "Displacement over time", "t", "s", "x", "m"}};
-  run_by_law(e, options, one);
+  run_by_law(e, options, pre_sliding_of_law);
   claim_hysteresis(e);
   return e;
 }

@@ -10,7 +10,7 @@
 namespace limcycle {
 namespace {
 
-constexpr double amplitude = 5e-3, frequency = 0.2, stribeck_velocity = 1e-3;  // m/s, rad/s, m/s
+constexpr double robustness_amplitude = 5e-3, robustness_frequency = 0.2, stribeck_velocity = 1e-3;  // m/s, rad/s, m/s
 constexpr double Fs = 1.5;
 
 /// Mean square of the difference of two forces, separately for low and high speeds.
@@ -37,15 +37,15 @@ Difference difference(const VelocityRun& base, const VelocityRun& other) {
 
 double root_mean(double sum, double time) { return time > 0.0 ? std::sqrt(sum / time) / Fs : NAN; }
 
-bool answered(const VelocityRun& run) {
+bool comparable(const VelocityRun& run) {
   return (run.status == Status::converged || run.status == Status::incomplete) && run.t.size() > 2;
 }
 
-LawPart one(const LawSetting& setting) {
+LawPart robustness_of_law(const LawSetting& setting) {
   LawPart part;
-  const VelocityRun base = run_velocity(make_law(setting), 0.0, amplitude, frequency, 4);
+  const VelocityRun base = run_velocity(make_law(setting), 0.0, robustness_amplitude, robustness_frequency, 4);
   part.status = base.status;
-  if (!answered(base)) {
+  if (!comparable(base)) {
     part.finding = "has no periodic answer to compare with";
     return part;
   }
@@ -57,8 +57,8 @@ LawPart one(const LawSetting& setting) {
     for (const double factor : {0.5, 2.0}) {
       const auto changed = varied(setting, key, factor);
       if (!changed) continue;
-      const VelocityRun other = run_velocity(make_law(*changed), 0.0, amplitude, frequency, 4);
-      if (!answered(other)) continue;
+      const VelocityRun other = run_velocity(make_law(*changed), 0.0, robustness_amplitude, robustness_frequency, 4);
+      if (!comparable(other)) continue;
       const Difference d = difference(base, other);
       const double below = root_mean(d.low, d.low_time), above = root_mean(d.high, d.high_time);
       const std::string name = key + (factor < 1.0 ? " x 0.5" : " x 2");
@@ -120,7 +120,7 @@ Experiment robustness_experiment(const ExperimentOptions& options) {
       "units of Fs = 1.5 N; \"all\" is the rms over the parameters. The measure is ours: the thesis gives none";
   e.quantities = {{"low", "below vs", ""}, {"high", "above vs", ""}};
   e.figures = {{"force-velocity", "Friction force over velocity, parameters halved and doubled", "v", "m/s", "F", "N"}};
-  run_by_law(e, options, one);
+  run_by_law(e, options, robustness_of_law);
   e.claims = {most_robust(e, "low", "below the Stribeck velocity"), most_robust(e, "high", "above it")};
   return e;
 }

@@ -8,10 +8,11 @@
 namespace limcycle {
 namespace {
 
-constexpr double rate = 0.1, mean = 1.5e-3, amplitude = 1e-3, frequency = 10.0;
+constexpr double sensitivity_ramp_rate = 0.1, lag_loop_mean = 1.5e-3, lag_loop_amplitude = 1e-3,
+                 lag_loop_frequency = 10.0;
 
 /// Results for one setting of the parameters.
-struct Outcome {
+struct ParameterOutcome {
   double stiffness = NAN, displacement = NAN, peak = NAN, lag = NAN;
   double overshoot = NAN;  ///< peak under a velocity that jumps to 0.01 m/s, over the break-away level, N
   int crossings = 0;
@@ -20,12 +21,12 @@ struct Outcome {
   Status status = Status::converged;
 };
 
-Outcome outcome(const LawSetting& setting, double gross) {
-  Outcome o;
-  BreakAway ramp = break_away(setting, rate, gross, 1e-7);
+ParameterOutcome parameter_outcome(const LawSetting& setting, double gross) {
+  ParameterOutcome o;
+  BreakAway ramp = break_away(setting, sensitivity_ramp_rate, gross, 1e-7);
   const Element law = make_law(setting);
-  o.loop = run_velocity(law, mean, amplitude, frequency, 40);
-  const LoopShape shape = loop_shape(o.loop, mean, amplitude);
+  o.loop = run_velocity(law, lag_loop_mean, lag_loop_amplitude, lag_loop_frequency, 40);
+  const LoopShape shape = loop_shape(o.loop, lag_loop_mean, lag_loop_amplitude);
   const VelocityRun jump = run_constant_velocity(law, 0.01, 10.0 * setting.break_away / 0.01);
   double highest = 0.0;
   for (const double F : jump.F)
@@ -57,14 +58,15 @@ std::string strongest(const std::string& key, const std::array<double, 4>& value
   return key + ": " + names[best] + " ~ " + key + "^" + quantity(values[best], "", 2);
 }
 
-LawPart one(const LawSetting& setting) {
+LawPart sensitivity_of_law(const LawSetting& setting) {
   LawPart part;
   const double gross = gross_displacement(setting);
-  const Outcome base = outcome(setting, gross);
+  const ParameterOutcome base = parameter_outcome(setting, gross);
   part.status = base.status;
   for (const auto& key : shape_keys(setting)) {
     const auto less = varied(setting, key, 0.5), more = varied(setting, key, 2.0);
-    const Outcome half = less ? outcome(*less, gross) : Outcome{}, twice = more ? outcome(*more, gross) : Outcome{};
+    const ParameterOutcome half = less ? parameter_outcome(*less, gross) : ParameterOutcome{},
+                           twice = more ? parameter_outcome(*more, gross) : ParameterOutcome{};
     const std::array values{elasticity(half.stiffness, twice.stiffness),
                             elasticity(half.displacement, twice.displacement), elasticity(half.peak, twice.peak),
                             elasticity(half.lag, twice.lag)};
@@ -83,7 +85,7 @@ LawPart one(const LawSetting& setting) {
   return part;
 }
 
-std::vector<ExperimentClaim> claims(const Experiment& e) {
+std::vector<ExperimentClaim> sensitivity_claims(const Experiment& e) {
   const std::string source = "thesis, section 3.5.3 (LuGre)";
   std::vector<ExperimentClaim> list{
       {"sigma0 sets the slope of pre-sliding", source, ClaimOutcome::not_tested, ""},
@@ -133,8 +135,8 @@ Experiment sensitivity_experiment(const ExperimentOptions& options) {
   e.figures = {
       {"force-displacement", "Friction force over displacement, force rising with 0.1 N/s", "x", "m", "F", "N"},
       {"force-velocity", "Friction force over velocity at 10 rad/s", "v", "m/s", "F", "N"}};
-  run_by_law(e, options, one);
-  e.claims = claims(e);
+  run_by_law(e, options, sensitivity_of_law);
+  e.claims = sensitivity_claims(e);
   return e;
 }
 

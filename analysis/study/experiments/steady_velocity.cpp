@@ -15,7 +15,7 @@ std::vector<double> speeds() {
   return list;
 }
 
-LawPart one(const LawSetting& setting) {
+LawPart steady_force_of_law(const LawSetting& setting) {
   const Element law = make_law(setting);
   LawPart part;
   std::vector<double> v, F, g;
@@ -58,7 +58,7 @@ Experiment steady_velocity_experiment(const ExperimentOptions& options) {
   e.quantities = {
       {"slow", "F at 1e-5", "N"}, {"at_vs", "F at 0.001", "N"}, {"fast", "F at 0.1", "N"}, {"off", "off g(v)", "N"}};
   e.figures = {{"force-velocity", "Steady friction force over velocity (figure 3.36b)", "v", "m/s", "F", "N", true}};
-  run_by_law(e, options, one);
+  run_by_law(e, options, steady_force_of_law);
   if (has_law(e, "wojewoda"))
     e.notes.emplace_back(
         "the force of wojewoda depends on the sign of the acceleration, which a constant velocity does not have: what "

@@ -21,7 +21,9 @@ Pulled pulled(const Element& law, const std::function<bool()>& stop) {
   belt.mass = 1.0;
   belt.stiffness = 2.0;
   belt.speed = 0.1;
-  LoopParts parts{belt, NoController{}, std::nullopt, law, std::nullopt};
+  LoopParts parts;
+  parts.plant = belt;
+  parts.friction = law;
   SimulateOptions options;
   options.duration = 60.0;
   options.sample = 2.5e-3;
@@ -51,7 +53,7 @@ Pulled pulled(const Element& law, const std::function<bool()>& stop) {
   return result;
 }
 
-LawPart one(const LawSetting& setting) {
+LawPart stick_slip_of_law(const LawSetting& setting) {
   LawPart part = alternating_loops(setting);
   for (auto& row : part.rows) row.values.insert(row.values.end(), {NAN, NAN});
   const Pulled motion = pulled(make_law(setting), setting.stop);
@@ -81,7 +83,7 @@ Experiment stick_slip_experiment(const ExperimentOptions& options) {
                   {"crossings", "crossings", ""}, {"period", "period", "s"}, {"fastest", "fastest", "m/s"}};
   e.figures = {{"force-velocity", "Friction force over velocity (figure 1d)", "v", "m/s", "F", "N"},
                {"spring-time", "Force of the spring that pulls, over time", "t", "s", "spring", "N"}};
-  run_by_law(e, options, one);
+  run_by_law(e, options, stick_slip_of_law);
   ExperimentClaim claim{"at low velocities of alternating sense LuGre sticks and slips", "pendulum paper, figure 1d",
                         ClaimOutcome::not_tested, ""};
   if (has_law(e, "lugre")) {

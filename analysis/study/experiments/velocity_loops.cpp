@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array frequencies{2.0, 10.0, 25.0, 50.0};  // rad/s, as in the pendulum paper's figure 1
 
-std::string in_words(double frequency) { return quantity(frequency, "rad/s"); }
+std::string frequency_in_words(double frequency) { return quantity(frequency, "rad/s"); }
 
 std::string unanswered(const VelocityRun& run) {
   return "has no periodic answer (" + std::string(to_string(run.status)) + ")";
@@ -48,15 +48,16 @@ LawPart loops(const LawSetting& setting, double mean, double amplitude, double a
     const VelocityRun run = run_velocity(law, mean, amplitude, w, 40);
     if (!answered(run)) {
       part.status = run.status;
-      part.rows.push_back({"", in_words(w), {NAN, NAN, NAN, NAN}});
+      part.rows.push_back({"", frequency_in_words(w), {NAN, NAN, NAN, NAN}});
       continue;
     }
     any = true;
     const LoopShape shape = loop_shape(run, mean, amplitude);
     const double lag = run.force_at(at, true) - run.force_at(at, false);
-    part.rows.push_back({"", in_words(w), {lag, shape.width, shape.peak, static_cast<double>(shape.crossings)}});
-    part.add(0, loop_curve(in_words(w), run, infinite));
-    if (std::isfinite(detail)) part.add(1, loop_curve(in_words(w), run, detail));
+    part.rows.push_back(
+        {"", frequency_in_words(w), {lag, shape.width, shape.peak, static_cast<double>(shape.crossings)}});
+    part.add(0, loop_curve(frequency_in_words(w), run, infinite));
+    if (std::isfinite(detail)) part.add(1, loop_curve(frequency_in_words(w), run, detail));
     widths += (widths.empty() ? "" : ", ") + quantity(shape.width, "");
   }
   if (!any)
@@ -81,7 +82,7 @@ ExperimentClaim lag_claim(const Experiment& e, const std::string& statement, con
   bool grows = true, opens = true;
   double before = 0.0;
   for (const double w : frequencies) {
-    const double width = e.value("lugre", "width", in_words(w));
+    const double width = e.value("lugre", "width", frequency_in_words(w));
     opens = opens && width > 1e-4;
     grows = grows && width > before;
     before = width;

@@ -12,7 +12,7 @@ using std::numbers::pi;
 using Numbers = std::vector<double>;
 using Complex = std::complex<double>;
 
-Element coulomb(double Fc, double sigma2) {
+Element viscous_coulomb(double Fc, double sigma2) {
   Coulomb<double> law;
   law.Fs = law.Fs_minus = law.Fc = law.Fc_minus = Fc;
   law.sigma2 = sigma2;
@@ -38,7 +38,7 @@ void check_square_wave(ClaimChecks& checks, const std::string& where, const Gain
 /// THD from the mean square of the force, sampled from one reversal to the next, and its first harmonic.
 void check_distortion(ClaimChecks& checks, const ClaimOptions&) {
   const double Fc = 1.0, A = 0.01;
-  DrivenLaw motion(coulomb(Fc, 0.0));
+  DrivenLaw motion(viscous_coulomb(Fc, 0.0));
   double squares = 0.0, first = 0.0, last = 0.0;
   motion.watch = [&](double t) {
     squares += motion.force() * motion.force() * (t - last);
@@ -58,7 +58,7 @@ GainClaim dry() {
   f.unit = "N/m";
   f.amplitude_unit = "m";
   f.names = {{"Fc", "N"}};
-  f.element = [](const Numbers& p) { return coulomb(p[0], 0.0); };
+  f.element = [](const Numbers& p) { return viscous_coulomb(p[0], 0.0); };
   f.gain = [](const GainPoint& at) -> Complex { return {0.0, 4.0 * at.p[0] / (pi * at.amplitude)}; };
   f.printed = {{{{1.0}, 0.01}, {0.0, 127.323954}, 1e-6}};
   f.draw = [](RandomPoints& random) {
@@ -86,7 +86,7 @@ GainClaim dry_and_viscous() {
   f.unit = "N/m";
   f.amplitude_unit = "m";
   f.names = {{"Fc", "N"}, {"sigma2", "N s/m"}};
-  f.element = [](const Numbers& p) { return coulomb(p[0], p[1]); };
+  f.element = [](const Numbers& p) { return viscous_coulomb(p[0], p[1]); };
   f.gain = [](const GainPoint& at) -> Complex {
     return {0.0, 4.0 * at.p[0] / (pi * at.amplitude) + at.p[1] * at.frequency};
   };

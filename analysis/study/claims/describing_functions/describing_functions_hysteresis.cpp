@@ -13,12 +13,9 @@ using std::numbers::pi;
 using Numbers = std::vector<double>;
 using Complex = std::complex<double>;
 
-const std::string by_computation =
+const std::string hysteresis_by_computation =
     "describing function by FFT of the sampled force and by quadrature split at the switches at the printed points, by "
     "quadrature at random ones, without the closed form; W is the work of the same period";
-
-/// f(u) = (2/pi)(asin u + u sqrt(1 - u^2)), |u| <= 1.
-double share_inside(double u) { return 2.0 / pi * (std::asin(u) + u * std::sqrt((1.0 - u) * (1.0 + u))); }
 
 /// Claim A8.
 Complex jenkins_gain(double k, double Fc, double A) {
@@ -57,7 +54,7 @@ GainClaim jenkins() {
        "derived; checked by computation",
        Evidence::derived,
        "k, Fc > 0; A from 0.3 h to 100 h",
-       by_computation,
+       hysteresis_by_computation,
        ClaimVerdict::holds,
        {}},
       f};
@@ -95,7 +92,7 @@ GainClaim maxwell_slip() {
            "derived; checked by computation",
            Evidence::derived,
            "2 to 8 elements, k 300 to 3e4 N/m, W 0.03 to 0.3 N; A from 1e-6 to 3e-3 m",
-           by_computation,
+           hysteresis_by_computation,
            ClaimVerdict::holds,
            {}},
           f};
@@ -153,7 +150,7 @@ GainClaim dahl() {
            "derived; checked by computation",
            Evidence::derived,
            "Fc, sigma0 > 0; A from 0.1 l to 300 l",
-           by_computation,
+           hysteresis_by_computation,
            ClaimVerdict::holds,
            {}},
           f};

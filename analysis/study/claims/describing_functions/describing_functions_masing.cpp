@@ -15,7 +15,7 @@ using std::numbers::pi;
 using Numbers = std::vector<double>;
 using Complex = std::complex<double>;
 
-const std::string by_computation =
+const std::string masing_by_computation =
     "describing function of the iwan law, whose force follows from its virgin curve and Masing's rule: FFT of the "
     "sampled force and quadrature at the printed points, quadrature at random ones, without the closed form";
 
@@ -72,7 +72,7 @@ Element iwan(const Numbers& p, double elements = 0.0) {
   return law;
 }
 
-GainPoint drawn(RandomPoints& random, int curve, double least, double most) {
+GainPoint drawn_masing_point(RandomPoints& random, int curve, double least, double most) {
   const Numbers p{random.log_between(0.1, 10.0), random.log_between(1e-5, 1e-2), static_cast<double>(curve)};
   return {p, p[1] * random.log_between(least, most)};
 }
@@ -89,7 +89,7 @@ GainFormula masing_formula() {
 GainClaim any_curve() {
   GainFormula f = masing_formula();
   f.gain = [](const GainPoint& at) { return masing_gain(static_cast<int>(at.p[2]), at.p[0], at.p[1], at.amplitude); };
-  f.draw = [](RandomPoints& random) { return drawn(random, random.whole(0, 3), 0.1, 30.0); };
+  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, random.whole(0, 3), 0.1, 30.0); };
   return {{"A11",
            "A Masing loop (branches are the virgin curve doubled) with any virgin curve fv: both parts of the gain are "
            "integrals of fv.",
@@ -97,7 +97,7 @@ GainClaim any_curve() {
            "derived",
            Evidence::derived,
            "four virgin curves (0 exponential, 1 hyperbolic, 2 koizumi-shibazaki, 3 linear), A from 0.1 Zb to 30 Zb",
-           "the integrals by adaptive quadrature, against the " + by_computation,
+           "the integrals by adaptive quadrature, against the " + masing_by_computation,
            ClaimVerdict::holds,
            {}},
           f};
@@ -115,7 +115,7 @@ GainClaim exponential_curve() {
                {{p, 1e-3}, {938.524819, 197.934618}, 1e-6},
                {{p, 3e-3}, {438.078775, 265.032311}, 1e-6},
                {{p, 1e-3}, {938.5248, 197.9346}, 1e-4}};
-  f.draw = [](RandomPoints& random) { return drawn(random, exponential, 0.1, 30.0); };
+  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, exponential, 0.1, 30.0); };
   return {{"A11a",
            "Masing loop of the exponential virgin curve.",
            "fv = Fs (1 - exp(-z/Z)): Re N = (4 Fs/A) exp(-a/2) I1(a/2), Im N = (4 Fs/(pi A)) (1 + exp(-a) - (2/a)(1 - "
@@ -123,7 +123,7 @@ GainClaim exponential_curve() {
            "derived; checked by computation",
            Evidence::derived,
            "Fs, Z > 0; A from 0.1 Z to 30 Z",
-           by_computation,
+           masing_by_computation,
            ClaimVerdict::holds,
            {}},
           f};
@@ -142,7 +142,7 @@ GainClaim hyperbolic_curve() {
   f.printed = {{{p, 3e-4}, {1148.89629, 128.18767}, 1e-5},
                {{p, 1e-3}, {727.922061, 217.161774}, 1e-6},
                {{p, 3e-3}, {333.333333, 207.413115}, 1e-6}};
-  f.draw = [](RandomPoints& random) { return drawn(random, hyperbolic, 0.1, 30.0); };
+  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, hyperbolic, 0.1, 30.0); };
   return {
       {"A11b",
        "Masing loop of the hyperbolic virgin curve.",
@@ -151,7 +151,7 @@ GainClaim hyperbolic_curve() {
        "derived; checked by computation",
        Evidence::derived,
        "Fs, Z > 0; A from 0.1 Z to 30 Z",
-       by_computation,
+       masing_by_computation,
        ClaimVerdict::holds,
        {}},
       f};
@@ -181,7 +181,7 @@ GainClaim koizumi_shibazaki_curve() {
   f.printed = {{{p, 3e-4}, {3135.400748, 954.929659}, 1e-6},
                {{p, 1e-3}, {1329.441542, 954.929659}, 1e-6},
                {{p, 2e-3}, {542.078, 716.197}, 1e-3}};
-  f.draw = [](RandomPoints& random) { return drawn(random, koizumi_shibazaki, 0.01, 10.0); };
+  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, koizumi_shibazaki, 0.01, 10.0); };
   f.more = [](ClaimChecks& checks, const std::string& where, const GainPoint& at, const DescribingFunction& df) {
     if (at.amplitude > at.p[1]) return;
     checks.equal(where, "W", "J", 2.0 * at.p[0] * at.amplitude * at.amplitude / at.p[1], df.dissipation,
@@ -196,7 +196,7 @@ GainClaim koizumi_shibazaki_curve() {
            "derived; checked by computation",
            Evidence::derived,
            "Fs, Zb > 0; A from 0.01 Zb to 10 Zb (beyond Zb the real part is the integral of A11)",
-           by_computation + "; also 4000 elements of equal yield force",
+           masing_by_computation + "; also 4000 elements of equal yield force",
            ClaimVerdict::holds,
            {}},
           f};

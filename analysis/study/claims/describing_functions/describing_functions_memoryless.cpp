@@ -16,16 +16,10 @@ using Numbers = std::vector<double>;
 using Complex = std::complex<double>;
 
 const std::string control = "python-control, describing functions; checked by computation";
-const std::string by_computation =
+const std::string memoryless_by_computation =
     "describing function by FFT of the sampled output and by quadrature split at the switches at the printed points, "
     "by "
     "quadrature at random ones, without the closed form";
-
-/// f(u) = (2/pi)(asin u + u sqrt(1 - u^2)), |u| <= 1.
-double share_inside(double u) {
-  if (std::abs(u) >= 1.0) return u < 0.0 ? -1.0 : 1.0;
-  return 2.0 / pi * (std::asin(u) + u * std::sqrt((1.0 - u) * (1.0 + u)));
-}
 
 Element relay(double level, double hysteresis, double dead_zone) {
   Relay<double> element;
@@ -58,7 +52,7 @@ GainClaim ideal_relay() {
            "textbook; not opened",
            Evidence::knowledge,
            "M > 0, A > 0",
-           by_computation,
+           memoryless_by_computation,
            ClaimVerdict::holds,
            {}},
           f};
@@ -80,7 +74,7 @@ GainClaim relay_with_dead_zone() {
            "textbook; not opened; checked by computation",
            Evidence::knowledge,
            "M, d > 0; A from 0.3 d to 100 d",
-           by_computation,
+           memoryless_by_computation,
            ClaimVerdict::holds,
            {}},
           f};
@@ -115,7 +109,7 @@ GainClaim relay_with_hysteresis() {
            control,
            Evidence::read,
            "M, h > 0; A from 1.01 h to 100 h; no switching for A < h",
-           by_computation,
+           memoryless_by_computation,
            ClaimVerdict::holds,
            {}},
           f};
@@ -139,7 +133,7 @@ GainClaim saturated() {
            control,
            Evidence::read,
            "k, delta > 0; A from 0.3 delta to 100 delta",
-           by_computation,
+           memoryless_by_computation,
            ClaimVerdict::holds,
            {}},
           f};
@@ -163,7 +157,7 @@ GainClaim dead_zone() {
            "textbook; not opened",
            Evidence::knowledge,
            "k, delta > 0; A from 0.3 delta to 100 delta",
-           by_computation,
+           memoryless_by_computation,
            ClaimVerdict::holds,
            {}},
           f};
@@ -195,7 +189,7 @@ GainClaim backlash() {
        "by computation",
        Evidence::read,
        "h > 0; A from 0.3 h to 100 h",
-       by_computation,
+       memoryless_by_computation,
        ClaimVerdict::holds,
        {}},
       f};
@@ -218,7 +212,7 @@ GainClaim cubic() {
            "textbook; not opened",
            Evidence::knowledge,
            "any c, A > 0",
-           by_computation,
+           memoryless_by_computation,
            ClaimVerdict::holds,
            {}},
           f};

@@ -66,7 +66,7 @@ void check_laws(ClaimChecks& checks, const ClaimOptions& options, RandomPoints& 
   }
 }
 
-LuGre<double> lugre(double Fs, double Fc, double sigma1) {
+LuGre<double> damped_lugre(double Fs, double Fc, double sigma1) {
   LuGre<double> law;
   law.Fs = law.Fs_minus = Fs;
   law.Fc = law.Fc_minus = Fc;
@@ -78,7 +78,7 @@ LuGre<double> lugre(double Fs, double Fc, double sigma1) {
 
 /// W = pi A^2 Im N against the work of a march over one period of a steady state.
 void check_work_identity(ClaimChecks& checks, double A, double w) {
-  const auto law = lugre(1.5, 1.0, std::sqrt(1e5));
+  const auto law = damped_lugre(1.5, 1.0, std::sqrt(1e5));
   const auto df = computed_gain(law, {A, w, 0.0}, false, 1e-9);
   if (!df.answered()) return checks.stop(df.status);
   DrivenLaw motion(law);
@@ -98,7 +98,7 @@ void check_work_identity(ClaimChecks& checks, double A, double w) {
 /// The exception: strongly damped bristles give out energy under a sinusoid about a mean velocity, unless sigma2
 /// satisfies D2.
 void check_exception(ClaimChecks& checks) {
-  auto law = lugre(5.0, 1.0, 5e6);
+  auto law = damped_lugre(5.0, 1.0, 5e6);
   const DfPoint motion{2e-6, 400.0, 1.5 * 2e-6 * 400.0};
   const std::string at =
       place({{"Fs", 5.0, "N"}, {"Fc", 1.0, "N"}, {"sigma1", 5e6, "N s/m"}}) + ", " +
@@ -115,7 +115,7 @@ void check_exception(ClaimChecks& checks) {
 void check_passive_lugre(ClaimChecks& checks, const ClaimOptions& options, RandomPoints& random, Tally& tally) {
   for (int i = 0; i < options.random_points && !stopped(options); ++i) {
     const double Fs = random.log_between(1.1, 10.0);
-    auto law = lugre(Fs, 1.0, random.log_between(10.0, 1e7));
+    auto law = damped_lugre(Fs, 1.0, random.log_between(10.0, 1e7));
     law.sigma2 = law.sigma1 * (law.Fs - law.Fc) / law.Fc;
     const double A = random.log_between(1e-6, 1e-2), w = random.log_between(1.0, 1e3);
     compare_work(checks, "passive lugre, " + place({{"Fs/Fc", law.Fs}, {"sigma1", law.sigma1, "N s/m"}}), law,

@@ -13,14 +13,14 @@ namespace {
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-Jenkins<double> jenkins(double k, double Fc) {
+Jenkins<double> jenkins_law(double k, double Fc) {
   Jenkins<double> law;
   law.k = k;
   law.Fc = Fc;
   return law;
 }
 
-Dahl<double> dahl(double Fc, double sigma0) {
+Dahl<double> dahl_law(double Fc, double sigma0) {
   Dahl<double> law;
   law.Fc = Fc;
   law.sigma0 = sigma0;
@@ -35,7 +35,7 @@ DescribingFunction by_quadrature(const Element& element, double A) {
 void check_play_and_stop(ClaimChecks& checks, double k, double Fc, double A) {
   Backlash<double> play;
   play.half_gap = Fc / k;
-  const auto stop = by_quadrature(jenkins(k, Fc), A), rest = by_quadrature(play, A);
+  const auto stop = by_quadrature(jenkins_law(k, Fc), A), rest = by_quadrature(play, A);
   if (!stop.answered() || !rest.answered()) return checks.stop(stop.answered() ? rest.status : stop.status);
   const Complex claimed = k * (1.0 - rest.gain);
   const double allowed = stop.error + rest.error * k * std::abs(rest.gain) / std::abs(claimed) + 1e-13;
@@ -48,7 +48,7 @@ void check_play_and_stop(ClaimChecks& checks, double k, double Fc, double A) {
 void check_stiff_limit(ClaimChecks& checks, double Fc, double A) {
   for (const double ratio : {1e-2, 1e-4, 1e-6}) {
     const double k = Fc / (ratio * A), limit = 4.0 * Fc / (pi * A);
-    const auto df = by_quadrature(jenkins(k, Fc), A);
+    const auto df = by_quadrature(jenkins_law(k, Fc), A);
     if (!df.answered()) return checks.stop(df.status);
     const std::string at = place({{"k", k, "N/m"}, {"Fc", Fc, "N"}, {"A", A, "m"}});
     checks.at_most(at, "|N - j 4 Fc/(pi A)| over its size", "", 1.5 * std::sqrt(ratio),
@@ -75,13 +75,13 @@ ClaimResult test_stop(const ClaimOptions& options) {
 void check_dahl_limits(ClaimChecks& checks, double Fc, double sigma0) {
   const double l = Fc / sigma0;
   for (const double a : {1e-3, 1e-2}) {
-    const auto df = by_quadrature(dahl(Fc, sigma0), a * l);
+    const auto df = by_quadrature(dahl_law(Fc, sigma0), a * l);
     if (!df.answered()) return checks.stop(df.status);
     const std::string at = place({{"Fc", Fc, "N"}, {"sigma0", sigma0, "N/m"}, {"A/l", a}});
     checks.at_most(at, "|N - sigma0| over sigma0", "", 0.5 * a, std::abs(df.gain - sigma0) / sigma0, df.error);
   }
   for (const double a : {1e3, 1e5}) {
-    const auto df = by_quadrature(dahl(Fc, sigma0), a * l);
+    const auto df = by_quadrature(dahl_law(Fc, sigma0), a * l);
     if (!df.answered()) return checks.stop(df.status);
     const double limit = 4.0 * Fc / (pi * a * l);
     const std::string at = place({{"Fc", Fc, "N"}, {"sigma0", sigma0, "N/m"}, {"A/l", a}});
@@ -94,7 +94,7 @@ void check_dahl_limits(ClaimChecks& checks, double Fc, double sigma0) {
 void check_dahl_loop(ClaimChecks& checks, double Fc, double sigma0, double a) {
   const double l = Fc / sigma0, A = a * l;
   const int steps = 100 + static_cast<int>(200.0 * a);
-  DrivenLaw loop(dahl(Fc, sigma0));
+  DrivenLaw loop(dahl_law(Fc, sigma0));
   loop.slide(1.0, A, steps);
   for (int k = 0; k < 2 + static_cast<int>(10.0 / a); ++k) {
     loop.slide(-1.0, 2.0 * A, 2 * steps);

@@ -95,7 +95,7 @@ Example three_lags(double p1, double p2, double p3, double margin) {
 /// The example of the list of claims.
 Example printed_example() { return resonant(0.8, 8.0); }
 
-Example drawn(RandomPoints& random, int i) {
+Example drawn_example(RandomPoints& random, int i) {
   if (i % 2 == 0) {
     const double c = random.between(0.2, 0.9);
     return resonant(c, random.log_between(2.0, 30.0));
@@ -134,7 +134,7 @@ ClaimResult on_examples(const ClaimOptions& options, ClaimChecks& checks, Test t
   RandomPoints random(options.seed);
   for (int i = -1; i < options.random_points && !stopped(options); ++i) {
     checks.random(i >= 0);
-    const Example example = i < 0 ? printed_example() : drawn(random, i);
+    const Example example = i < 0 ? printed_example() : drawn_example(random, i);
     const auto cycle = true_cycle(checks, example, options);
     if (!cycle) break;
     test(checks, example, *cycle);

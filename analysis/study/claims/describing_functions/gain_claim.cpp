@@ -1,6 +1,8 @@
 #include "limcycle/analysis/study/claims/describing_functions/gain_claim.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "limcycle/analysis/short_number.hpp"
@@ -67,6 +69,11 @@ void check_gain(ClaimChecks& checks, const std::string& where, const std::string
   const double allowed = computed.error + slack, size = std::abs(claimed);
   checks.equal(where, "Re N", unit, claimed.real(), computed.gain.real(), allowed, size);
   checks.equal(where, "Im N", unit, claimed.imag(), computed.gain.imag(), allowed, size);
+}
+
+double share_inside(double u) {
+  if (std::abs(u) >= 1.0) return u < 0.0 ? -1.0 : 1.0;
+  return 2.0 / std::numbers::pi * (std::asin(u) + u * std::sqrt((1.0 - u) * (1.0 + u)));
 }
 
 ClaimResult test_gain(const GainFormula& formula, const ClaimOptions& options) {

@@ -62,6 +62,9 @@ void check_gain(ClaimChecks& checks, const std::string& where, const std::string
 /// Permitted error of a computed describing function: its error estimate and a few roundings.
 inline double stated_error(const DescribingFunction& df) { return df.error + 1e-13; }
 
+/// f(u) = (2/pi)(asin u + u sqrt(1 - u^2)); -1 and 1 beyond |u| = 1.
+double share_inside(double u);
+
 std::vector<GainClaim> memoryless_gain_claims();  ///< A1, A4 to A7, A10
 std::vector<GainClaim> coulomb_gain_claims();     ///< A2, A3
 std::vector<GainClaim> stop_gain_claims();        ///< A8, A9

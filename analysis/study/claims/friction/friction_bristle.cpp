@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-LuGre<double> drawn(RandomPoints& random) {
+LuGre<double> drawn_lugre(RandomPoints& random) {
   auto law = lugre_1995();
   law.Fc = law.Fc_minus = random.log_between(0.1, 10.0);
   law.Fs = law.Fs_minus = law.Fc * random.between(1.0, 3.0);
@@ -22,7 +22,7 @@ LuGre<double> drawn(RandomPoints& random) {
   return law;
 }
 
-std::string words(const LuGre<double>& law) {
+std::string lugre_in_words(const LuGre<double>& law) {
   return place({{"Fs", law.Fs, "N"},
                 {"Fc", law.Fc, "N"},
                 {"vs", law.vs, "m/s"},
@@ -51,11 +51,11 @@ ClaimResult test_steady_state(const ClaimOptions& options) {
   RandomPoints random(options.seed);
   checks.random(true);
   for (int i = 0; i < options.random_points && !stopped(options); ++i) {
-    auto one = drawn(random);
+    auto one = drawn_lugre(random);
     one.delta = random.between(0.5, 2.0);
     const double v = (i % 2 == 0 ? 1.0 : -1.0) * one.vs * random.log_between(0.01, 10.0);
     const double claimed = std::copysign(level(one, v), v) + one.sigma2 * v;
-    checks.equal(words(one) + ", " + place({{"delta", one.delta}, {"v", v, "m/s"}}), "F", "N", claimed,
+    checks.equal(lugre_in_words(one) + ", " + place({{"delta", one.delta}, {"v", v, "m/s"}}), "F", "N", claimed,
                  sliding_force(one, v), 1e-9);
   }
   if (stopped(options)) checks.stop(Status::interrupted);
@@ -91,9 +91,9 @@ ClaimResult test_invariance(const ClaimOptions& options) {
   checks.equal("creeping", "z sigma0/Fs", "", 1.0, slow.state()[0] / length, 1e-9);
   checks.random(true);
   for (int i = 0; i < options.random_points && !stopped(options); ++i) {
-    const auto one = drawn(random);
+    const auto one = drawn_lugre(random);
     const double start = random.between(-1.0, 1.0);
-    checks.at_most(words(one) + ", " + place({{"z(0) sigma0/Fs", start}}), "largest |z| sigma0/Fs", "", 1.0,
+    checks.at_most(lugre_in_words(one) + ", " + place({{"z(0) sigma0/Fs", start}}), "largest |z| sigma0/Fs", "", 1.0,
                    largest_deflection(one, start * one.Fs / one.sigma0, random, 60), slack);
   }
   if (stopped(options)) checks.stop(Status::interrupted);
@@ -115,10 +115,10 @@ ClaimResult test_virgin(const ClaimOptions& options) {
   RandomPoints random(options.seed);
   checks.random(true);
   for (int i = 0; i < options.random_points && !stopped(options); ++i) {
-    auto one = drawn(random);
+    auto one = drawn_lugre(random);
     const double share = random.between(0.05, 0.99);
-    checks.equal(words(one) + ", " + place({{"F/Fs", share}}), "x", "m", -one.Fs / one.sigma0 * std::log1p(-share),
-                 way_to(one, share * one.Fs), 1e-6);
+    checks.equal(lugre_in_words(one) + ", " + place({{"F/Fs", share}}), "x", "m",
+                 -one.Fs / one.sigma0 * std::log1p(-share), way_to(one, share * one.Fs), 1e-6);
   }
   if (stopped(options)) checks.stop(Status::interrupted);
   return checks.result();
@@ -126,11 +126,11 @@ ClaimResult test_virgin(const ClaimOptions& options) {
 
 /// A mass on the law under such a small force that it never slides, from rest: time and height of the first peak of x,
 /// by Runge-Kutta of order 4.
-struct Peak {
+struct FirstPeak {
   double time = NAN, height = NAN;
 };
 
-Peak step_response(const LuGre<double>& law, double mass, double force) {
+FirstPeak step_response(const LuGre<double>& law, double mass, double force) {
   using Vector = std::array<double, 3>;  // x, v, z
   const auto slope = [&](const Vector& s) {
     const double z[1] = {s[2]};
@@ -163,8 +163,8 @@ void check_ringing(ClaimChecks& checks, const LuGre<double>& law, double mass) {
   const double natural = std::sqrt(law.sigma0 / mass);
   const double damping = (law.sigma1 + law.sigma2) / (2.0 * std::sqrt(law.sigma0 * mass));
   const double force = 1e-8 * law.Fc, root = std::sqrt(1.0 - damping * damping);
-  const Peak peak = step_response(law, mass, force);
-  const std::string at = words(law) + ", " + place({{"m", mass, "kg"}});
+  const FirstPeak peak = step_response(law, mass, force);
+  const std::string at = lugre_in_words(law) + ", " + place({{"m", mass, "kg"}});
   checks.equal(at, "time of the first peak", "s", pi / (natural * root), peak.time, 1e-5);
   checks.equal(at, "overshoot", "", std::exp(-pi * damping / root), peak.height * law.sigma0 / force - 1.0, 1e-5, 1.0);
 }
@@ -174,7 +174,7 @@ ClaimResult test_stuck_mass(const ClaimOptions& options) {
   // Frequency and damping ratio back from the first peak.
   const auto law = lugre_1995();
   const double force = 1e-8;
-  const Peak peak = step_response(law, 1.0, force);
+  const FirstPeak peak = step_response(law, 1.0, force);
   const double decrement = -std::log(peak.height * law.sigma0 / force - 1.0) / pi;
   const double ratio = decrement / std::hypot(1.0, decrement);
   check_printed(checks, "m = 1 kg, sigma2 = 0", "damping ratio", "", 0.5, 1e-4, ratio);
@@ -184,7 +184,7 @@ ClaimResult test_stuck_mass(const ClaimOptions& options) {
   RandomPoints random(options.seed);
   checks.random(true);
   for (int i = 0; i < options.random_points && !stopped(options); ++i) {
-    auto one = drawn(random);
+    auto one = drawn_lugre(random);
     const double mass = random.log_between(0.1, 10.0), unit = 2.0 * std::sqrt(one.sigma0 * mass);
     one.sigma1 = unit * random.between(0.05, 0.6);
     one.sigma2 = unit * random.between(0.0, 0.3);

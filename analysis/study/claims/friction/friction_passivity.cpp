@@ -9,7 +9,7 @@
 namespace limcycle {
 namespace {
 
-std::string words(const LuGre<double>& law) {
+std::string lugre_in_words_without_vs(const LuGre<double>& law) {
   return place({{"Fs", law.Fs, "N"},
                 {"Fc", law.Fc, "N"},
                 {"sigma0", law.sigma0, "N/m"},
@@ -34,7 +34,7 @@ double claimed_work(const LuGre<double>& law, double V, double X) {
 
 void check_step(ClaimChecks& checks, const LuGre<double>& law, double V, double X) {
   const double size = law.Fs * X + law.sigma1 * V * (law.Fs - law.Fc) / law.sigma0;
-  checks.equal(words(law) + ", " + place({{"V", V, "m/s"}, {"X", X, "m"}}), "work of a step", "J",
+  checks.equal(lugre_in_words_without_vs(law) + ", " + place({{"V", V, "m/s"}, {"X", X, "m"}}), "work of a step", "J",
                claimed_work(law, V, X), work_of_step(law, V, X), 1e-9, size);
 }
 
@@ -48,18 +48,19 @@ void check_threshold(ClaimChecks& checks, LuGre<double> law, const ClaimOptions&
     law.sigma2 = share * threshold;
     const Passivity answer = passivity(law, passivity_options);
     if (answer.passive == Passive::undecided) return checks.stop(Status::incomplete);
-    checks.is_true(words(law), std::string("the law is ") + (expected == Passive::yes ? "passive" : "not passive"),
+    checks.is_true(lugre_in_words_without_vs(law),
+                   std::string("the law is ") + (expected == Passive::yes ? "passive" : "not passive"),
                    answer.passive == expected);
     if (answer.passive != Passive::no) continue;
-    checks.is_true(words(law), "there is a counter-example that takes energy out",
+    checks.is_true(lugre_in_words_without_vs(law), "there is a counter-example that takes energy out",
                    answer.counterexample && answer.counterexample->energy > 0.0);
     if (answer.counterexample)
-      checks.equal(words(law), "energy that it takes out a cycle, by an independent simulation", "J",
-                   answer.counterexample->energy, answer.counterexample->confirmed, 1e-4);
+      checks.equal(lugre_in_words_without_vs(law), "energy that it takes out a cycle, by an independent simulation",
+                   "J", answer.counterexample->energy, answer.counterexample->confirmed, 1e-4);
   }
 }
 
-LuGre<double> drawn(RandomPoints& random) {
+LuGre<double> drawn_weakening_lugre(RandomPoints& random) {
   auto law = lugre_1995();
   law.Fc = law.Fc_minus = random.log_between(0.3, 3.0);
   law.Fs = law.Fs_minus = law.Fc * random.between(1.1, 3.0);
@@ -73,17 +74,18 @@ ClaimResult test_condition(const ClaimOptions& options) {
   ClaimChecks checks;
   auto law = lugre_1995();
   const double work = work_of_step(law, 1.0, 1e-5);
-  check_printed(checks, words(law) + ", V = 1 m/s, X = 1e-05 m", "work of a step", "J", -9.86e-4, 1e-6, work);
+  check_printed(checks, lugre_in_words_without_vs(law) + ", V = 1 m/s, X = 1e-05 m", "work of a step", "J", -9.86e-4,
+                1e-6, work);
   const double stored = 0.5 * law.Fs * law.Fs / law.sigma0;
-  check_printed(checks, words(law), "energy stored at most", "J", 1.125e-5, 1e-8, stored);
-  checks.at_least(words(law), "energy taken out over energy stored", "", 1.0, -work / stored, 0.0);
-  check_printed(checks, words(law), "sigma2 at the boundary", "N s/m", 158.11, 1e-2,
+  check_printed(checks, lugre_in_words_without_vs(law), "energy stored at most", "J", 1.125e-5, 1e-8, stored);
+  checks.at_least(lugre_in_words_without_vs(law), "energy taken out over energy stored", "", 1.0, -work / stored, 0.0);
+  check_printed(checks, lugre_in_words_without_vs(law), "sigma2 at the boundary", "N s/m", 158.11, 1e-2,
                 law.sigma1 * (law.Fs - law.Fc) / law.Fc);
   check_threshold(checks, law, options);
   RandomPoints random(options.seed);
   checks.random(true);
   for (int i = 0; i < options.random_points && !stopped(options); ++i) {
-    law = drawn(random);
+    law = drawn_weakening_lugre(random);
     law.sigma2 = law.sigma1 * random.between(0.0, 1.0);
     const double V = law.vs * random.log_between(10.0, 1e3), X = law.Fc / law.sigma0 * random.log_between(0.1, 10.0);
     check_step(checks, law, V, X);
@@ -112,7 +114,7 @@ double least_dissipation(const LuGre<double>& law, double v) {
 void check_damping(ClaimChecks& checks, LuGre<double> law, double v) {
   const double g = law.Fc + (law.Fs - law.Fc) * std::exp(-(v / law.vs) * (v / law.vs));
   law.sigma2 = 0.0;
-  const std::string at = words(law) + ", " + place({{"v", v, "m/s"}});
+  const std::string at = lugre_in_words_without_vs(law) + ", " + place({{"v", v, "m/s"}});
   law.sigma1 = 0.999 * 4.0 * g / std::abs(v);
   checks.at_least(at, "1 + least dissipation over Fs |v|, sigma1 = 0.999 bound", "", 1.0,
                   1.0 + least_dissipation(law, v), 0.0);
@@ -127,7 +129,7 @@ ClaimResult test_damping(const ClaimOptions& options) {
   RandomPoints random(options.seed);
   checks.random(true);
   for (int i = 0; i < options.random_points && !stopped(options); ++i) {
-    const auto law = drawn(random);
+    const auto law = drawn_weakening_lugre(random);
     check_damping(checks, law, law.vs * random.log_between(0.01, 100.0) * (i % 2 == 0 ? 1.0 : -1.0));
   }
   if (stopped(options)) checks.stop(Status::interrupted);

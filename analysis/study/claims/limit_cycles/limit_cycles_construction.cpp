@@ -63,10 +63,10 @@ std::optional<HuntingCycle> half_cycle(const Servo& servo, const Coulomb<double>
   return cycle;
 }
 
-struct Row {
+struct HuntingRow {
   double Fs, sigma2, amplitude, slip, stick, period, multiplier;
 };
-constexpr Row table[] = {
+constexpr HuntingRow hunting_table[] = {
     {1.5, 0.0, 0.06724015, 2.56843892, 9.11619722, 23.36927229, 0.0886262},
     {1.5, 0.4, 0.06565304, 2.65312124, 9.35339812, 24.01303872, 0.0975085},
     {1.1, 0.4, 0.01313061, 2.65312124, 39.81657125, 84.93938497, 0.0975085},
@@ -91,7 +91,8 @@ void check_construction(const Servo& servo, const Coulomb<double>& friction, con
                  cycle.multipliers[0].real(), 1e-6, 1.0);
 }
 
-void check_row(const Row& row, const OfServo& construction, const ClaimOptions& options, ClaimChecks& checks) {
+void check_hunting_row(const HuntingRow& row, const OfServo& construction, const ClaimOptions& options,
+                       ClaimChecks& checks) {
   const Servo servo;
   const auto friction = coulomb(row.Fs, 1.0, row.sigma2);
   const std::string where = at({{"Fs|N", row.Fs}, {"sigma2|N s/m", row.sigma2}});
@@ -144,7 +145,7 @@ std::optional<HuntingCycle> hunting_cycle(const Servo& servo, const Coulomb<doub
 
 ClaimResult test_hunting_construction(const ClaimOptions& options, const OfServo& construction) {
   ClaimChecks checks;
-  for (const Row& row : table) check_row(row, construction, options, checks);
+  for (const HuntingRow& row : hunting_table) check_hunting_row(row, construction, options, checks);
   check_scaling(options, checks);
   check_lugre(options, checks);
   at_random(checks, options, "B7-3", 20, [&](RandomPoints& draw) {

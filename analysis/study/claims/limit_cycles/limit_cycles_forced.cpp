@@ -11,11 +11,11 @@ namespace {
 
 using std::numbers::pi;
 
-std::string text(const ForcedOscillator& o) {
+std::string oscillator_in_words(const ForcedOscillator& o) {
   return at({{"w/w0", o.ratio}, {"F0|N", o.force}, {"Fc|N", o.level}, {"m|kg", o.mass}, {"k|N/m", o.stiffness}});
 }
 
-double frequency(const ForcedOscillator& o) { return o.ratio * std::sqrt(o.stiffness / o.mass); }
+double forcing_frequency(const ForcedOscillator& o) { return o.ratio * std::sqrt(o.stiffness / o.mass); }
 
 /// Half the swing of the last two periods of a long run, and a flag for a rest in between.
 struct Swung {
@@ -27,12 +27,12 @@ std::optional<Swung> swing(const ForcedOscillator& o, const ClaimOptions& option
   LoopParts parts;
   parts.plant = Mass{o.mass, 0.0, o.stiffness};
   parts.friction = coulomb(o.level, o.level);
-  const double period = 2.0 * pi / frequency(o);
+  const double period = 2.0 * pi / forcing_frequency(o);
   SimulateOptions run_options;
   // A turn leaves the share (k X b^2 - Fc)/(k X b^2 + Fc) of the area of deviations: slow with little friction.
   run_options.duration = 400.0 * period;
   run_options.sample = run_options.duration;
-  run_options.force = Signal{.kind = Signal::Kind::sine, .value = o.force, .frequency = frequency(o)};
+  run_options.force = Signal{.kind = Signal::Kind::sine, .value = o.force, .frequency = forcing_frequency(o)};
   run_options.stepper = "dopri5";
   run_options.rtol = 1e-9;
   run_options.stop = options.stop;
@@ -62,14 +62,14 @@ std::optional<Swung> swing(const ForcedOscillator& o, const ClaimOptions& option
 void check_non_stop(const ForcedOscillator& o, OfForced exact, const ClaimOptions& options, ClaimChecks& checks) {
   const auto swung = swing(o, options, checks);
   if (!swung) return;
-  checks.equal(text(o), "last two periods of the run", "m", swung->before, swung->amplitude, 1e-6);
-  checks.is_true(text(o), "the mass never rests", !swung->rests);
-  checks.equal(text(o), "amplitude", "m", exact(o), swung->amplitude, 2e-6);
+  checks.equal(oscillator_in_words(o), "last two periods of the run", "m", swung->before, swung->amplitude, 1e-6);
+  checks.is_true(oscillator_in_words(o), "the mass never rests", !swung->rests);
+  checks.equal(oscillator_in_words(o), "amplitude", "m", exact(o), swung->amplitude, 2e-6);
 }
 
 /// First-harmonic balance |k - m w^2 + N(X, w)| X = F0 with the gain N by quadrature.
-void check_describing_function(const ForcedOscillator& o, OfForced first_harmonic, ClaimChecks& checks) {
-  const double w = frequency(o), claimed = first_harmonic(o);
+void check_first_harmonic(const ForcedOscillator& o, OfForced first_harmonic, ClaimChecks& checks) {
+  const double w = forcing_frequency(o), claimed = first_harmonic(o);
   DfOptions df;
   df.method = DfMethod::quadrature;
   df.accuracy = 1e-10;
@@ -79,8 +79,9 @@ void check_describing_function(const ForcedOscillator& o, OfForced first_harmoni
   };
   const double unit = o.force / o.stiffness;
   const auto roots = zeros_on_grid(excess, 0.01 * unit, 100.0 * unit, 60);
-  checks.is_true(text(o), "the first-harmonic balance has one solution", roots.size() == 1);
-  if (roots.size() == 1) checks.equal(text(o), "amplitude by describing function", "m", claimed, roots[0], 1e-8);
+  checks.is_true(oscillator_in_words(o), "the first-harmonic balance has one solution", roots.size() == 1);
+  if (roots.size() == 1)
+    checks.equal(oscillator_in_words(o), "amplitude by describing function", "m", claimed, roots[0], 1e-8);
 }
 
 /// If the condition is broken the formula still gives a number, which must be wrong.
@@ -88,13 +89,14 @@ void check_stopping(const ClaimOptions& options, ClaimChecks& checks, OfForced e
   ForcedOscillator slow;
   slow.ratio = 0.4;
   const double formula = exact(slow);
-  checks.equal(text(slow), "the formula where it does not hold", "m", 1.0804, formula, 5e-5);
-  checks.is_true(text(slow), "the condition says that the motion stops", !never_stops(slow, formula));
+  checks.equal(oscillator_in_words(slow), "the formula where it does not hold", "m", 1.0804, formula, 5e-5);
+  checks.is_true(oscillator_in_words(slow), "the condition says that the motion stops", !never_stops(slow, formula));
   const auto swung = swing(slow, options, checks);
   if (!swung) return;
-  checks.equal(text(slow), "true amplitude", "m", 1.132, swung->amplitude, 5e-4);
-  checks.is_true(text(slow), "the mass rests for a part of each period", swung->rests);
-  checks.at_least(text(slow), "true amplitude less that of the formula", "m", 0.05, swung->amplitude - formula, 0.0);
+  checks.equal(oscillator_in_words(slow), "true amplitude", "m", 1.132, swung->amplitude, 5e-4);
+  checks.is_true(oscillator_in_words(slow), "the mass rests for a part of each period", swung->rests);
+  checks.at_least(oscillator_in_words(slow), "true amplitude less that of the formula", "m", 0.05,
+                  swung->amplitude - formula, 0.0);
 }
 
 ForcedOscillator random_oscillator(RandomPoints& draw) {
@@ -134,16 +136,17 @@ ClaimResult test_den_hartog(const ClaimOptions& options, OfForced exact, OfForce
   for (const Row& row : {Row{0.7, 1.927775, 1.896145}, Row{1.3, 1.391345, 1.401498}, Row{1.5, 0.765942, 0.773627}}) {
     ForcedOscillator o;
     o.ratio = row.ratio;
-    checks.equal(text(o), "amplitude of the table", "m", row.exact, exact(o), 1e-6);
-    checks.equal(text(o), "amplitude by describing function of the table", "m", row.df, first_harmonic(o), 1e-6);
+    checks.equal(oscillator_in_words(o), "amplitude of the table", "m", row.exact, exact(o), 1e-6);
+    checks.equal(oscillator_in_words(o), "amplitude by describing function of the table", "m", row.df,
+                 first_harmonic(o), 1e-6);
     check_non_stop(o, exact, options, checks);
-    check_describing_function(o, first_harmonic, checks);
+    check_first_harmonic(o, first_harmonic, checks);
   }
   check_stopping(options, checks, exact);
   at_random(checks, options, "B6", 20, [&](RandomPoints& draw) {
     const ForcedOscillator o = random_oscillator(draw);
     check_non_stop(o, exact, options, checks);
-    check_describing_function(o, first_harmonic, checks);
+    check_first_harmonic(o, first_harmonic, checks);
   });
   return checks.result();
 }

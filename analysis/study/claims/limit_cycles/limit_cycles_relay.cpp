@@ -20,13 +20,13 @@ Relay<double> relay(double level, double hysteresis) {
 }
 
 /// A row of the table of B1, relay of level 1.
-struct Row {
+struct RelayRow {
   const char* plant;
   std::vector<double> denominator;
   double hysteresis, half_period, frequency, peak, radius, df_frequency, df_amplitude;
 };
 
-std::vector<Row> table() {
+std::vector<RelayRow> relay_table() {
   return {
       {"1/(s+1)^3",
        {1.0, 3.0, 3.0, 1.0},
@@ -50,7 +50,8 @@ std::vector<Row> table() {
   };
 }
 
-void check_describing_function(const Loop& loop, const Row& row, const ClaimOptions& options, ClaimChecks& checks) {
+void check_relay_describing_function(const Loop& loop, const RelayRow& row, const ClaimOptions& options,
+                                     ClaimChecks& checks) {
   const auto found = find_df_roots(loop, LoopBalance(loop), SearchBox{1e-3, 10.0, 0.01, 100.0}, options.stop);
   checks.is_true(row.plant, "the describing function predicts one cycle", found.roots.size() == 1);
   if (found.roots.size() != 1) return;
@@ -76,10 +77,11 @@ void check_against_shooting(const Loop& loop, const RelayFeedback& relay, const 
                  cycle.stable == (std::abs(exact[0].eigenvalues[0]) < 1.0));
 }
 
-void check_row(const Row& row, const SwitchingOutput& output, const ClaimOptions& options, ClaimChecks& checks) {
+void check_relay_row(const RelayRow& row, const SwitchingOutput& output, const ClaimOptions& options,
+                     ClaimChecks& checks) {
   const Loop loop = forward_loop(relay(1.0, row.hysteresis), {1.0}, row.denominator);
   check_against_shooting(loop, relay_feedback(loop, 1.0, row.hysteresis), output, row.plant, options, checks);
-  check_describing_function(loop, row, options, checks);
+  check_relay_describing_function(loop, row, options, checks);
   const auto shot = reached_cycle(loop, 1.0, row.plant, options, checks);
   if (!shot) return;
   const Cycle& cycle = shot->cycle;
@@ -150,7 +152,7 @@ void check_dead_time(const LagWithDeadTime& lag, OfLag half_period, OfLag amplit
 
 ClaimResult test_relay_condition(const ClaimOptions& options, const SwitchingOutput& output) {
   ClaimChecks checks;
-  for (const Row& row : table()) check_row(row, output, options, checks);
+  for (const RelayRow& row : relay_table()) check_relay_row(row, output, options, checks);
   check_integrator(0.1, 1.0, options, checks);
   check_lag(0.2, options, checks);
   at_random(checks, options, "B1", 20, [&](RandomPoints& draw) { check_random_plant(draw, output, options, checks); });

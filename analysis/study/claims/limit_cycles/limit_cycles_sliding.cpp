@@ -138,7 +138,7 @@ void check_hopf(double stiffness, double difference, OfSliding dynamic, OfLevels
                   0.0);
 }
 
-void check_printed(OfSliding dynamic, OfLevels quasi_static, ClaimChecks& checks) {
+void check_printed_damping(OfSliding dynamic, OfLevels quasi_static, ClaimChecks& checks) {
   const std::string where = "v = 2e-4 m/s, w = 30 rad/s";
   const auto law = lugre(1.5, 1.0, 0.0);
   checks.equal(where, "dynamic damping of the table", "N s/m", -39.0, dynamic(law, 2e-4, 30.0).real(), 0.5, 1.0);
@@ -161,7 +161,7 @@ double quasi_static_damping(double Fs, double Fc, double vs, double sigma2, doub
 ClaimResult test_sliding(const ClaimOptions& options, OfSliding dynamic, OfLevels quasi_static) {
   ClaimChecks checks;
   check_threshold(bench(0.005, 17.0, 7.4, 0.1), quasi_static, options, checks);
-  check_printed(dynamic, quasi_static, checks);
+  check_printed_damping(dynamic, quasi_static, checks);
   check_incremental(lugre(1.5, 1.0, 0.0), 2e-4, 30.0, dynamic, checks);
   check_hopf(1e4, 2e-4, dynamic, quasi_static, options, checks);
   check_hopf(1e6, 2e-3, dynamic, quasi_static, options, checks);

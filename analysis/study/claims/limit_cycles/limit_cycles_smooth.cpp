@@ -9,11 +9,11 @@ namespace {
 
 using std::numbers::pi;
 
-struct Row {
+struct VanDerPolRow {
   double mu, period, amplitude, multiplier;
   double multiplier_accuracy;  ///< relative, of the value in the table
 };
-constexpr Row table[] = {
+constexpr VanDerPolRow van_der_pol_table[] = {
     {0.1, 6.28711127, 2.00010398, 0.5330693, 1e-7},   {0.5, 6.38067580, 2.00248793, 3.917692e-2, 2e-7},
     {1.0, 6.66328686, 2.00861986, 8.596951e-4, 2e-7}, {2.0, 7.62987448, 2.01989138, 1.273849e-8, 5e-7},
     {5.0, 11.61223066, 2.02150806, 7.7e-38, 7e-3},    {10.0, 19.07836956, 2.01428536, 3.7e-136, 1.5e-2},
@@ -37,7 +37,8 @@ void check_trace(const ShootingResult& shot, double mu, const VanDerPolFormulas&
   checks.equal(where, "trivial multiplier", "", 1.0, 1.0 + shot.trivial_error, 1e-6);
 }
 
-void check_row(const Row& row, const VanDerPolFormulas& claimed, const ClaimOptions& options, ClaimChecks& checks) {
+void check_van_der_pol_row(const VanDerPolRow& row, const VanDerPolFormulas& claimed, const ClaimOptions& options,
+                           ClaimChecks& checks) {
   const std::string where = at({{"mu", row.mu}});
   const auto shot = reached_cycle(van_der_pol(row.mu), 1.0, where, options, checks);
   if (!shot) return;
@@ -92,7 +93,7 @@ void check_relaxation(const VanDerPolFormulas& claimed, const ClaimOptions& opti
   }
 }
 
-void check_describing_function(const ClaimOptions& options, ClaimChecks& checks) {
+void check_van_der_pol_describing_function(const ClaimOptions& options, ClaimChecks& checks) {
   for (const double mu : {0.1, 1.0}) {
     const std::string where = at({{"mu", mu}});
     const Loop loop = van_der_pol(mu);
@@ -126,10 +127,10 @@ VanDerPolFormulas van_der_pol_formulas() {
 
 ClaimResult test_van_der_pol(const ClaimOptions& options, const VanDerPolFormulas& claimed) {
   ClaimChecks checks;
-  for (const Row& row : table) check_row(row, claimed, options, checks);
+  for (const VanDerPolRow& row : van_der_pol_table) check_van_der_pol_row(row, claimed, options, checks);
   check_series(claimed, options, checks);
   check_relaxation(claimed, options, checks);
-  check_describing_function(options, checks);
+  check_van_der_pol_describing_function(options, checks);
   at_random(checks, options, "B3", 20, [&](RandomPoints& draw) {
     const double mu = draw.log_between(0.05, 3.0);
     const auto shot = reached_cycle(van_der_pol(mu), 1.0, at({{"mu", mu}}), options, checks);

@@ -13,7 +13,7 @@ using std::numbers::pi;
 
 double natural_frequency(double mass, double stiffness) { return std::sqrt(stiffness / mass); }
 
-std::string text(const StickSlipBelt& belt) {
+std::string belt_in_words(const StickSlipBelt& belt) {
   return at({{"m|kg", belt.mass},
              {"k|N/m", belt.stiffness},
              {"speed|m/s", belt.speed},
@@ -40,7 +40,7 @@ double largest(const Trace& trace, const std::vector<double>& column) {
 
 void check_belt(const StickSlipBelt& belt, OfBelt slip, OfBelt stick, OfBelt amplitude, const ClaimOptions& options,
                 ClaimChecks& checks) {
-  const std::string where = text(belt);
+  const std::string where = belt_in_words(belt);
   // From so far that the mass catches up with the belt: smaller motions would slide about Fc/k for ever.
   const double far = 2.0 * (belt.Fs / belt.stiffness + belt_amplitude(belt));
   const auto shot = reached_cycle(loop_of(belt, coulomb(belt.Fs, belt.Fc)), far, where, options, checks);

@@ -103,7 +103,7 @@ int defect_for_gsl(const gsl_vector* at, void* half, gsl_vector* out) {
 }
 
 /// Times of slip and stick by Powell's hybrid method; NaN if it does not converge.
-std::pair<double, double> solve(SlipAndStick half, double slip, double stick) {
+std::pair<double, double> slip_and_stick_times(SlipAndStick half, double slip, double stick) {
   using Vector = std::unique_ptr<gsl_vector, decltype(&gsl_vector_free)>;
   using Solver = std::unique_ptr<gsl_multiroot_fsolver, decltype(&gsl_multiroot_fsolver_free)>;
   const Vector start(gsl_vector_alloc(2), gsl_vector_free);
@@ -152,7 +152,7 @@ void check_with_stick(const TwoMass& plant, double Fs, double Fc, double hold_sh
   const Cycle& cycle = shot->cycle;
   const double stick = 0.5 * cycle.sticking_fraction * cycle.period, slip = 0.5 * cycle.period - stick;
   checks.equal(where, "slips in a period", "", 2.0, slips(cycle.trace), 0.0, 1.0);
-  const auto [t1, t2] = solve(SlipAndStick(loop, hold_share * Fs, Fc), 0.97 * slip, 1.03 * stick);
+  const auto [t1, t2] = slip_and_stick_times(SlipAndStick(loop, hold_share * Fs, Fc), 0.97 * slip, 1.03 * stick);
   checks.equal(where, "time of slip", "s", t1, slip, 1e-7);
   checks.equal(where, "time of stick", "s", t2, stick, 1e-7);
   checks.equal(where, "period", "s", 2.0 * (t1 + t2), cycle.period, 1e-9);

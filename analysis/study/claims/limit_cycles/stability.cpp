@@ -93,7 +93,7 @@ void check_servo(const Servo& servo, const Coulomb<double>& friction, bool at_br
   checks.equal(where, "multiplier of sticking", "", 0.0, std::abs(shot->cycle.multipliers[1]), 0.0, 1.0);
 }
 
-void check_printed(bool at_break_away, ClaimChecks& checks) {
+void check_printed_saltation(bool at_break_away, ClaimChecks& checks) {
   const std::string where = "the servo of B7, Fs = 1.5 N, Fc = 1 N, sigma2 = 0.4 N s/m";
   const auto friction = coulomb(1.5, 1.0, 0.4);
   const auto built = hunting_cycle({}, friction);
@@ -140,7 +140,7 @@ ClaimResult test_smooth_multipliers(const ClaimOptions& options, double share_of
 
 ClaimResult test_saltation(const ClaimOptions& options, bool at_break_away) {
   ClaimChecks checks;
-  check_printed(at_break_away, checks);
+  check_printed_saltation(at_break_away, checks);
   check_servo({}, coulomb(1.5, 1.0, 0.4), at_break_away, options, checks);
   check_relay(1.0, 1.0, 1.0, options, checks);
   at_random(checks, options, "E3", 20, [&](RandomPoints& draw) {

@@ -53,7 +53,7 @@ Gaps gaps_of(const LawSetting& setting, const Turns& turns, const std::function<
 }
 
 /// Force programme as text.
-std::string in_words(const Turns& turns) {
+std::string turns_in_words(const Turns& turns) {
   return "force 0, " + short_number(turns.f1) + ", " + short_number(turns.f2) + ", " + short_number(turns.f3) + ", " +
          short_number(turns.f2) + ", " + short_number(turns.f1) + " N";
 }
@@ -80,7 +80,7 @@ ClaimResult memory(const std::string& label, double vs, bool closes, double tole
       checks.stop(gaps.status);
       break;
     }
-    const std::string where = (proposed ? values_of(setting) + ", " : "") + in_words(turns);
+    const std::string where = (proposed ? values_of(setting) + ", " : "") + turns_in_words(turns);
     if (closes) {
       checks.equal(where, "gap of the inner loop over the outer width", "", 0.0, gaps.inner, tolerance);
       checks.equal(where, "gap of the outer loop over its width", "", 0.0, gaps.outer, tolerance);

@@ -62,7 +62,7 @@ Drift drift_under(const LawSetting& setting, const ZigZag& force, const std::fun
   return drift;
 }
 
-std::string in_words(const ZigZag& force) {
+std::string zigzag_in_words(const ZigZag& force) {
   return "force between " + short_number(force.low) + " and " + short_number(force.high) + " N" +
          (force.after_slide ? " after a slide" : "");
 }
@@ -91,7 +91,7 @@ ClaimResult over_forces(const std::string& label, const ClaimOptions& options, c
       checks.stop(drift.status);
       break;
     }
-    test(drift, (proposed ? values_of(setting) + ", " : "") + in_words(force), force, checks);
+    test(drift, (proposed ? values_of(setting) + ", " : "") + zigzag_in_words(force), force, checks);
   }
   return checks.result();
 }

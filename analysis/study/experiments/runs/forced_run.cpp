@@ -13,7 +13,9 @@ namespace {
 Loop mass_with(const Element& law, double mass) {
   Mass plant;
   plant.mass = mass;
-  LoopParts parts{plant, NoController{}, std::nullopt, law, std::nullopt};
+  LoopParts parts;
+  parts.plant = plant;
+  parts.friction = law;
   return build_loop(parts);
 }
 
@@ -24,7 +26,9 @@ Loop moved_law(const Element& law) {
   plant.B = Eigen::Vector2d(0.0, 1.0);
   plant.C = Eigen::RowVector2d(1.0, 0.0);
   plant.B_friction = Eigen::Vector2d::Zero();
-  LoopParts parts{plant, NoController{}, std::nullopt, law, std::nullopt};
+  LoopParts parts;
+  parts.plant = plant;
+  parts.friction = law;
   return build_loop(parts);
 }
 

@@ -30,7 +30,11 @@ Loop servo(const LawSetting& setting) {
   pid.kd = 6.0;
   const LawSetting with_viscous =
       has_parameter(setting.kind, "sigma2") ? setting.with("sigma2", viscous, true) : setting;
-  return build_loop({mass, pid, std::nullopt, make_law(with_viscous), std::nullopt});
+  LoopParts parts;
+  parts.plant = mass;
+  parts.controller = pid;
+  parts.friction = make_law(with_viscous);
+  return build_loop(parts);
 }
 
 bool unfinished(const PredictReport& report, const std::string& method) {

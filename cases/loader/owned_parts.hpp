@@ -1,0 +1,22 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle::case_file {
+
+/// A part of a loop that has a table of parameters: a slot, a block of a diagram.
+struct OwnedPart {
+  std::string section;  ///< "loop.plant", "diagram.axis"
+  std::function<const std::vector<ParameterRow>&(const LoopParts&)> rows;
+  std::function<std::vector<ParameterValue>(const LoopParts&)> values;
+  std::function<void(LoopParts&, const std::vector<ParameterValue>&)> set;
+  std::function<bool(const LoopParts&)> valid;  ///< the part obeys its own rules
+};
+
+/// All parts of a loop, in the order of numbers_of(). They serve any loop of the same kinds.
+std::vector<OwnedPart> owned_parts(const LoopParts& parts);
+
+}  // namespace limcycle::case_file

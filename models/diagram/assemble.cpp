@@ -1,0 +1,97 @@
+#include "limcycle/models/diagram/assemble.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/models/diagram/signal_rows.hpp"
+#include "limcycle/models/element/compensation.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/saturation.hpp"
+
+namespace limcycle {
+namespace {
+
+using Eigen::Index;
+using Row = Eigen::RowVectorXd;
+
+/// Cuts the rows of a diagram into the matrices of the Lur'e form.
+class Assembly {
+ public:
+  explicit Assembly(const Diagram& diagram) : diagram_(diagram), rows_(diagram) {}
+
+  Loop build(double reference, double load) {
+    rows_.number_elements();
+    Loop loop;
+    loop.C_y = rows_.output().head(rows_.states());
+    loop.delay = rows_.delay();
+    rates_ = rows_.rates();
+    const Index n = rows_.states(), ne = rows_.elements();
+    loop.A = rates_.leftCols(n);
+    loop.A_delayed = rates_.middleCols(n, n);
+    loop.B = rates_.middleCols(2 * n, ne);
+    loop.E = rates_.rightCols(4);
+    for (const auto& port : rows_.ports()) add(port, loop);
+    share_selections(loop);
+    loop.external << 1.0, reference, 0.0, load;
+    loop.state_names = rows_.state_names();
+    loop.own_states = rows_.own_states();
+    return loop;
+  }
+
+ private:
+  void add(const ElementRows& from, Loop& loop) const {
+    const Index n = rows_.states(), ne = rows_.elements();
+    loop.elements.push_back(*from.element);
+    Port& port = loop.ports.emplace_back();
+    port.path = from.path;
+    port.rubs = from.contact != Contact::none;
+    port.opposes = from.contact == Contact::opposes;
+    port.C = from.input.head(n);
+    port.C_delayed = from.input.segment(n, n);
+    port.D = from.input.segment(2 * n, ne);
+    port.c = from.input.tail(4);
+    const Row rate = port.rubs ? from.rate : rate_of(from.input);
+    port.C_v = rate.head(n);
+    port.D_v = rate.segment(2 * n, ne);
+    port.c_v = rate.tail(4);
+  }
+
+  /// Time derivative of an input that reads the state and r; a direct path from another element's output has no rate.
+  Row rate_of(const Row& input) const {
+    const Index n = rows_.states(), ne = rows_.elements();
+    Row rate = input.head(n) * rates_;
+    rate(2 * n + ne + reference_slope) += input(2 * n + ne + reference_value);
+    return rate;
+  }
+
+  /// A compensation takes the selection of the set-valued friction law at the same body.
+  void share_selections(Loop& loop) const {
+    const auto& ports = rows_.ports();
+    for (std::size_t i = 0; i < ports.size(); ++i) {
+      if (ports[i].contact != Contact::senses) continue;
+      for (std::size_t k = 0; k < ports.size(); ++k) {
+        const bool same =
+            ports[k].contact == Contact::opposes && ports[k].on == ports[i].on && ports[k].against == ports[i].against;
+        if (same && ports[k].element->facts().has_selection) loop.ports[i].selection_of = k;
+      }
+    }
+  }
+
+  const Diagram& diagram_;
+  SignalRows rows_;
+  Eigen::MatrixXd rates_;
+};
+
+}  // namespace
+
+std::optional<OutputRate<double>> output_rate(const Element& element) {
+  if (const auto* zone = element.as<DeadZone<double>>()) return OutputRate<double>::of(*zone);
+  if (const auto* limit = element.as<Saturation<double>>()) return OutputRate<double>::of(*limit);
+  return std::nullopt;
+}
+
+Loop assemble(const Diagram& diagram, double reference, double load) {
+  return Assembly(diagram).build(reference, load);
+}
+
+}  // namespace limcycle

@@ -1,0 +1,33 @@
+#pragma once
+#include <stdexcept>
+
+#include "limcycle/models/element/output_rate.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// A diagram that is no loop that can be computed: `rule.key` is the path of a block.
+struct BrokenDiagram : std::invalid_argument {
+  explicit BrokenDiagram(BrokenRule broken)
+      : std::invalid_argument(broken.key + ": " + broken.rule), rule(std::move(broken)) {}
+  BrokenRule rule;
+};
+
+/// Joins the blocks of a diagram. External signals other than the reference and the load are zero, and the states are
+/// those of the loop at rest, for any rate of the reference. Elements are numbered so that each comes after those into
+/// whose output it looks straight; friction laws come last. Throws BrokenDiagram for an algebraic loop, a velocity that
+/// does not exist, a derivative of a signal that jumps, and delays that differ.
+Loop assemble(const Diagram& diagram, double reference, double load);
+
+/// The five slots of a loop as a diagram, and the same joined, without checking them: where validate() reports an
+/// error, the result is wrong or this throws.
+Diagram short_form(const LoopParts& parts);
+Loop assemble(const LoopParts& parts);
+
+/// Element that computes the rate of the output of an element on the error; empty where that rate is not available.
+std::optional<OutputRate<double>> output_rate(const Element& element);
+
+/// True if the error e = r - y is used; false for friction without a controller or an element in series.
+bool uses_error(const LoopParts& parts);
+
+}  // namespace limcycle
