@@ -12,13 +12,13 @@ namespace limcycle {
 struct LoopParts {
   Plant plant;
   Controller controller;
-  std::optional<Element> element;   ///< in series after the controller
-  std::optional<Element> friction;  ///< opposes the rubbing velocity of the plant
-  std::optional<Element> error;     ///< acts on e = r - y before the controller
-  double reference = 0.0;           ///< set-point r at t = 0
-  double reference_rate = 0.0;      ///< dr/dt of a ramp
-  double load = 0.0;                ///< constant force added to the plant's input
-  std::optional<Diagram> diagram;   ///< the slots above are then empty, but for the reference
+  std::optional<Element> element;    ///< in series after the controller
+  std::optional<Element> friction;   ///< opposes the rubbing velocity of the plant
+  std::optional<Element> error;      ///< acts on e = r - y before the controller
+  double reference = 0.0;            ///< set-point r at t = 0
+  double reference_rate = 0.0;       ///< dr/dt of a ramp
+  double load = 0.0;                 ///< constant force added to the plant's input
+  std::optional<Diagram> diagram{};  ///< the slots above are then empty, but for the reference
 };
 
 /// External signals, in the order of the columns below: the constant 1, r, dr/dt, force.

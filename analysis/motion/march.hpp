@@ -108,6 +108,7 @@ class March {
   double locate(std::size_t guard, double from, double to);
   double just_beyond(std::size_t guard, double at, double last);
   Status land(std::size_t guard, double h);
+  bool release(SwitchSlopes& first);
 
   LoopField& field_;
   StepperKind kind_;

@@ -110,6 +110,27 @@ double March::just_beyond(std::size_t guard, double at, double last) {
   return at;
 }
 
+/// Lets go at once the bodies that can no longer be held after a switch: the jump of one force broke them away. For the
+/// derivative these switches happen on the surface of the first one, whose time they have, and not on their own: that
+/// of a neighbour is passed by a jump, not by its motion. False if there is no derivative.
+bool March::release(SwitchSlopes& first) {
+  const std::size_t most = 2 * field_.modes().size();
+  for (std::size_t count = 0; count < most; ++count) {
+    std::vector<double> values;
+    field_.guards(x_, t_, values);
+    std::size_t k = 0;
+    while (k < values.size() && !(values[k] < 0.0 && field_.holds(field_.owner(k)))) ++k;
+    if (k == values.size()) return true;
+    SwitchSlopes next;
+    field_.fire(x_, t_, k, next);
+    first.reset = next.reset * first.reset;
+    first.after = next.after;
+    first.saltation = first.reset + (first.after - first.reset * first.before) * first.guard / first.crossing;
+    ++events_;
+  }
+  return false;
+}
+
 Status March::land(std::size_t guard, double h) {
   const double tried = step_.t1 - step_.t0;
   if (h > 0.0) {
@@ -135,9 +156,9 @@ Status March::land(std::size_t guard, double h) {
   if (h == 0.0 && field_.loop().elements[*step_.switched].may_stick() && !field_.holds(*step_.switched))
     dt_ = 0.125 * tried;
   if (tracks_) {
-    Eigen::MatrixXd saltation;
-    if (field_.fire(x_, t_, guard, saltation))
-      step_.transition = saltation * step_.transition;
+    SwitchSlopes slopes;
+    if (field_.fire(x_, t_, guard, slopes) && release(slopes))
+      step_.transition = slopes.saltation * step_.transition;
     else
       step_.transition.resize(0, 0);
   } else {

@@ -14,6 +14,33 @@ namespace {
 using Eigen::Index;
 using Row = Eigen::RowVectorXd;
 
+/// Puts the difference of two states, which friction between two bodies sees as c_a x_a - c_b x_b, in the place of x_a:
+/// a body that sticks to another is then exactly at rest on it (see rubbing_coordinates()). Nothing for any other row.
+void measure_from_other_body(Loop& loop, Row row) {
+  std::vector<Index> seen;
+  for (Index i = 0; i < row.size(); ++i)
+    if (row(i) != 0.0) seen.push_back(i);
+  if (seen.size() != 2) return;
+  const Index n = loop.states();
+  const Index a = row(seen[0]) > 0.0 ? seen[0] : seen[1], b = a == seen[0] ? seen[1] : seen[0];
+  const double share = row(b) / row(a);
+  Eigen::MatrixXd to = Eigen::MatrixXd::Identity(n, n), back = to;
+  to(a, b) = share;
+  back(a, b) = -share;
+  loop.A = to * loop.A * back;
+  loop.A_delayed = to * loop.A_delayed * back;
+  loop.B = to * loop.B;
+  loop.E = to * loop.E;
+  loop.C_y = loop.C_y * back;
+  for (Port& port : loop.ports) {
+    port.C = port.C * back;
+    port.C_v = port.C_v * back;
+    port.C_delayed = port.C_delayed * back;
+  }
+  if (loop.own_states.size() == 0) loop.own_states = Eigen::MatrixXd::Identity(n, n);
+  loop.own_states = loop.own_states * back;
+}
+
 /// Cuts the rows of a diagram into the matrices of the Lur'e form.
 class Assembly {
  public:
@@ -35,6 +62,11 @@ class Assembly {
     loop.external << 1.0, reference, 0.0, load;
     loop.state_names = rows_.state_names();
     loop.own_states = rows_.own_states();
+    for (const Port& port : loop.ports) {
+      if (!port.opposes) continue;
+      measure_from_other_body(loop, port.C);
+      measure_from_other_body(loop, port.C_v);
+    }
     return loop;
   }
 

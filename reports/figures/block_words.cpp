@@ -227,7 +227,12 @@ BlockWords words_of_block(const Block& block, const Units& units) {
   else if (const auto* plant = std::get_if<Plant>(&block.what))
     words = plant_words(*plant, units);
   else if (const auto* controller = std::get_if<Controller>(&block.what))
-    words = std::visit([&](const auto& one) { return words_of_part(block.name, one, units, true); }, *controller);
+    // What a controller reads and commands is up to the diagram: units of force and length are not those of the slots.
+    words = std::visit(
+        [&](const auto& one) {
+          return words_of_part(block.name, one, Units{"", "", ""}, true);
+        },
+        *controller);
   else
     words = std::visit([&](const auto& one) { return words_of_part(block.name, one, units); },
                        std::get<LinearBlock>(block.what));

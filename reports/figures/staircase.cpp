@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -29,6 +30,14 @@ class Staircase {
     reference.lines.push_back({reference.whole, false, false});
     place("r", std::move(reference));
     for (const Block& block : diagram_.blocks) place(block.name, words_of_block(block, units));
+    leaves(diagram_.output);
+    for (const Block& block : diagram_.blocks) {
+      for (const SignalSum& sum : block.inputs)
+        for (const Term& term : sum) leaves(term);
+      for (const std::string& body : {block.on, block.against})
+        if (!body.empty()) leaves({1.0, body, "v"});
+      if (block.contact == Contact::opposes) leaves({1.0, block.name, "F"});
+    }
   }
 
   std::string svg(const std::string& label) {
@@ -36,12 +45,12 @@ class Staircase {
     for (const PlacedBlock& block : placed_) body += drawn(block);
     for (const Block& block : diagram_.blocks) {
       for (std::size_t k = 0; k < block.inputs.size(); ++k)
-        for (const Term& term : block.inputs[k]) body += wire(term.block, block.name, port(block, k), words_of(term));
+        for (const Term& term : block.inputs[k])
+          body += wire({term.block, output_of(term)}, block.name, port(block, k), words_of(term));
       if (block.contact != Contact::none) body += contact(block);
     }
-    const PlacedBlock& last = at(diagram_.output.block);
-    const double y = last.y + 0.5 * last.height + 6.0;
-    body += arrow({{last.right(), y}, {width_ + 10.0, y}});
+    const double y = height_of({diagram_.output.block, output_of(diagram_.output)});
+    body += arrow({{at(diagram_.output.block).right(), y}, {width_ + 10.0, y}});
     body += words_in(width_ + 14.0, y + 4.0, "y");
     return framed_diagram(body, width_ + 36.0, height_ + margin, label);
   }
@@ -55,6 +64,27 @@ class Staircase {
     width_ = block.right();
     height_ = block.bottom();
     placed_.push_back(std::move(block));
+  }
+
+  /// An output of a block.
+  struct Source {
+    std::string block, output;
+  };
+
+  static std::string output_of(const Term& term) { return term.output.empty() ? "y" : term.output; }
+
+  /// Notes that an output of a block is used: each leaves the block at a height of its own.
+  void leaves(const Term& term) {
+    auto& outputs = outputs_[term.block];
+    if (std::ranges::find(outputs, output_of(term)) == outputs.end()) outputs.push_back(output_of(term));
+  }
+
+  double height_of(const Source& from) const {
+    const auto& outputs = outputs_.at(from.block);
+    const auto k = static_cast<double>(std::ranges::find(outputs, from.output) - outputs.begin());
+    const PlacedBlock& block = at(from.block);
+    const double spacing = std::min(12.0, block.height / static_cast<double>(outputs.size() + 1));
+    return block.y + 0.5 * block.height + spacing * (k - 0.5 * static_cast<double>(outputs.size() - 1));
   }
 
   const PlacedBlock& at(const std::string& name) const { return placed_[number_.at(name)]; }
@@ -71,12 +101,12 @@ class Staircase {
   }
 
   /// From the side of a block into the column of another, at `shift` from its middle.
-  std::string wire(const std::string& from, const std::string& to, double shift, const std::string& words) const {
-    const PlacedBlock &source = at(from), &target = at(to);
-    const bool forward = number_.at(from) < number_.at(to);
-    const double x = target.middle() + shift, y = source.y + 0.5 * source.height + (forward ? 0.0 : 4.0);
+  std::string wire(const Source& from, const std::string& to, double shift, const std::string& words) const {
+    const PlacedBlock &source = at(from.block), &target = at(to);
+    const bool forward = number_.at(from.block) < number_.at(to);
+    const double x = target.middle() + shift, y = height_of(from);
     const Spot begin{forward ? source.right() : source.x, y}, end{x, forward ? target.y : target.bottom()};
-    if (from == to) {
+    if (from.block == to) {
       const double outside = source.bottom() + 12.0;
       return arrow({{source.middle() + 20.0, source.bottom()},
                     {source.middle() + 20.0, outside},
@@ -94,8 +124,9 @@ class Staircase {
       const std::string& body = *name;
       if (body.empty()) continue;
       const double shift = name == &block.against ? 0.0 : -8.0;
-      out += wire(body, block.name, shift, "v");
-      if (block.contact == Contact::opposes) out += wire(block.name, body, 8.0, std::string(minus) + "F");
+      out += wire({body, "v"}, block.name, shift, "v");
+      const std::string sign = name == &block.on ? std::string(minus) : "";
+      if (block.contact == Contact::opposes) out += wire({block.name, "F"}, body, 8.0, sign + "F");
     }
     return out;
   }
@@ -103,6 +134,7 @@ class Staircase {
   const Diagram& diagram_;
   std::vector<PlacedBlock> placed_;
   std::map<std::string, std::size_t> number_;
+  std::map<std::string, std::vector<std::string>> outputs_;  ///< of each block, as they leave it from above
   double width_ = 0.0, height_ = 0.0;
 };
 

@@ -180,3 +180,19 @@ TEST_CASE("sections of other commands are read too") {
   CHECK(message("claim = [1]\n" + lone_law) == "a.toml:1: claim[0] = 1: must be a table, found a number");
   CHECK(message(lone_law + "[serch]\n") == "a.toml:4: serch: unknown key; did you mean search?");
 }
+
+TEST_CASE("section units: a symbol that is known scales, another one names, a table says both") {
+  const auto unit = [](const std::string& written) {
+    return read_case(std::string(servo) + "[units]\ny = " + written + "\n", "a.toml").y_unit.value();
+  };
+  CHECK(unit("\"mm\"").per_si == 1000.0);
+  CHECK(unit("\"deg\"").per_si == Approx(57.29577951308232));
+  CHECK(unit("\"%\"").per_si == 1.0);
+  CHECK(unit("{symbol = \"in\", per_si = 39.37}").symbol == "in");
+  CHECK(unit("{symbol = \"in\", per_si = 39.37}").per_si == 39.37);
+  const auto refused = [](const std::string& body) { return message(std::string(servo) + "[units]\n" + body + "\n"); };
+  CHECK(refused("y = \"\"").find("must be 1 to 12 letters or signs") != std::string::npos);
+  CHECK(refused("y = {symbol = \"mm\"}").find("units.y.per_si: is required") != std::string::npos);
+  CHECK(refused("y = {symbol = \"mm\", per_si = 0.0}").find("must be > 0") != std::string::npos);
+  CHECK(refused("x = \"mm\"").find("unknown key") != std::string::npos);
+}

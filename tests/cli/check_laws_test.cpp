@@ -24,6 +24,27 @@ TEST_CASE("check tells what the default case holds") {
     CHECK(ran.out.find(line) != std::string::npos);
 }
 
+TEST_CASE("check: a diagram is listed and drawn") {
+  const Scratch scratch;
+  const std::string file = scratch.file("a.toml"), picture = scratch.file("a.svg");
+  REQUIRE(run({"new", "--diagram", "-o", file}).code == 0);
+  const Ran ran = run({"check", file, "-o", picture, "--json", scratch.file("a.json")});
+  REQUIRE(ran.code == 0);
+  CHECK(ran.out.find("blocks      position: gain of r - axis.y\n            velocity: pid of position - axis.v\n") !=
+        std::string::npos);
+  CHECK(ran.out.find("guide: stribeck on axis\n") != std::string::npos);
+  const Json document = Json::parse(scratch.get("a.json"));
+  CHECK(document.at("plant").is_null());
+  CHECK(document.at("blocks").size() == 5);
+  CHECK(document.at("blocks").at(1) ==
+        Json::parse(R"({"name": "velocity", "kind": "pid", "inputs": ["position - axis.v"]})"));
+  const std::string drawn = scratch.get("a.svg");
+  CHECK(drawn.starts_with("<svg "));
+  for (const auto* name :
+       {">position: gain<", ">velocity: pid<", ">saturation = 800<", ">axis: mass<", ">guide: stribeck<"})
+    CHECK(drawn.find(name) != std::string::npos);
+}
+
 TEST_CASE("check: the JSON document") {
   const std::string file = shipped("pid-lugre.toml");
   const Ran ran =

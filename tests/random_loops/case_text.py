@@ -33,6 +33,10 @@ def toml(case, comments=(), backwards=False):
     for name, keys in case.items():
         if not isinstance(keys, dict):
             continue
+        if name == "diagram":
+            parts.append((name, {key: entry for key, entry in keys.items() if key != "block"}))
+            parts += [("[diagram.block]", block) for block in keys["block"]]
+            continue
         if name != "loop":
             parts.append((name, keys))
             continue

@@ -177,6 +177,40 @@ def fast_pole(case, dice):
     return Rewriting(other, tolerance=5e-3, same_starts=False)
 
 
+def diagram(case, dice):
+    """The five slots as blocks of a diagram, in random order."""
+    loop = case["loop"]
+    controller = loop.get("controller", {"kind": "none"})
+    more = [key for key in ("saturation", "lag", "friction_compensation") if controller.get(key)]
+    if "friction_compensation" in more or (more and controller["kind"] != "pid") or loop["plant"].get("gravity"):
+        return None
+    blocks, signal = [], ""
+
+    def through(name, keys):
+        nonlocal signal
+        blocks.append({"name": name, "input": signal} | keys)
+        signal = name
+
+    if "element" in loop or "friction" not in loop or controller["kind"] != "none":
+        signal = "r - axis.y"
+        if "error" in loop:
+            through("error", loop["error"])
+        if controller["kind"] != "none":
+            through("control", controller)
+        if "element" in loop:
+            through("element", loop["element"])
+    if loop.get("load", 0.0) or not signal:
+        blocks.append({"name": "weight", "kind": "constant", "value": loop.get("load", 0.0)})
+        signal += " + weight" if signal else "weight"
+    blocks.append({"name": "axis", "input": signal} | loop["plant"])
+    if "friction" in loop:
+        blocks.append({"name": "rub", "on": "axis"} | loop["friction"])
+    keys = {"output": "axis.y"} | ({"reference": loop["reference"]} if "reference" in loop else {})
+    keys["block"] = [blocks[i] for i in dice.random.permutation(len(blocks))]
+    other = {key: entry for key, entry in case.items() if key != "loop"} | {"diagram": keys}
+    return Rewriting(other, tolerance=1e-4 if loop.get("load") else 1e-6, same_starts=not loop.get("load"))
+
+
 def stiff_shaft(case, dice):
     """One mass as two with a shaft 300 times faster than the loop."""
     loop = case["loop"]
@@ -212,7 +246,7 @@ def bristles(case, dice):
 REWRITINGS = {
     "units": other_units, "mirror": mirror, "reordered": reordered, "transfer-function": transfer_function,
     "similar": similar, "decoupled": decoupled, "moved": moved, "fast-pole": fast_pole, "stiff-shaft": stiff_shaft,
-    "zeros-and-poles": zeros_and_poles, "bristles": bristles,
+    "zeros-and-poles": zeros_and_poles, "bristles": bristles, "diagram": diagram,
 }  # fmt: skip
 
 

@@ -68,6 +68,16 @@ double LoopField::hold_row(std::size_t i, Eigen::RowVectorXd& row) const {
   return (input ? port.c : port.c_v).dot(ext_rate_.transpose());
 }
 
+/// The state that is the velocity held by element i, if it is one state.
+std::optional<std::size_t> LoopField::held_state(std::size_t i) const {
+  const Port& port = loop_->ports[i];
+  if (held(i) != Held::rate || port.c_v.dot(ext_.transpose()) != 0.0) return std::nullopt;
+  if (port.c_v.dot(ext_rate_.transpose()) != 0.0 || (port.C_v.array() != 0.0).count() != 1) return std::nullopt;
+  Index only = 0;
+  port.C_v.cwiseAbs().maxCoeff(&only);
+  return static_cast<std::size_t>(only);
+}
+
 /// Output that would hold the signal of element i at the present other outputs; +-infinity if no output can.
 double LoopField::drive_of(std::size_t i) const {
   Eigen::RowVectorXd row;
@@ -214,6 +224,9 @@ void LoopField::solve_held(const State& x) {
       w_[i] = outputs(k);
       add_output(i, w_[i]);
     }
+    // Forces that hold one another leave a rate of rounding size, on which a body at rest would creep.
+    for (Index k = 0; m > 1 && k < m; ++k)
+      if (const auto only = held_state(holding_[static_cast<std::size_t>(k)])) dX_[*only] = 0.0;
   }
   for (const std::size_t i : holding_) inputs_[i].drive = w_[i];
 }

@@ -11,6 +11,7 @@
 using limcycle::Case;
 using limcycle::NewCase;
 using limcycle::read_case;
+using limcycle::test::Ran;
 using limcycle::test::run;
 using limcycle::test::Scratch;
 using limcycle::test::some_of;
@@ -55,6 +56,18 @@ TEST_CASE("new: every plant with every controller and every friction law is a va
           ++cases;
         }
   CHECK(cases == 2 * 7 * std::ssize(some_of(kinds_in("controller"))) * 20);
+}
+
+TEST_CASE("new: a cascade as a diagram, without kinds of slots") {
+  const Ran made = run({"new", "--diagram"});
+  REQUIRE(made.code == 0);
+  const Case from = read_case(made.out, "new");
+  REQUIRE(from.loop);
+  REQUIRE(from.loop->diagram);
+  CHECK(from.loop->diagram->blocks.size() == 5);
+  const Ran refused = run({"new", "--diagram", "--plant", "belt"});
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("--diagram") != std::string::npos);
 }
 
 TEST_CASE("new: every element, alone and beside friction, before every plant and behind every controller") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "limcycle/tests/cli/golden.hpp"
@@ -29,6 +30,37 @@ std::size_t widest_line(const std::string& text) {
 }  // namespace
 
 TEST_CASE("predict: golden documents") { check_goldens("predict"); }
+
+TEST_CASE("predict: a diagram with friction between two bodies and under one of them") {
+  const auto ran = run({"predict", shipped("cart-on-frame.toml"), "--json", "-"});
+  REQUIRE(ran.code == 0);
+  const auto document = Json::parse(ran.out);
+  REQUIRE(document["cycles"].size() >= 1);
+  // By SciPy's LSODA from event to event, the forces that hold both bodies from a system of two equations.
+  CHECK(document["cycles"][0]["period"].get<double>() == Approx(9.580551).epsilon(1e-6));
+  CHECK(document["cycles"][0]["amplitude"].get<double>() == Approx(0.00550067).epsilon(1e-5));
+  CHECK(document["cycles"][0]["stable"] == true);
+  // By differences of motions over one period. When the cart breaks away from the frame, the jump of that force breaks
+  // the frame away from its feet at once: taken for a switch of its own, this gave a multiplier of 124.
+  CHECK(document["cycles"][0]["multipliers"][0][0].get<double>() == Approx(0.302938).epsilon(1e-5));
+  CHECK(document["cycles"][0]["multipliers"][1][0].get<double>() == Approx(0.0585181).epsilon(1e-5));
+}
+
+TEST_CASE("predict: y in the unit that the case wants, in texts and pages; documents keep that of the case") {
+  const Scratch scratch;
+  std::ifstream file(shipped("pid-lugre.toml"));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string plain = scratch.put("a.toml", text),
+                    in_mm = scratch.put("b.toml", text + "\n[units]\ny = \"mm\"\n");
+  const auto metres = run({"predict", plain, "--csv", scratch.file("a.csv")});
+  const auto ran = run({"predict", in_mm, "--csv", scratch.file("b.csv"), "--html", scratch.file("b.html")});
+  REQUIRE(ran.code == 0);
+  CHECK(scratch.get("a.csv") == scratch.get("b.csv"));
+  CHECK_THAT(squeezed(metres.out), Contains("amplitude 0.06390 m."));
+  CHECK_THAT(squeezed(ran.out),
+             Contains("amplitude 63.90 mm.") && Contains("from y(0) = 1000 mm") && !Contains("0.0639"));
+  CHECK_THAT(scratch.get("b.html"), Contains("amplitude 63.90 mm"));
+}
 
 TEST_CASE("predict: the default case is answered in words, in documents and as a page") {
   const Scratch scratch;
