@@ -113,6 +113,9 @@ std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
   if (controller.D_rate != 0.0 && !does_not_reach(plant.C_y, plant.B_u))
     return BrokenRule{"loop.controller.tf",
                       "must be > 0: the plant has relative degree 1 and kd differentiates its output"};
+  if (const auto* cascade = std::get_if<Cascade>(&parts.controller))
+    if (const auto broken = cascade->broken_together())
+      return BrokenRule{"loop.controller." + broken->key, broken->rule};
   if (auto broken = validate_error(parts, controller.D_rate)) return broken;
   return std::nullopt;
 }

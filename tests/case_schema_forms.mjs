@@ -32,6 +32,54 @@ export const forms = {
     accuracy = 1e-5
     method = "quadrature"`),
   'axes: lists and numbers': also('[df]\namplitude = [1e-5, 1e-3]\nfrequency = 1.0\nbias = [-1, 0.5]'),
+  'units: a symbol': also('[units]\ny = "mm"'),
+  'units: a table': also('[units]\ny = {symbol = "in", per_si = 39.37}'),
+  'a diagram with every linear block': () => `[diagram]
+    output = "axis.y"
+    reference = {kind = "ramp", rate = 0.0}
+    ${[
+      'kind = "gain"\ngain = 2.0\ninput = "r - late"',
+      'kind = "sum"\ninput = "gain + 0.5*weight"',
+      'kind = "integrator"\ngain = 1.0\nleak = 0.1\ninput = "sum"',
+      'kind = "lead-lag"\nlead = 0.1\nlag = 0.01\ninput = "sum + integrator"',
+      'kind = "notch"\nfrequency = 50.0\ndamping = 0.5\ndepth = 0.1\ninput = "lead_lag"',
+      'kind = "low-pass"\ntime_constant = 0.01\ngain = 1.0\ninput = "notch + proper"',
+      'kind = "transfer-function"\nnumerator = [1.0, 2.0]\ndenominator = [1.0, 3.0]\ninput = "sum"',
+      'kind = "state-space"\nA = [[-1.0]]\nB = [[1.0, 0.5]]\nC = [[1.0]]\nD = [[0.0, 0.0]]\ninput = ["low_pass", "weight"]',
+      'kind = "constant"\nvalue = 0.0',
+      'kind = "delay"\ndelay = 0.01\ninput = "axis.y"',
+    ].map((keys, i) => `[[diagram.block]]\nname = "${
+      ['gain', 'sum', 'integrator', 'lead_lag', 'notch', 'low_pass', 'proper', 'space', 'weight', 'late'][i]}"\n${keys}`)
+      .join('\n')}
+    [[diagram.block]]
+    name = "axis"
+    kind = "mass"
+    mass = 1.0
+    input = "space"
+    [[diagram.block]]
+    name = "guide"
+    kind = "coulomb"
+    on = "axis"
+    Fc = 1.0`.replace('{kind = "ramp", rate = 0.0}', '0.5'),
+  'friction between two plants': () => `[diagram]
+    output = "b.y"
+    [[diagram.block]]
+    name = "a"
+    kind = "mass"
+    mass = 1.0
+    stiffness = 2.0
+    input = "b.v"
+    [[diagram.block]]
+    name = "b"
+    kind = "mass"
+    mass = 1.0
+    stiffness = 3.0
+    input = "r - a"
+    [[diagram.block]]
+    name = "rub"
+    kind = "coulomb"
+    between = ["a", "b"]
+    Fc = 1.0`,
   'search, predict, dissipativity': also(`[search]
     amplitude = [1e-6, 1.0]
     frequency = [0.01, 1000.0]
@@ -77,10 +125,10 @@ export const forms = {
 const type_of = (value) => (Array.isArray(value) ? 'list' : typeof value === 'bigint' ? 'number' : typeof value);
 const is_table = (value) => type_of(value) === 'object';
 
-// What the schema leaves to the program: states by name; texts of which it wants more than that they are texts; and a
-// formula may be a number too.
+// What the schema leaves to the program: states by name; texts of which it wants more than that they are texts, names of
+// blocks and sums of signals among them; and a formula may be a number too.
 const states = /^simulate\.initial\b/;
-const free_text = /\.(path|formula)$/;
+const free_text = /\.(path|formula)$|^diagram\.(output$|block\[\]\(.*\)\.(input|on|between))/;
 const formula = /\.formula$/;
 const always = () => true;
 const never = () => false;

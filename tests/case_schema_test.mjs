@@ -73,6 +73,7 @@ const wanted = [
   ...kinds('element').map((kind) => ['--element', kind]),
   ...[...kinds('error element'), 'dead-zone', 'saturation'].map((kind) => ['--error', kind]),
   ['--all'],
+  ['--diagram'],
 ];
 /// With the optional keys too, which stand there as comments.
 const in_full = (text) => text.replace(/^# (\w+ = [-\d.["{t][^;]*)$/gm, '$1');
@@ -97,7 +98,8 @@ for (const one of valid) {
   expect(errors(one.document).length === 0, `${one.name} is refused: ${errors(one.document).map(sentence)[0]}`);
 }
 for (const { group, kind } of laws) {
-  const seen = valid.some(({ document }) => Object.values(document.loop).some((part) => part.kind === kind));
+  const parts = (document) => [...Object.values(document.loop ?? {}), ...(document.diagram?.block ?? [])];
+  const seen = valid.some(({ document }) => parts(document).some((part) => part.kind === kind));
   expect(seen, `no case has the ${group} ${kind}`);
 }
 
@@ -107,7 +109,7 @@ const unique = new Map();
 for (const { name, document } of valid)
   for (const copy of spoiled(document)) {
     // What a loop may lack depends on what else it has.
-    const key = /^loop\.\w+ is missing/.test(copy.what) ? `${copy.what} of ${Object.keys(document.loop)}` : copy.what;
+    const key = /^loop\.\w+ is missing/.test(copy.what) ? `${copy.what} of ${Object.keys(document.loop ?? {})}` : copy.what;
     if (!unique.has(key)) unique.set(key, { ...copy, name });
   }
 
@@ -173,8 +175,8 @@ const is_leaf = (node) => node === null || typeof node !== 'object';
 const below = (node) => (is_leaf(node) ? [] : [node, ...Object.values(node).flatMap(below)]);
 const known = new Set(below(schema).flatMap((node) => Object.keys(node.properties ?? {})));
 const tried = new Set(below(valid.map(({ document }) => document)).flatMap(Object.keys));
-for (const file of readdirSync(join(root, 'cases')).filter((name) => /^(read_.*|case)\.cpp$/.test(name)))
-  for (const [, keys] of readFileSync(join(root, 'cases', file), 'utf8').matchAll(/allow\(\{([^}]*)\}/g))
+for (const file of readdirSync(join(root, 'cases/loader')).filter((name) => /^(read_.*|case)\.cpp$/.test(name)))
+  for (const [, keys] of readFileSync(join(root, 'cases/loader', file), 'utf8').matchAll(/allow\(\{([^}]*)\}/g))
     for (const [, key] of keys.matchAll(/"([^"]+)"/g)) {
       expect(known.has(key), `the schema does not know the key ${key} of cases/${file}`);
       expect(tried.has(key), `tests/case_schema_forms.mjs has no form with the key ${key} of cases/${file}`);

@@ -1,7 +1,7 @@
 // Makes the JSON Schema of case files: kinds and their keys as the program tells them, sections by case-sections.mjs.
 //   limcycle laws --json - | node tools/case-schema.mjs >docs/schema/case.json
 import { readFileSync } from 'node:fs';
-import { by_kind, choice, definitions, diagram_of, sections, table } from './case-sections.mjs';
+import { block_keys, by_kind, choice, definitions, diagram_of, ref, sections, table } from './case-sections.mjs';
 
 const laws = JSON.parse(readFileSync(0, 'utf8')).laws;
 const of_group = (group) => laws.filter((law) => law.group === group);
@@ -50,10 +50,28 @@ const elements = of_group('element');
 // Two of the elements may act on the error too: ErrorElements of models/laws.hpp.
 const both = elements.filter(({ kind }) => ['dead-zone', 'saturation'].includes(kind));
 
-// Blocks of a diagram: every kind but the controllers other than pid, each once.
-const in_diagram = laws.filter((law) => law.group !== 'controller' || law.kind === 'pid');
-const block_kinds = [...new Set([...in_diagram.map(({ kind }) => kind), 'friction-compensation'])].sort();
-const block_meanings = in_diagram.flatMap((law) => law.parameters.map((p) => [p.key, with_unit(p)]));
+// Blocks of a diagram: every kind but the controllers other than pid, each once; of two of one name that with more keys.
+const compensation = {
+  kind: 'friction-compensation', group: 'compensation', equation: 'level sgn(v), to be added to a command',
+  parameters: [{ key: 'level', unit: 'N', meaning: 'size of the force', type: 'number', required: true,
+    range: { low: 0, low_open: false, high: null, high_open: false }, default: null, default_from: null }],
+};
+const in_diagram = new Map();
+for (const law of [...laws.filter(({ group, kind }) => group !== 'controller' || kind === 'pid'), compensation])
+  if (law.parameters.length >= (in_diagram.get(law.kind)?.parameters.length ?? 0)) in_diagram.set(law.kind, law);
+const block_definition = (law) => {
+  const touches = law.group === 'friction' || law === compensation;
+  const { input, on, between, name } = block_keys;
+  const signals = law.kind === 'constant' ? {} : { ...(law !== compensation && { input }), ...(touches && { on, between }) };
+  return table(law.equation, {
+    name,
+    kind: { const: law.kind },
+    ...signals,
+    ...Object.fromEntries(law.parameters.map((p) => [p.key, parameter(p)])),
+  }, ['name', 'kind', ...(touches || law.kind === 'constant' ? [] : ['input']),
+    ...law.parameters.filter((p) => p.required).map((p) => p.key)],
+  touches ? { oneOf: ['input', 'on', 'between'].filter((key) => key in signals).map((key) => ({ required: [key] })) } : {});
+};
 
 /// JSON in one line, and with what fits into a line of 120 in one.
 function in_line(value) {
@@ -79,7 +97,7 @@ const simulate_needs_plant = { simulate: { properties: { loop: { required: ['pla
 const schema = {
   $schema: 'https://json-schema.org/draft/2020-12/schema',
   title: 'A case file of limcycle: TOML, read as JSON',
-  ...table(remark, { ...sections, diagram: diagram_of(block_kinds, block_meanings) }, [], {
+  ...table(remark, { ...sections, diagram: diagram_of(ref('block')) }, [], {
     oneOf: [{ required: ['loop'] }, { required: ['diagram'] }],
     dependentSchemas: simulate_needs_plant,
   }),
@@ -90,7 +108,10 @@ const schema = {
     friction: group('Opposes the rubbing velocity of the plant', friction),
     'series-element': group('In series after the controller: plant input = element(u)', [...elements, ...friction]),
     error: group('On e, before the controller', [...of_group('error element'), ...both]),
-    ...Object.fromEntries(laws.map((law) => [name_of(law), kind_definition(law)])),
+    block: by_kind('A block of a diagram', Object.fromEntries([...in_diagram.keys()].sort().map((kind) =>
+      [kind, `block-${kind}`])), [...in_diagram.values()].flatMap((law) => law.parameters.map((p) => [p.key, with_unit(p)]))),
+    ...Object.fromEntries(laws.filter(({ group }) => group !== 'block').map((law) => [name_of(law), kind_definition(law)])),
+    ...Object.fromEntries([...in_diagram].map(([kind, law]) => [`block-${kind}`, block_definition(law)])),
   },
 };
 console.log(written(schema));

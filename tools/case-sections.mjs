@@ -8,7 +8,7 @@ const text = (description, more = {}) => ({ type: 'string', ...more, description
 export const choice = (names, description, more = {}) => ({ enum: names, ...more, description });
 const positive = { exclusiveMinimum: 0 };
 const accuracy = { minimum: 1e-13, maximum: 0.1 };
-const ref = (name) => ({ $ref: `#/$defs/${name}` });
+export const ref = (name) => ({ $ref: `#/$defs/${name}` });
 
 /// A table that knows these keys, and no other. `more`: keywords beside.
 export const table = (description, properties, required = [], more = {}) => ({
@@ -90,28 +90,29 @@ const loop = table('The loop, or one lone friction or element', {
   else: { required: ['plant'] },
 });
 
-/// Which keys a block has depends on its kind, `on` and its lists: the program tells.
-export const diagram_of = (kinds, meanings) => {
-  const signal_words = { type: ['string', 'array'], items: { type: 'string' } };
-  const block = {
-    type: 'object',
-    properties: {
-      ...described(meanings),
-      name: text('a letter, then letters, digits and _', { pattern: '^[A-Za-z_][A-Za-z0-9_]*$' }),
-      kind: choice(kinds, 'which'),
-      input: { ...signal_words, description: 'sum of signals, such as "r - axis.y"; a list for several inputs' },
-      on: text('the plant that friction acts on'),
-      between: { type: 'array', items: { type: 'string' }, minItems: 2, maxItems: 2,
-        description: 'the two plants between which friction acts' },
-    },
-    required: ['name', 'kind'],
-  };
-  return table('A loop of any structure, in place of [loop]', {
-    output: text('the signal that is y, such as "axis.y"'),
-    reference: reference_of_loop,
-    block: { type: 'array', items: block, minItems: 1 },
-  }, ['output', 'block']);
+/// Keys that are not those of a kind.
+export const block_keys = {
+  name: text('a letter, then letters, digits and _', { pattern: '^[A-Za-z_][A-Za-z0-9_]*$' }),
+  input: {
+    type: ['string', 'array'],
+    items: { type: 'string' },
+    minItems: 1,
+    description: 'sum of signals, such as "r - axis.y"; a list for several inputs',
+  },
+  on: text('the plant that friction acts on'),
+  between: {
+    type: 'array',
+    items: { type: 'string' },
+    minItems: 2,
+    maxItems: 2,
+    description: 'the two plants between which friction acts',
+  },
 };
+export const diagram_of = (block) => table('A loop of any structure, in place of [loop]', {
+  output: text('the signal that is y, such as "axis.y"'),
+  reference: reference_of_loop,
+  block: { type: 'array', items: block, minItems: 1 },
+}, ['output', 'block']);
 
 const interval = (description) =>
   ({ type: 'array', items: { type: 'number', ...positive }, minItems: 2, maxItems: 2, description });

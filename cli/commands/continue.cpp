@@ -32,6 +32,7 @@ int run(ContinueFlags flags) {
   if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
   const ParameterRange range = parameter_range("--parameter", flags.parameter);
   const Case from = load_case(flags);
+  need_loop(from);
   const Units units = units_of(from);
   const CaseNumber number = number_at(from, "--parameter", range.path);
   Output output(flags);

@@ -79,6 +79,7 @@ int run(MapFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
   const Case from = load_case(flags);
+  need_loop(from);
   const Units units = units_of(from);
   const Methods methods = chosen_methods(flags.methods);
   MapReport report = map_of(from, flags.x, flags.y, methods);

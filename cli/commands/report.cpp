@@ -62,6 +62,7 @@ int run(ReportFlags flags) {
   const CaseWithPage loaded = load_case_or_page(flags, flags.from);
   const Case& from = loaded.from;
   if (loaded.page) take_over(flags, *loaded.page);
+  need_loop(from);
   const Units units = units_of(from);
   check_wishes(from, flags.wishes);
   const std::string page = page_file(flags, from);

@@ -234,6 +234,7 @@ int run(SensitivityFlags flags) {
     if (!std::isfinite(factor) || factor == 0.0) throw std::invalid_argument("--factors must be finite and not 0");
   const Case from = load_case(flags);
   threshold_numbers(from, flags.thresholds);  // reports errors before anything is computed
+  need_loop(from);
   const Units units = units_of(from);
   const Loop loop = build_loop(need_loop(from));
   Output output(flags);

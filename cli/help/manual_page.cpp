@@ -143,6 +143,9 @@ std::string case_page(const std::string& version) {
       roff::section("sections");
   for (const CaseSection& section : case_sections()) {
     text += keys_text(section);
+    if (section.name == "diagram")
+      text += kinds_text("block", "[[diagram.block]]",
+                         "Besides plants, pid, elements and friction laws. u is the sum written as input.");
     if (section.name != "loop") continue;
     text += kinds_text("plant", "[loop.plant]", "From the command u and the friction force F to the position y.");
     text += kinds_text("controller", "[loop.controller]",

@@ -15,8 +15,9 @@ struct BrokenDiagram : std::invalid_argument {
 
 /// Joins the blocks of a diagram. External signals other than the reference and the load are zero, and the states are
 /// those of the loop at rest, for any rate of the reference. Elements are numbered so that each comes after those into
-/// whose output it looks straight; friction laws come last. Throws BrokenDiagram for an algebraic loop, a velocity that
-/// does not exist, a derivative of a signal that jumps, and delays that differ.
+/// whose output it looks straight; friction laws come last, those at the body of the output after the others. Throws
+/// BrokenDiagram for an algebraic loop, a velocity that does not exist, a derivative of a signal that jumps, and delays
+/// that differ.
 Loop assemble(const Diagram& diagram, double reference, double load);
 
 /// The five slots of a loop as a diagram, and the same joined, without checking them: where validate() reports an

@@ -45,6 +45,11 @@ bool SignalRows::is_rubbed(const Block& block) const {
   });
 }
 
+/// The friction law at the body that y is measured of is the one that questions about one element are about.
+bool SignalRows::is_at_output(const Block& block) const {
+  return block.on == diagram_.output.block || block.against == diagram_.output.block;
+}
+
 void SignalRows::add_part(const Block& block) {
   Part part;
   part.block = &block;
@@ -101,8 +106,9 @@ void SignalRows::number_elements() {
     else if (std::holds_alternative<Controller>(from.block->what))
       value(Term{1.0, from.block->name, {}});
   }
-  for (Part& from : parts_)
-    if (from.block->contact == Contact::opposes) number_contact(from);
+  for (const bool at_output : {false, true})
+    for (Part& from : parts_)
+      if (from.block->contact == Contact::opposes && is_at_output(*from.block) == at_output) number_contact(from);
   for (ElementRows& port : ports_) {
     port.input = trimmed(port.input);
     if (port.rate.size() != 0) port.rate = trimmed(port.rate);

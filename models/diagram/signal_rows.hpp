@@ -61,6 +61,7 @@ class SignalRows {
 
   void add_part(const Block& block);
   bool is_rubbed(const Block& block) const;
+  bool is_at_output(const Block& block) const;
 
   Eigen::Index size() const { return 2 * n_ + room_ + 4; }
   Row zero() const { return Row::Zero(size()); }

@@ -46,7 +46,7 @@ ControllerModel Pid::model() const {
   return controller;
 }
 
-std::optional<BrokenRule> Cascade::validate() const {
+std::optional<BrokenRule> Cascade::broken_together() const {
   if (anti_windup.index == clamp)
     return BrokenRule{"anti_windup", "cannot be \"clamp\" yet: \"back-calculation\" is there, and \"none\""};
   if (anti_windup.index == 0) return std::nullopt;

@@ -131,7 +131,9 @@ struct Cascade : Actuator {
     append_table(table);
     return table;
   }
-  std::optional<BrokenRule> validate() const;
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+  /// The rule that the way against wind-up breaks with the other numbers.
+  std::optional<BrokenRule> broken_together() const;
   /// The position loop, from e to w; the velocity loop reads v too: see short_form().
   ControllerModel model() const;
   int states() const { return (position_ki != 0.0 ? 1 : 0) + (velocity_ki != 0.0 ? 1 : 0); }

@@ -150,7 +150,7 @@ TEST_CASE("diagram: a mistake is refused with line, block and what to write") {
   CHECK_THAT(message(with(cascade, "position - axis.v", "position - axis.w")),
              Contains("diagram.axis") && Contains("has no output \"w\"; it has y, v"));
   CHECK_THAT(message(with(cascade, "input = \"velocity\"\n", "")),
-             StartsWith("a.toml:17: diagram.axis.input: is required"));
+             StartsWith("a.toml:16: diagram.axis.input: is required"));
   CHECK_THAT(message(with(cascade, "name = \"velocity\"", "name = \"position\"")),
              StartsWith("a.toml:10: diagram.block.name = \"position\": is taken by the block of line 4"));
   CHECK_THAT(message(with(cascade, "name = \"velocity\"", "name = \"r\"")), Contains("is a word of the case format"));

@@ -77,8 +77,9 @@ TEST_CASE("a friction law may stand in series, and beside friction") {
 }
 
 TEST_CASE("what is missing from a loop") {
-  CHECK(message("title = \"x\"\n") == "a.toml:1: loop: is required: a case needs [loop]");
-  CHECK(message("[search]\namplitude=[1,2]\nfrequency=[1,2]\n") == "a.toml:1: loop: is required: a case needs [loop]");
+  CHECK(message("title = \"x\"\n") == "a.toml:1: loop: is required: a case needs [loop] or [diagram]");
+  CHECK(message("[search]\namplitude=[1,2]\nfrequency=[1,2]\n") ==
+        "a.toml:1: loop: is required: a case needs [loop] or [diagram]");
   CHECK(message("[loop.controller]\nkind = \"pid\"\nkp = 1\n[loop.friction]\nkind = \"coulomb\"\nFc = 1\n") ==
         "a.toml:1: loop.plant: is required: a loop needs [loop.plant]");
   CHECK(message("\n[loop.plant]\nkind = \"mass\"\nmass = 1\n") ==
@@ -102,7 +103,7 @@ TEST_CASE("a kind that is misspelt is answered with the nearest name, one that i
         "a.toml:10: loop.friction.kind = 3: must be a string, found a number");
   CHECK(message(with(servo, "\"pid\"", "\"fuzzy\"")) ==
         "a.toml:5: loop.controller.kind = \"fuzzy\": unknown controller; known: none, pid, transfer-function, "
-        "state-space");
+        "state-space, cascade");
 }
 
 TEST_CASE("a Froude pendulum with clearance is no loop") {

@@ -46,7 +46,8 @@ const Bad bad_values[] = {
      ":8: loop.controller.speed: unknown key; known: kind, kp, ki, kd, tf, friction_compensation, saturation, "
      "lag"},
     {"unknown section", "[search]", "[nonsense]",
-     ":14: nonsense: unknown key; known: title, loop, search, df, simulate, predict, sensitivity, dissipativity, "
+     ":14: nonsense: unknown key; known: title, loop, diagram, units, search, df, simulate, predict, sensitivity, "
+     "dissipativity, "
      "claim"},
     {"misspelt kind", "\"lugre\"", "\"lugree\"",
      ":9: loop.friction.kind = \"lugree\": unknown friction law; did you mean \"lugre\"?"},
@@ -56,7 +57,7 @@ const Bad bad_values[] = {
     {"list for a number", "mass = 1.0", "mass = [1.0]", ":4: loop.plant.mass = [1]: must be a number, found a list"},
     {"missing parameter", "vs = 0.001\n", "", ":8: loop.friction.vs: is required: Stribeck velocity, m/s"},
     {"missing kind", "kind = \"pid\"\n", "",
-     ":5: loop.controller.kind: is required: which controller (none, pid, transfer-function, state-space)"},
+     ":5: loop.controller.kind: is required: which controller (none, pid, transfer-function, state-space, cascade)"},
     {"NaN", "mass = 1.0", "mass = nan", ":4: loop.plant.mass = nan: must be a finite number"},
     {"infinity", "kp = 3.0", "kp = inf", ":7: loop.controller.kp = inf: must be a finite number"},
     {"negative mass", "mass = 1.0", "mass = -1.0", ":4: loop.plant.mass = -1: must be > 0 kg"},
@@ -147,7 +148,8 @@ TEST_CASE("files that are no case files") {
   refused(std::string(2 << 20, '#'), ": is larger than 1 MiB, the limit for a case file");
   refused("x = " + std::string(100000, '['), ":1: nested too deeply for a case");
   refused("x = 3\n",
-          ":1: x: unknown key; known: title, loop, search, df, simulate, predict, sensitivity, dissipativity, claim");
+          ":1: x: unknown key; known: title, loop, diagram, units, search, df, simulate, predict, sensitivity, "
+          "dissipativity, claim");
   check_refused(run({"check", scratch.file("")}), scratch.file("") + ": is a directory, not a case file");
   check_refused(run({"check", scratch.file("none.toml")}), scratch.file("none.toml") + ": no such file");
   check_refused(run({"check", "a\nb"}), "a\\x0Ab: no such file");

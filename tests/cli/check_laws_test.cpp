@@ -71,8 +71,8 @@ TEST_CASE("check: the JSON document") {
   CHECK(document.at("search").at("amplitude") == Json::array({1e-6, 1.0}));
   std::vector<std::string> keys;
   for (const auto& [key, value] : document.items()) keys.push_back(key);
-  CHECK(keys == std::vector<std::string>{"schema", "command", "case", "provenance", "plant", "controller", "elements",
-                                         "states", "order", "delay", "slowest_pole", "stable", "search"});
+  CHECK(keys == std::vector<std::string>{"schema", "command", "case", "provenance", "plant", "controller", "blocks",
+                                         "elements", "states", "order", "delay", "slowest_pole", "stable", "search"});
 }
 
 TEST_CASE("check: the poles without the elements") {

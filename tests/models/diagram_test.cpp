@@ -166,7 +166,8 @@ TEST_CASE("cascade: the slot is the P-PI loop of its equation, and back-calculat
   parts.controller = controller;
   CHECK_FALSE(validate(parts));
   controller.anti_windup.index = Cascade::clamp;
-  CHECK(controller.validate()->rule.find("back-calculation") != std::string::npos);
+  parts.controller = controller;
+  CHECK(validate(parts)->rule.find("back-calculation") != std::string::npos);
 }
 
 TEST_CASE("diagram: friction between two bodies acts on both, against their relative velocity") {

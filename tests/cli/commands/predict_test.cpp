@@ -46,7 +46,7 @@ TEST_CASE("predict: a diagram with friction between two bodies and under one of 
   CHECK(document["cycles"][0]["multipliers"][1][0].get<double>() == Approx(0.0585181).epsilon(1e-5));
 }
 
-TEST_CASE("predict: y in the unit that the case wants, in texts and pages; documents keep that of the case") {
+TEST_CASE("predict: y in the unit that the case wants, in texts and pages, documents in its own") {
   const Scratch scratch;
   std::ifstream file(shipped("pid-lugre.toml"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};

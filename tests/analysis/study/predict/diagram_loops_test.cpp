@@ -16,14 +16,11 @@ Block friction(const std::string& name, const std::string& body, const Element& 
   return {name, "diagram." + name, law, {}, Contact::opposes, body};
 }
 
-/// Blocks of a mass under PID control; `push`: what else acts on it.
-void add_servo(Diagram& diagram, const std::string& name, const SignalSum& measured, const SignalSum& push) {
-  SignalSum error = measured, force = push;
+Block servo_pid(const SignalSum& measured) {
+  SignalSum error = measured;
   for (Term& term : error) term.factor *= -1.0;
   error.push_back({1.0, "r", ""});
-  force.push_back({1.0, name + "_pid", ""});
-  diagram.blocks.push_back(block(name, Plant(Mass{1.0, 0.0, 0.0}), {force}));
-  diagram.blocks.push_back(block(name + "_pid", Controller(pid(3.0, 4.0, 6.0)), {error}));
+  return block("pid", Controller(pid(3.0, 4.0, 6.0)), {error});
 }
 
 PredictReport predicted(const Diagram& diagram) {
@@ -42,12 +39,11 @@ void check_servo(const PredictReport& report) {
 
 }  // namespace
 
-TEST_CASE("diagram: a second servo that is joined to nothing does not change the cycle of the first") {
+TEST_CASE("diagram: a second body that is joined to nothing does not change the cycle of the first") {
   Diagram diagram;
-  add_servo(diagram, "a", {{1.0, "a", "y"}}, {});
-  add_servo(diagram, "b", {{1.0, "b", "y"}, {1.0, "a", "y"}, {-1.0, "a", "y"}}, {});
-  diagram.blocks.push_back(friction("fa", "a", coulomb(1.5, 1.0)));
-  diagram.blocks.push_back(friction("fb", "b", coulomb(1.5, 1.5, 0.2)));
+  diagram.blocks = {block("a", Plant(Mass{1.0, 0.0, 0.0}), {{{1.0, "pid", ""}}}), servo_pid({{1.0, "a", "y"}}),
+                    block("b", Plant(Mass{2.0, 0.3, 5.0}), {{{1.0, "a", "y"}, {-1.0, "a", "y"}}}),
+                    friction("fa", "a", coulomb(1.5, 1.0)), friction("fb", "b", coulomb(0.7, 0.7, 0.2))};
   diagram.output = {1.0, "a", "y"};
   diagram.load_on = "a";
   check_servo(predicted(diagram));
@@ -55,14 +51,13 @@ TEST_CASE("diagram: a second servo that is joined to nothing does not change the
 
 TEST_CASE("diagram: two equal bodies with equal friction, joined by a spring, move as one") {
   Diagram diagram;
-  const auto spring = [](const std::string& from, const std::string& to) {
-    return SignalSum{{50.0, to, "y"}, {-50.0, from, "y"}, {2.0, to, "v"}, {-2.0, from, "v"}};
+  const auto push = [](const std::string& from, const std::string& to) {
+    return SignalSum{{1.0, "pid", ""}, {50.0, to, "y"}, {-50.0, from, "y"}, {20.0, to, "v"}, {-20.0, from, "v"}};
   };
-  const SignalSum middle{{0.5, "a", "y"}, {0.5, "b", "y"}};
-  add_servo(diagram, "a", middle, spring("a", "b"));
-  add_servo(diagram, "b", middle, spring("b", "a"));
-  diagram.blocks.push_back(friction("fa", "a", coulomb(1.5, 1.0)));
-  diagram.blocks.push_back(friction("fb", "b", coulomb(1.5, 1.0)));
+  diagram.blocks = {block("a", Plant(Mass{1.0, 0.0, 0.0}), {push("a", "b")}),
+                    block("b", Plant(Mass{1.0, 0.0, 0.0}), {push("b", "a")}),
+                    servo_pid({{0.5, "a", "y"}, {0.5, "b", "y"}}), friction("fa", "a", coulomb(1.5, 1.0)),
+                    friction("fb", "b", coulomb(1.5, 1.0))};
   diagram.output = {1.0, "b", "y"};
   diagram.load_on = "b";
   check_servo(predicted(diagram));
