@@ -29,8 +29,12 @@ std::vector<CaseNumber> numbers_of(const Case& from) {
     return list;
   }
   const LoopParts& parts = *from.loop;
-  for (const auto& part : case_file::owned_parts(parts))
+  for (const auto& part : case_file::owned_parts(parts)) {
     append(list, part.section, part.rows(parts), part.values(parts));
+    std::erase_if(list, [&](const CaseNumber& one) {
+      return one.path.starts_with(part.section + ".") && is_elsewhere(part, one.path.substr(part.section.size() + 1));
+    });
+  }
   const std::string reference = parts.diagram ? "diagram.reference" : "loop.reference";
   if (parts.reference_rate != 0.0)
     list.push_back({reference + ".rate", "1/s", "slope of the reference", parts.reference_rate, false});

@@ -55,7 +55,7 @@ LoopVariation::LoopVariation(const Case& from, const std::string& flag, std::spa
     const auto& rows = part.rows(parts_);
     const auto values = part.values(parts_);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!std::holds_alternative<double>(values[i])) continue;
+      if (!std::holds_alternative<double>(values[i]) || is_elsewhere(part, rows[i].key)) continue;
       found(section + "." + std::string(rows[i].key), there ? rows[i].range : no_number,
             [part, i](LoopParts& p, double value) {
               auto changed = part.values(p);

@@ -70,6 +70,10 @@ OwnedPart part(std::string section, Find find) {
 
 }  // namespace
 
+bool is_elsewhere(const OwnedPart& part, std::string_view key) {
+  return part.section.starts_with("diagram.") && key == "friction_compensation";
+}
+
 std::vector<OwnedPart> owned_parts(const LoopParts& parts) {
   std::vector<OwnedPart> list;
   if (parts.diagram) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "limcycle/models/loop.hpp"
@@ -15,6 +16,10 @@ struct OwnedPart {
   std::function<void(LoopParts&, const std::vector<ParameterValue>&)> set;
   std::function<bool(const LoopParts&)> valid;  ///< the part obeys its own rules
 };
+
+/// True for a number that a part has in its table, but not in this place: the compensation of a controller in a diagram
+/// is a block of its own.
+bool is_elsewhere(const OwnedPart& part, std::string_view key);
 
 /// All parts of a loop, in the order of numbers_of(). They serve any loop of the same kinds.
 std::vector<OwnedPart> owned_parts(const LoopParts& parts);

@@ -6,10 +6,10 @@
 
 namespace limcycle {
 
+namespace {
+
 using Eigen::Index;
 using Row = Eigen::RowVectorXd;
-
-namespace {
 
 const Element* element_in(const Block& block) { return std::get_if<Element>(&block.what); }
 

@@ -107,6 +107,8 @@ TEST_CASE("diagram: blocks are read by name, and numbers have the paths of their
   CHECK(from.element_path == "diagram.guide");
   CHECK(df_element(from).kind() == "coulomb");
   CHECK(number_at(from, "--x", "diagram.velocity.ki").value == 120000.0);
+  CHECK_THROWS_AS(number_at(from, "--x", "diagram.velocity.friction_compensation"), InputError);
+  CHECK_THROWS_AS(LoopVariation(from, "--x", "diagram.velocity.friction_compensation"), InputError);
   const LoopVariation vary(from, "--x", "diagram.guide.Fs");
   const auto loop = vary(70.0);
   REQUIRE(loop);

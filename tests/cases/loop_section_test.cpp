@@ -42,6 +42,24 @@ TEST_CASE("title is the name of the file unless given, controller is none, set-p
   CHECK_FALSE(from.predict.search);
 }
 
+TEST_CASE("a cascade: what holds its integral back needs a limit and an integral") {
+  const auto cascade = [](const std::string& more) {
+    return message(
+        "[loop.plant]\nkind = \"mass\"\nmass = 1.0\n[loop.friction]\nkind = \"coulomb\"\nFc = 1.0\n"
+        "[loop.controller]\nkind = \"cascade\"\nposition_kp = 2.0\nvelocity_kp = 5.0\n" +
+        more);
+  };
+  CHECK(cascade("").empty());
+  CHECK(cascade("velocity_ki = 4.0\nlimit = 3.0\nanti_windup = \"back-calculation\"\n").empty());
+  CHECK_THAT(cascade("velocity_ki = 4.0\nanti_windup = \"back-calculation\"\n"),
+             StartsWith("a.toml:12: loop.controller.anti_windup") && Contains("needs a limit"));
+  CHECK_THAT(cascade("limit = 3.0\nanti_windup = \"back-calculation\"\n"), Contains("needs velocity_ki"));
+  CHECK_THAT(cascade("velocity_ki = 4.0\nlimit = 3.0\nanti_windup = \"clamp\"\n"), Contains("cannot be \"clamp\" yet"));
+  CHECK_THAT(cascade("acceleration_feedforward = 1.0\n[simulate]\nduration = 1.0\n"
+                     "reference = {kind = \"sine\", amplitude = 1.0, frequency = 1.0}\n"),
+             Contains("simulate.reference") && Contains("acceleration_feedforward is not simulated"));
+}
+
 TEST_CASE("a ramp as reference") {
   const Case from = read_case("[loop]\nreference = {kind = \"ramp\", rate = 0.25}\n" + std::string(servo), "a.toml");
   CHECK(from.loop->reference == 0.0);

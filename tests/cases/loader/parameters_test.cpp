@@ -169,7 +169,7 @@ void check_choice(const Parameter<Owner, double>& parameter) {
 }
 
 /// Parameters that a loop rejects although they exist: tested with that rule.
-constexpr std::string_view elsewhere[] = {"clearance", "elements"};
+constexpr std::string_view elsewhere[] = {"clearance", "elements", "anti_windup"};
 
 template <class Owner>
 void check_owner() {
