@@ -1,6 +1,8 @@
 #include "limcycle/models/delay.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -61,12 +63,12 @@ Loop without_delay(Loop loop) {
 bool is_one_ring(const Loop& loop) {
   if (loop.elements.size() != 1) return false;
   const Loop undelayed = without_delay(loop);
-  for (const double angle : {0.3, 0.7, 1.2}) {
+  constexpr std::array<double, 3> angles{0.3, 0.7, 1.2};
+  return std::ranges::all_of(angles, [&](double angle) {
     const auto s = std::polar(1.0 / loop.delay, angle);
     const auto H = loop.element_response(s)(0, 0), H0 = std::exp(-s * loop.delay) * undelayed.element_response(s)(0, 0);
-    if (!(std::abs(H - H0) <= 1e-9 * (std::abs(H) + std::abs(H0)))) return false;
-  }
-  return true;
+    return std::abs(H - H0) <= 1e-9 * (std::abs(H) + std::abs(H0));
+  });
 }
 
 /// Index of a relay in front of the plant that can take over the delay.

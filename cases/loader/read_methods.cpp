@@ -81,7 +81,7 @@ DissipativitySection read_dissipativity(const Section& section) {
 
 OutputUnit read_units(const Section& section) {
   section.allow({"y"});
-  const Place y = section.at("y", "a unit such as \"mm\", or {symbol = \"mm\", per_si = 1000.0}");
+  const Place y = section.at("y", R"(a unit such as "mm", or {symbol = "mm", per_si = 1000.0})");
   constexpr std::size_t longest = 12;
   const auto symbol_of = [&](const Place& place) {
     std::string symbol = read_string(place);

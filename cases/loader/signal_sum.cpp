@@ -30,7 +30,7 @@ class SumReader {
 
  private:
   [[nodiscard]] InputError refuse(const std::string& what) const {
-    return place_.error("must be a sum of signals: " + what, "such as \"r - axis.y\" or \"2.0*a - b\"");
+    return place_.error("must be a sum of signals: " + what, R"(such as "r - axis.y" or "2.0*a - b")");
   }
 
   char next() {

@@ -48,7 +48,7 @@ ControllerModel Pid::model() const {
 
 std::optional<BrokenRule> Cascade::broken_together() const {
   if (anti_windup.index == clamp)
-    return BrokenRule{"anti_windup", "cannot be \"clamp\" yet: \"back-calculation\" is there, and \"none\""};
+    return BrokenRule{"anti_windup", R"(cannot be "clamp" yet: "back-calculation" is there, and "none")"};
   if (anti_windup.index == 0) return std::nullopt;
   if (!std::isfinite(limit)) return BrokenRule{"anti_windup", "needs a limit"};
   if (velocity_ki == 0.0) return BrokenRule{"anti_windup", "needs velocity_ki: there is no integral to hold back"};
