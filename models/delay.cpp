@@ -76,8 +76,8 @@ std::optional<std::size_t> relay_before_plant(const Loop& loop) {
   std::optional<std::size_t> relay;
   for (std::size_t i = 0; i < loop.ports.size(); ++i) {
     if (loop.ports[i].rubs && !loop.ports[i].opposes) return std::nullopt;
-    const bool before = loop.ports[i].path == "loop.element" || is_one_ring(loop);
-    if (before && loop.elements[i].as<Relay<double>>() != nullptr) relay = i;
+    if (loop.elements[i].as<Relay<double>>() == nullptr) continue;
+    if (loop.ports[i].path == "loop.element" || is_one_ring(loop)) relay = i;
   }
   return relay;
 }

@@ -57,15 +57,17 @@ struct NamedKind {
 };
 NamedKind read_kind(const Section& section, const std::vector<std::string>& available, const KindNames& names);
 
-/// Reads the alternative of `Variant` that the section's `kind` names.
+/// Reads the alternative of `Variant` that the section's `kind` names. `extra`: keys of the section besides `kind` and
+/// those of the alternative.
 template <class Variant>
-Variant read_any(const Section& section, const KindNames& names) {
+Variant read_any(const Section& section, const KindNames& names, std::vector<std::string> extra = {}) {
   const auto available = kinds_of<Variant>();
   const NamedKind named = read_kind(section, available, names);
   std::optional<Variant> result;
+  extra.insert(extra.begin(), "kind");
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     const auto try_one = [&]<class Owner>(std::type_identity<Owner>) {
-      if (Owner::kind == named.kind) result = read_owner<Owner>(section, {"kind"});
+      if (Owner::kind == named.kind) result = read_owner<Owner>(section, extra);
     };
     (try_one(std::type_identity<std::variant_alternative_t<I, Variant>>{}), ...);
   }

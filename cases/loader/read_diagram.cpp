@@ -11,6 +11,7 @@ namespace {
 using Keys = std::vector<std::string>;
 
 const std::string compensation_kind(Compensation<double>::kind);
+const KindNames block_names{.what = "block", .elsewhere = {}, .elsewhere_hint = {}};
 
 /// Kinds of blocks besides friction laws and elements, each once.
 std::vector<std::string> linear_kinds() {
@@ -74,19 +75,6 @@ Pid read_pid(const Section& section, const Keys& keys) {
   return pid;
 }
 
-template <class Variant>
-BlockKind read_one_of(const Section& section, const std::string& kind, const Keys& keys) {
-  std::optional<Variant> result;
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    const auto try_one = [&]<class Owner>(std::type_identity<Owner>) {
-      if (Owner::kind == kind) result = read_owner<Owner>(section, keys);
-    };
-    (try_one(std::type_identity<std::variant_alternative_t<I, Variant>>{}), ...);
-  }
-  (std::make_index_sequence<std::variant_size_v<Variant>>{});
-  return *std::move(result);
-}
-
 /// Friction law or compensation at a body.
 void read_contact(const Section& section, const std::string& kind, Block& block) {
   const Keys keys{"name", "on", "between"};
@@ -135,29 +123,29 @@ Block read_block(const Section& section, const std::string& name) {
   const auto elements = elements_in_a_path();
   for (const auto& kind : limcycle::kinds_of(elements)) known.push_back(kind);
   known.push_back(compensation_kind);
-  const NamedKind named = read_kind(section, known, {.what = "block", .elsewhere = {}, .elsewhere_hint = {}});
+  const NamedKind named = read_kind(section, known, block_names);
   const std::string& kind = named.kind;
-  if (std::ranges::find(known, kind) == known.end())
-    throw unknown_kind(named.place, known, {.what = "block", .elsewhere = {}, .elsewhere_hint = {}});
+  if (std::ranges::find(known, kind) == known.end()) throw unknown_kind(named.place, known, block_names);
   if (section.find("on") || section.find("between")) {
     read_contact(section, kind, block);
     return block;
   }
   if (kind == compensation_kind) throw section.error("on", "is required: the plant whose velocity is compensated");
-  const Keys keys = kind == Constant::kind ? Keys{"kind", "name"} : Keys{"kind", "name", "input"};
+  const Keys signal_keys = kind == Constant::kind ? Keys{"name"} : Keys{"name", "input"};
+  Keys keys{"kind"};
+  keys.insert(keys.end(), signal_keys.begin(), signal_keys.end());
   if (kind == TransferFunction::kind)
     block.what = read_transfer_function(section, keys);
   else if (kind == StateSpacePlant::kind)
     block.what = read_state_space(section, keys);
   else if (has_kind<Plant>(kind))
-    block.what = read_one_of<Plant>(section, kind, keys);
+    block.what = read_any<Plant>(section, block_names, signal_keys);
   else if (kind == Pid::kind)
     block.what = Controller(read_pid(section, keys));
   else if (has_kind<LinearBlock>(kind))
-    block.what = read_one_of<LinearBlock>(section, kind, keys);
+    block.what = read_any<LinearBlock>(section, block_names, signal_keys);
   else
-    block.what =
-        read_element(section, elements, {.what = "block", .elsewhere = {}, .elsewhere_hint = {}}, {"name", "input"});
+    block.what = read_element(section, elements, block_names, signal_keys);
   read_inputs(section, block);
   return block;
 }

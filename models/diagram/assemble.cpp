@@ -1,10 +1,6 @@
 #include "limcycle/models/diagram/assemble.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "limcycle/models/diagram/signal_rows.hpp"
-#include "limcycle/models/element/compensation.hpp"
 #include "limcycle/models/element/dead_zone.hpp"
 #include "limcycle/models/element/saturation.hpp"
 
@@ -44,7 +40,7 @@ void measure_from_other_body(Loop& loop, Row row) {
 /// Cuts the rows of a diagram into the matrices of the Lur'e form.
 class Assembly {
  public:
-  explicit Assembly(const Diagram& diagram) : diagram_(diagram), rows_(diagram) {}
+  explicit Assembly(const Diagram& diagram) : rows_(diagram) {}
 
   Loop build(double reference, double load) {
     rows_.number_elements();
@@ -62,10 +58,10 @@ class Assembly {
     loop.external << 1.0, reference, 0.0, load;
     loop.state_names = rows_.state_names();
     loop.own_states = rows_.own_states();
-    for (const Port& port : loop.ports) {
-      if (!port.opposes) continue;
-      measure_from_other_body(loop, port.C);
-      measure_from_other_body(loop, port.C_v);
+    for (std::size_t i = 0; i < loop.ports.size(); ++i) {
+      if (rows_.ports()[i].against.empty()) continue;
+      measure_from_other_body(loop, loop.ports[i].C);
+      measure_from_other_body(loop, loop.ports[i].C_v);
     }
     return loop;
   }
@@ -109,7 +105,6 @@ class Assembly {
     }
   }
 
-  const Diagram& diagram_;
   SignalRows rows_;
   Eigen::MatrixXd rates_;
 };

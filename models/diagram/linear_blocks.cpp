@@ -1,6 +1,6 @@
 #include "limcycle/models/diagram/linear_blocks.hpp"
 
-#include <stdexcept>
+#include "limcycle/models/linear/controllers.hpp"
 
 namespace limcycle {
 namespace {
@@ -27,6 +27,14 @@ LinearModel first_order(double time, double gain) {
   model.time = time;
   model.state_names = {"u_lag"};
   return model;
+}
+
+/// The controller of the slots that has the same equation and the same rules.
+TransferFunctionController as_controller(const ProperTransferFunction& block) {
+  TransferFunctionController controller;
+  controller.numerator = block.numerator;
+  controller.denominator = block.denominator;
+  return controller;
 }
 
 }  // namespace
@@ -68,19 +76,11 @@ LinearModel Notch::model() const {  // states in units of one period over 2 pi
   return one;
 }
 
-std::optional<BrokenRule> ProperTransferFunction::validate() const {
-  try {
-    if (numerator.empty()) return BrokenRule{"numerator", "must not be empty"};
-    realise(numerator, denominator);
-  } catch (const std::invalid_argument& error) {
-    return BrokenRule{denominator.empty() ? "denominator" : "numerator", error.what()};
-  }
-  return std::nullopt;
-}
+std::optional<BrokenRule> ProperTransferFunction::validate() const { return as_controller(*this).validate(); }
 
 LinearModel ProperTransferFunction::model() const {
   LinearModel one;
-  one.ss = realise(numerator, denominator);
+  one.ss = as_controller(*this).model().ss;
   one.state_names = numbered(one.ss.states());
   return one;
 }

@@ -164,8 +164,8 @@ std::string new_diagram() {
   return commented(
              "A cascade as machine axes have it: a P position loop around a PI velocity loop, a limited command, a "
              "drive with a lag, friction at the axis. It is valid as it is: replace the numbers by your own, add "
-             "blocks, "
-             "join them by the names of their signals. `limcycle check FILE --svg FILE.svg` draws it, `limcycle laws` "
+             "blocks, join them by the names of their signals. `limcycle check FILE --svg FILE.svg` draws it, "
+             "`limcycle laws` "
              "lists the kinds of blocks, `limcycle predict FILE` shows whether the loop hunts.") +
          R"(title = "Axis with a P position loop around a PI velocity loop"
 
