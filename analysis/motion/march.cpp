@@ -118,6 +118,12 @@ March::March(LoopField& field, StepperKind kind, ErrorWeights weights)
       weights_(std::move(weights)) {
   if (kind_ == StepperKind::exact && (field.driven() || !AffineFlow::applies(field.loop())))
     throw std::invalid_argument("simulate.stepper exact is for loops of piecewise affine elements without signals");
+  constexpr double widths = 8.0;  // beyond, a Stribeck curve is flat or changes slowly
+  const Loop& loop = field.loop();
+  steep_ = std::ranges::any_of(loop.elements, [](const Element& element) { return element.steep_exponent() < 1.0; });
+  for (std::size_t i = 0; i < loop.elements.size() && kind_ != StepperKind::exact; ++i)
+    if (const double width = loop.elements[i].scales().velocity; loop.ports[i].rubs && std::isfinite(width))
+      layers_.push_back({i, widths * width});
 }
 
 void March::begin(State x, double t, std::optional<Section> section) {
@@ -229,6 +235,54 @@ Eigen::MatrixXd March::smooth_transition() {
   return transition(field_, step_);
 }
 
+/// Computes the derivative of the step. False if it does not carry the rate at the start of the step to that at its
+/// end, as the derivative of a flow does: a layer that takes next to no time, such as that of a Stribeck curve about
+/// rest, hardly moves the state, and a step that is accurate for the state may still pass over it.
+bool March::is_linearised() {
+  constexpr int most_halvings = 20;
+  step_.transition = smooth_transition();
+  const bool shortest = step_.t1 - step_.t0 <= 1e-14 * std::abs(step_.t1);
+  if (kind_ == StepperKind::exact || steep_ || shortest || halvings_ >= most_halvings) return true;
+  const auto n = static_cast<Eigen::Index>(x_.size());
+  const Eigen::Map<const Eigen::VectorXd> before(step_.dx0.data(), n), after(step_.dx1.data(), n);
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    scale(i) = weights_.atol[k] + weights_.rtol * std::abs(step_.x0[k]);
+  }
+  // Component by component: a fast one dies away, and the deviation of a slow one, however small beside it, stays.
+  constexpr double smallest_share = 1e-4;
+  const Eigen::VectorXd rates = before.cwiseAbs().cwiseMax(after.cwiseAbs()).cwiseQuotient(scale);
+  const Eigen::VectorXd defects = (step_.transition * before - after).cwiseAbs().cwiseQuotient(scale);
+  const double tolerance = 0.1 * std::sqrt(weights_.rtol), floor = smallest_share * rates.maxCoeff();
+  return !(defects.array() > tolerance * rates.array().max(floor)).any();
+}
+
+/// Where the present step enters the layer of a friction law, if the rest of it is long compared with the passage. The
+/// error estimate of a step sees nothing of a layer that lies between its stages.
+std::optional<March::Entry> March::before_layer() {
+  std::optional<Entry> first;
+  for (const Layer& layer : layers_) {
+    const Port& port = field_.loop().ports[layer.element];
+    const auto velocity = [&](const State& x) {
+      return port.C_v.dot(Eigen::Map<const Eigen::RowVectorXd>(x.data(), port.C_v.size())) +
+             port.c_v.dot(field_.loop().external);
+    };
+    const double v0 = velocity(step_.x0), v1 = velocity(step_.x1), sign = v0 < 0.0 ? -1.0 : 1.0;
+    if (std::abs(v0) <= layer.edge || sign * v1 >= layer.edge) continue;
+    double outside = 0.0, inside = 1.0;
+    for (int i = 0; i < 20; ++i) {
+      const double mid = 0.5 * (outside + inside);
+      step_.interpolate(mid, work_);
+      (sign * velocity(work_) >= layer.edge ? outside : inside) = mid;
+    }
+    const double h = step_.t1 - step_.t0, passage = layer.edge * h / std::abs(v1 - v0);
+    const bool earlier = !first || inside * h < first->until;
+    if ((1.0 - inside) * h > passage && inside < 0.999 && earlier) first = {inside * h, passage};
+  }
+  return first;
+}
+
 Status March::step(double t_end) {
   if (t_ >= t_end) return Status::converged;
   if (fresh_)
@@ -254,19 +308,36 @@ Status March::step(double t_end) {
   double dt = std::min({dt_, dt_max_, t_end - t_});
   bool shortened = dt < dt_;  // by the requested end, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_;
-  while (!try_step(dt)) {
-    shortened = false;
-    if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12 * weights_.time)))
-      return is_finite(step_.x1) ? Status::stalled : Status::not_finite;
+  double within_layer = infinite;
+  for (halvings_ = 0;; ++halvings_, dt = 0.5 * (step_.t1 - step_.t0)) {
+    while (!try_step(dt)) {
+      shortened = false;
+      if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12 * weights_.time)))
+        return is_finite(step_.x1) ? Status::stalled : Status::not_finite;
+    }
+    if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers accept a step that does not move
+    const double length = step_.t1 - step_.t0;
+    field_.rate(step_.x1, step_.dx1, step_.t1);
+    if (const auto entry = before_layer()) {
+      dt = entry->until;
+      within_layer = 0.25 * entry->passage;
+      shortened = truncated_ = false;
+      continue;
+    }
+    double from = 0.0, to = 1.0;
+    std::size_t guard = 0;
+    const bool event = negative_within(guards_start_, from, to, guard);
+    if (event) end_at(locate(guard, from, to));
+    if (tracks_ && !is_linearised()) {
+      shortened = false;
+      truncated_ = false;
+      continue;
+    }
+    dt_ = std::min(shortened ? std::max(dt, dt_) : dt, within_layer);
+    ++steps_;
+    if (event) return land(guard, length);
+    break;
   }
-  if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers accept a step that does not move
-  dt_ = shortened ? std::max(dt, dt_) : dt;
-  ++steps_;
-  field_.rate(step_.x1, step_.dx1, step_.t1);
-  double from = 0.0, to = 1.0;
-  std::size_t guard = 0;
-  if (negative_within(guards_start_, from, to, guard)) return land(guard, locate(guard, from, to));
-  if (tracks_) step_.transition = smooth_transition();
   x_ = step_.x1;
   t_ = step_.t1;
   if (section_ && section_->before(x_)) armed_ = true;

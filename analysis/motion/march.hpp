@@ -90,15 +90,22 @@ class March {
   long events() const { return events_; }
   StepperKind kind() const { return kind_; }
   void limit_step(double dt_max) { dt_max_ = dt_max; }
-  /// Switches the computation of Step::transition on or off (autonomous loops only).
+  /// Switches the computation of Step::transition on or off (autonomous loops only). Steps are then also short enough
+  /// for their derivative.
   void track(bool wanted = true) { tracks_ = wanted; }
 
  private:
+  /// A step's time until it enters a layer, and that of the passage.
+  struct Entry {
+    double until, passage;
+  };
   struct Stepper;  ///< a controlled stepper of Odeint or limcycle, or the exact flow
 
   bool try_step(double& dt);
   bool try_exact(double& dt);
   Eigen::MatrixXd smooth_transition();
+  bool is_linearised();
+  std::optional<Entry> before_layer();
   void repeat(double h, State& out);
   double first_dt();
   bool negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard);
@@ -107,8 +114,15 @@ class March {
   std::size_t first_of_candidates(const std::vector<double>& at_start, double from, double to);
   double locate(std::size_t guard, double from, double to);
   double just_beyond(std::size_t guard, double at, double last);
-  Status land(std::size_t guard, double h);
+  void end_at(double h);
+  Status land(std::size_t guard, double tried);
   bool release(SwitchSlopes& first);
+
+  /// The range of rubbing velocities, |v| < edge, in which a friction law changes about rest.
+  struct Layer {
+    std::size_t element;
+    double edge;
+  };
 
   LoopField& field_;
   StepperKind kind_;
@@ -118,8 +132,10 @@ class March {
   bool armed_ = false;
   State x_, work_, unused_;
   double t_ = 0.0, dt_ = 0.0, dt_max_ = infinite;
-  bool fresh_ = true, tracks_ = false, truncated_ = false;
+  bool fresh_ = true, tracks_ = false, truncated_ = false, steep_ = false;
   long steps_ = 0, events_ = 0;
+  int halvings_ = 0;  ///< of the present step, for its derivative
+  std::vector<Layer> layers_;
   Step step_;
   std::deque<double> event_times_;
   std::vector<double> guards_start_, guards_end_, guards_mid_;

@@ -131,8 +131,8 @@ bool March::release(SwitchSlopes& first) {
   return false;
 }
 
-Status March::land(std::size_t guard, double h) {
-  const double tried = step_.t1 - step_.t0;
+/// Ends the present step after the time h.
+void March::end_at(double h) {
   if (h > 0.0) {
     repeat(h, step_.x1);
   } else {
@@ -140,8 +140,12 @@ Status March::land(std::size_t guard, double h) {
   }
   step_.t1 = step_.t0 + h;
   field_.rate(step_.x1, step_.dx1, step_.t1);
+}
+
+/// Completes a step that ends at an event, of one that was tried for the time `tried`.
+Status March::land(std::size_t guard, double tried) {
+  const bool at_once = step_.t1 == step_.t0;
   if (!is_finite(step_.x1) || !is_finite(step_.dx1)) return Status::not_finite;
-  if (tracks_) step_.transition = smooth_transition();
   x_ = step_.x1;
   t_ = step_.t1;
   fresh_ = true;
@@ -153,7 +157,7 @@ Status March::land(std::size_t guard, double h) {
   step_.switched = field_.owner(guard);
   // A body that is at once at rest again was carried there by such a long step that its velocity is within the
   // tolerance.
-  if (h == 0.0 && field_.loop().elements[*step_.switched].may_stick() && !field_.holds(*step_.switched))
+  if (at_once && field_.loop().elements[*step_.switched].may_stick() && !field_.holds(*step_.switched))
     dt_ = 0.125 * tried;
   if (tracks_) {
     SwitchSlopes slopes;

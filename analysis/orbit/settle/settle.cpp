@@ -313,7 +313,7 @@ class Settling {
   State dx_;
   std::optional<Cycle> candidate_;
   double mismatch_ = 0.0;
-  std::size_t next_try_ = 5, next_growth_ = 128;
+  std::size_t next_try_ = 5, next_growth_ = 64;
   long tried_ = 0;  ///< steps of return maps
   bool decided_ = false;
 };

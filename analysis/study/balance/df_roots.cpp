@@ -67,8 +67,10 @@ class RootStudy {
     // accuracy that its kernel still reaches, a fiftieth of the work of a quadrature.
     const bool closed_form = loop_.elements[balance_.main_element()].facts().has_closed_form;
     if (balance_.has_second() && !closed_form) options.fine_accuracy = 1e-10;
-    // Each sample of a law of many states takes long; a root is polished to the fine accuracy in any case.
-    if (loop_.elements[balance_.main_element()].states() > 2) options.coarse_accuracy = 1e-4;
+    // Each sample of a law of many states, or of a belt, takes long; a root is polished to the fine accuracy in any
+    // case.
+    if (loop_.elements[balance_.main_element()].states() > 2 || balance_.mean_velocity() != 0.0)
+      options.coarse_accuracy = 1e-4;
     for (const auto& pole : eigenvalues(loop_.tangent()))
       if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)
         options.frequency_hints.push_back(std::abs(pole));

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int bisections = 6;             ///< of one border
 constexpr double close_enough = 1.1;      ///< ratio of two starts between which the search ends
+constexpr double within_edge = 5.0;       ///< ratio of two starts between which an unstable cycle is searched for
 constexpr double apart = 5.0;             ///< ratio of neighbouring starts if those of a user come to rest
 constexpr long steps_of_a_trend = 6'000;  ///< of one of the fifty motions along a border
 constexpr double step_aside = 0.01;       ///< relative distance from an unstable cycle
@@ -35,30 +36,43 @@ OutcomeOfStart BetweenStarts::probe(const LoopState& start, std::string name, do
   return outcome;
 }
 
-void BetweenStarts::find_borders() {
-  const auto unstable = [](const Cycle& cycle) { return cycle.stable == false; };
-  for (const Border& border : borders_) {
-    if (over() || std::ranges::any_of(hunt_.cycles(), unstable)) return;
-    const long before = hunt_.steps();
-    hunt_.edge_along(border.ray, border.period, steps_of_a_trend);
-    left_ -= hunt_.steps() - before;
-  }
+/// True if an unstable cycle of about the size of these two starts is known: it is the border between them, and
+/// look_beside_unstable_cycles() begins on either side of it.
+bool BetweenStarts::knows_border(const Start& low, const Start& high) const {
+  constexpr double about = 3.0;
+  return std::ranges::any_of(hunt_.cycles(), [&](const Cycle& cycle) {
+    return cycle.stable == false && cycle.amplitude > low.place / about && cycle.amplitude < about * high.place;
+  });
+}
+
+/// Searches for an unstable cycle between the two places on the ray; true if it found one.
+bool BetweenStarts::find_border(double low, double high, const Trace& diverging, const Ray& ray) {
+  const auto period = first_period(diverging);
+  if (!period) return false;
+  const double middle = std::sqrt(low * high);
+  const long before = hunt_.steps();
+  const auto found =
+      hunt_.edge_between([&](double scale) { return ray.state(scale * middle); }, *period, steps_of_a_trend);
+  left_ -= hunt_.steps() - before;
+  return found.has_value();
 }
 
 void BetweenStarts::bisect_divergence(const Start& low_start, const Start& high_start, const Ray& ray) {
   const bool below = hunt_.outcomes()[low_start.outcome].outcome == Outcome::divergence;
   double low = low_start.place, high = high_start.place;
   Trace diverging = hunt_.outcomes()[(below ? low_start : high_start).outcome].trace;
+  bool sought = false;
   for (int k = 0; k < bisections && high > close_enough * low && !over(); ++k) {
+    if (!sought && high < within_edge * low) {
+      sought = true;
+      if (find_border(low, high, diverging, ray)) return;
+    }
     const double middle = std::sqrt(low * high);
     OutcomeOfStart outcome = probe(ray.state(middle), ray.name(middle));
     const bool also = outcome.outcome == Outcome::divergence;
     (also == below ? low : high) = middle;
     if (also) diverging = std::move(outcome.trace);
   }
-  const double place = below ? high : low;
-  if (const auto period = first_period(diverging))
-    borders_.push_back({[state = ray.state, place](double scale) { return state(scale * place); }, *period});
 }
 
 void BetweenStarts::look_between(std::vector<Start> starts, const Ray& ray) {
@@ -70,7 +84,7 @@ void BetweenStarts::look_between(std::vector<Start> starts, const Ray& ray) {
   };
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
     const Start &low = starts[i], &high = starts[i + 1];
-    if (diverges(low) != diverges(high)) bisect_divergence(low, high, ray);
+    if (diverges(low) != diverges(high) && !knows_border(low, high)) bisect_divergence(low, high, ray);
     if (!calm(low) || !calm(high)) continue;
     const double ratio = high.place / low.place;
     const int parts = std::max(1, static_cast<int>(std::lround(std::log(ratio) / std::log(apart))));

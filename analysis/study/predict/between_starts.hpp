@@ -24,14 +24,10 @@ class BetweenStarts {
     std::function<std::string(double place)> name;
   };
   /// Between neighbouring starts of which one diverges and the other does not, the border is bisected (in the logarithm
-  /// of the position) and every motion on the way followed to its end. Between neighbours that both come to rest or
-  /// slide, motions begin at a ratio of about five and are followed until they swing less than the lower neighbour: a
-  /// stable cycle may lie between.
+  /// of the position) and every motion on the way followed to its end, unless an unstable cycle is known there. Between
+  /// neighbours that both come to rest or slide, motions begin at a ratio of about five and are followed until they
+  /// swing less than the lower neighbour: a stable cycle may lie between.
   void look_between(std::vector<Start> starts, const Ray& ray);
-
-  /// The unstable cycles at the borders found, if no other method has found any: they join the cycles of the hunt.
-  /// Cost: some fifty short simulations for each border.
-  void find_borders();
 
   /// Simulates from just inside and just outside every unstable cycle not treated before (1 % nearer to the rest point
   /// of the linear part and 1 % farther from it): the cycle is the border between the outcomes of these two. Returns
@@ -41,20 +37,15 @@ class BetweenStarts {
  private:
   bool over() const { return left_ <= 0 || (stop_ && stop_()); }
   OutcomeOfStart probe(const LoopState& start, std::string name, double smallest_swing = 0.0);
+  bool knows_border(const Start& low, const Start& high) const;
+  bool find_border(double low, double high, const Trace& diverging, const Ray& ray);
   void bisect_divergence(const Start& low, const Start& high, const Ray& ray);
-
-  /// Border at which motions begin to diverge, and the period of one of them there.
-  struct Border {
-    std::function<LoopState(double scale)> ray;  ///< 1: at the border
-    double period;                               ///< s
-  };
 
   const Loop& loop_;
   CycleHunt& hunt_;
   long left_;  ///< steps
   const std::function<bool()>& stop_;
   std::size_t looked_at_ = 0;  ///< number of cycles treated
-  std::vector<Border> borders_;
 };
 
 }  // namespace limcycle

@@ -63,10 +63,8 @@ std::optional<std::size_t> CycleHunt::shoot_from(const OrbitGuess& guess) {
   return keep(shoot_multiple(loop_, guess, options));
 }
 
-std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(double scale)>& ray, double period,
-                                                 long max_steps) {
+std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(double scale)>& ray, double period) {
   settle_.known = cycles_;
-  // If small and large oscillations end in the same outcome there is no border between them.
   const Settled small = settle(loop_, ray(smallest_edge_scale), settle_),
                 large = settle(loop_, ray(largest_edge_scale), settle_);
   steps_ += small.work + large.work;
@@ -74,12 +72,13 @@ std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(d
   if (same && !small.shot && !large.shot) return std::nullopt;
   for (const Settled* end : {&small, &large})
     if (end->shot) merge(cycles_, end->shot->cycle);
-  settle_.known = cycles_;
+  return keep(edge_cycle(loop_, ray, period, settle_));
+}
+
+std::optional<std::size_t> CycleHunt::edge_between(const std::function<LoopState(double scale)>& ray, double period,
+                                                   long max_steps) {
   SettleOptions along = settle_;
-  if (max_steps > 0) {
-    along.max_steps = max_steps;
-    along.fewest_turns = 0;
-  }
+  along.max_steps = max_steps;
   return keep(edge_cycle(loop_, ray, period, along));
 }
 

@@ -21,10 +21,12 @@ class CycleHunt {
   /// Newton's method for the cycle near a guess, stable or not; index of the cycle found (the caller decides if it is
   /// near).
   std::optional<std::size_t> shoot_from(const OrbitGuess& guess);
-  /// The unstable cycle between the smaller and larger oscillations of a family that grow and shrink, each followed for
-  /// `max_steps` at most (0: as long as any other motion).
-  std::optional<std::size_t> edge_along(const std::function<LoopState(double scale)>& ray, double period,
-                                        long max_steps = 0);
+  /// The unstable cycle between the smaller and larger oscillations of a family that shrink and grow, if the smallest
+  /// and the largest end differently.
+  std::optional<std::size_t> edge_along(const std::function<LoopState(double scale)>& ray, double period);
+  /// The same where it is known that they do; each motion is followed for `max_steps` at most.
+  std::optional<std::size_t> edge_between(const std::function<LoopState(double scale)>& ray, double period,
+                                          long max_steps);
 
   const std::vector<Cycle>& cycles() const { return cycles_; }
   const std::vector<OutcomeOfStart>& outcomes() const { return outcomes_; }

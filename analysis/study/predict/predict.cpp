@@ -39,12 +39,11 @@ class PredictionStudy {
     enter_time();
     run_starts();
     const WorkShare share = work_share(hunt_->steps());
-    look_between_starts(share);
     begin_composite(share);
     if (exact_in_time(loop_)) predict_by_df(share);
     end_composite();
     check_predictions(share);
-    between_->find_borders();
+    look_between_starts(share);
     look_beside_unstable_cycles();
     balance_harmonics(share);
     look_beside_unstable_cycles();

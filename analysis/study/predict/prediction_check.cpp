@@ -25,10 +25,10 @@ void conclude_without_cycle(Prediction& p, const OutcomeOfStart& outcome) {
 }  // namespace
 
 PredictionCheck::PredictionCheck(const Loop& loop, CycleHunt& hunt, long max_steps, const std::function<bool()>& stop)
-    : loop_(loop), hunt_(hunt), last_step_(hunt.steps() + max_steps), stop_(stop) {}
+    : loop_(loop), hunt_(hunt), for_simulations_(max_steps), for_searches_(max_steps), stop_(stop) {}
 
 void PredictionCheck::check(Prediction& p, const LoopState& start, std::string name) {
-  if (hunt_.steps() > last_step_) {
+  if (for_simulations_ < 0) {
     ++unchecked_;
     if (const auto cycle = nearest(hunt_.cycles(), p);
         cycle && (!p.stable || hunt_.cycles()[*cycle].stable == p.stable))
@@ -36,14 +36,23 @@ void PredictionCheck::check(Prediction& p, const LoopState& start, std::string n
     p.why = "unverified: step limit reached";
     return;
   }
-  if (p.method == df_name && p.stable != true && unstable_cycle_near(p)) return;
+  if (p.method == df_name && p.stable != true && for_searches_ >= 0 && find_unstable(p)) return;
+  const long before = hunt_.steps();
   const OutcomeOfStart& outcome = hunt_.settle_from(start, std::move(name));
+  for_simulations_ -= hunt_.steps() - before;
   // A stable prediction refers to the cycle that it leads to, unless it is extremely far from it.
   if (outcome.cycle && p.stable != false && nearest({hunt_.cycles()[*outcome.cycle]}, p))
     return compare(p, hunt_.cycles(), *outcome.cycle);
   if (const auto cycle = nearest(hunt_.cycles(), p); cycle && (!p.stable || hunt_.cycles()[*cycle].stable == p.stable))
     return compare(p, hunt_.cycles(), *cycle);
   conclude_without_cycle(p, outcome);
+}
+
+bool PredictionCheck::find_unstable(Prediction& p) {
+  const long before = hunt_.steps();
+  const bool found = unstable_cycle_near(p);
+  for_searches_ -= hunt_.steps() - before;
+  return found;
 }
 
 /// Newton's method for the cycle from the predicted oscillation itself, before the motion departs; if that ends

@@ -10,8 +10,9 @@ namespace limcycle {
 /// references to its arguments.
 class PredictionCheck {
  public:
-  /// The loop for the time domain; `max_steps`: of the integrator, for all checks together. A check that has begun is
-  /// finished; remaining predictions then stay undecided and give that reason.
+  /// The loop for the time domain; `max_steps`: of the integrator, for all simulations together, and as many for the
+  /// searches for unstable cycles. What has begun is finished; remaining predictions then stay undecided and give that
+  /// reason.
   PredictionCheck(const Loop& loop, CycleHunt& hunt, long max_steps, const std::function<bool()>& stop);
 
   /// Sets verdict, cycle and sentence of a prediction of a first-harmonic method. `start`: a state on the predicted
@@ -23,11 +24,12 @@ class PredictionCheck {
 
  private:
   bool stopped() const { return stop_ && stop_(); }
+  bool find_unstable(Prediction& prediction);
   bool unstable_cycle_near(Prediction& prediction);
 
   const Loop& loop_;
   CycleHunt& hunt_;
-  long last_step_;
+  long for_simulations_, for_searches_;  ///< steps left
   const std::function<bool()>& stop_;
   int unchecked_ = 0;
 };

@@ -1,5 +1,6 @@
 #include "limcycle/analysis/study/predict/work_share.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "limcycle/analysis/study/balance/df_roots.hpp"
@@ -53,4 +54,16 @@ TEST_CASE("work share: what was cut short is listed as incomplete, so that nothi
   REQUIRE_FALSE(report.cycles.empty());
   CHECK_FALSE(searched_completely(report, "composite-describing-function"));
   CHECK(searched_completely(report, "describing-function"));
+}
+
+TEST_CASE("work share: a search for an unstable cycle takes nothing from the simulations of other predictions") {
+  Backlash<double> gap;
+  gap.half_gap = 9.04157;
+  gap.slope = 2.96817;
+  // Poles at 0, -39.1311 and -114.382 rad/s. Shooting from the border with the rest in the gap is in vain and long.
+  const PredictReport report = predict(forward(gap, {139270.0}, {1.0, 153.5131, 39.1311 * 114.382, 0.0}));
+  REQUIRE(report.predictions.size() >= 2);
+  CHECK(report.predictions[1].stable == true);
+  CHECK(report.predictions[1].verdict == Verdict::confirmed);
+  CHECK(std::ranges::any_of(report.outcomes, [](const OutcomeOfStart& one) { return one.start == "prediction 1"; }));
 }
