@@ -250,12 +250,9 @@ bool March::is_linearised() {
     const auto k = static_cast<std::size_t>(i);
     scale(i) = weights_.atol[k] + weights_.rtol * std::abs(step_.x0[k]);
   }
-  // Component by component: a fast one dies away, and the deviation of a slow one, however small beside it, stays.
-  constexpr double smallest_share = 1e-4;
-  const Eigen::VectorXd rates = before.cwiseAbs().cwiseMax(after.cwiseAbs()).cwiseQuotient(scale);
-  const Eigen::VectorXd defects = (step_.transition * before - after).cwiseAbs().cwiseQuotient(scale);
-  const double tolerance = 0.1 * std::sqrt(weights_.rtol), floor = smallest_share * rates.maxCoeff();
-  return !(defects.array() > tolerance * rates.array().max(floor)).any();
+  const double defect = (step_.transition * before - after).cwiseQuotient(scale).norm();
+  const double rate = std::max(before.cwiseQuotient(scale).norm(), after.cwiseQuotient(scale).norm());
+  return !(defect > 0.1 * std::sqrt(weights_.rtol) * rate);
 }
 
 /// Where the present step enters the layer of a friction law, if the rest of it is long compared with the passage. The
