@@ -255,10 +255,11 @@ bool March::is_linearised() {
   return !(defect > 0.1 * std::sqrt(weights_.rtol) * rate);
 }
 
-/// Where the present step enters the layer of a friction law, if the rest of it is long compared with the passage. The
-/// error estimate of a step sees nothing of a layer that lies between its stages.
-std::optional<March::Entry> March::before_layer() {
-  std::optional<Entry> first;
+/// The time that the present step needs for a layer of a friction law that it enters, if the rest of the step is
+/// longer. The error estimate of a step sees nothing of a layer that lies between its stages: such a step is halved.
+std::optional<double> March::passage_of_layer() {
+  std::optional<double> found;
+  double first = 1.0;
   for (const Layer& layer : layers_) {
     const Port& port = field_.loop().ports[layer.element];
     const auto velocity = [&](const State& x) {
@@ -274,10 +275,11 @@ std::optional<March::Entry> March::before_layer() {
       (sign * velocity(work_) >= layer.edge ? outside : inside) = mid;
     }
     const double h = step_.t1 - step_.t0, passage = layer.edge * h / std::abs(v1 - v0);
-    const bool earlier = !first || inside * h < first->until;
-    if ((1.0 - inside) * h > passage && inside < 0.999 && earlier) first = {inside * h, passage};
+    if ((1.0 - inside) * h <= passage || inside >= 0.999 || inside >= first) continue;
+    first = inside;
+    found = passage;
   }
-  return first;
+  return found;
 }
 
 Status March::step(double t_end) {
@@ -315,9 +317,8 @@ Status March::step(double t_end) {
     if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers accept a step that does not move
     const double length = step_.t1 - step_.t0;
     field_.rate(step_.x1, step_.dx1, step_.t1);
-    if (const auto entry = before_layer()) {
-      dt = entry->until;
-      within_layer = 0.25 * entry->passage;
+    if (const auto passage = passage_of_layer()) {
+      within_layer = 0.25 * *passage;
       shortened = truncated_ = false;
       continue;
     }

@@ -95,17 +95,13 @@ class March {
   void track(bool wanted = true) { tracks_ = wanted; }
 
  private:
-  /// A step's time until it enters a layer, and that of the passage.
-  struct Entry {
-    double until, passage;
-  };
   struct Stepper;  ///< a controlled stepper of Odeint or limcycle, or the exact flow
 
   bool try_step(double& dt);
   bool try_exact(double& dt);
   Eigen::MatrixXd smooth_transition();
   bool is_linearised();
-  std::optional<Entry> before_layer();
+  std::optional<double> passage_of_layer();
   void repeat(double h, State& out);
   double first_dt();
   bool negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard);
@@ -134,7 +130,7 @@ class March {
   double t_ = 0.0, dt_ = 0.0, dt_max_ = infinite;
   bool fresh_ = true, tracks_ = false, truncated_ = false, steep_ = false;
   long steps_ = 0, events_ = 0;
-  int halvings_ = 0;  ///< of the present step, for its derivative
+  int halvings_ = 0;  ///< of the present step, for a layer or its derivative
   std::vector<Layer> layers_;
   Step step_;
   std::deque<double> event_times_;

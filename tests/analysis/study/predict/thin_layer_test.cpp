@@ -1,6 +1,7 @@
 /// Friction whose curve about rest is passed in next to no time: a step that is accurate for the state may pass over
 /// it.
 #include <Eigen/Dense>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
