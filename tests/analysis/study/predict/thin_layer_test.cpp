@@ -16,7 +16,7 @@ using namespace limcycle::test;
 
 namespace {
 
-/// A saturated servo in N, m, s: at its unstable cycle the mass passes the Stribeck velocity in 2e-6 of the period.
+/// A saturated servo in N, m, s: at its unstable cycle, of 0.1 s, the mass passes the Stribeck velocity in 2e-6 s.
 Loop saturated_servo() {
   auto law = stribeck(0.44068, 0.20012, 0.0487937);
   law.sigma2 = 0.000549742;
