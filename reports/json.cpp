@@ -65,6 +65,7 @@ Json cycle_json(const Cycle& cycle) {
           {"offset", number(cycle.offset)},
           {"stable", or_null(cycle.stable)},
           {"multipliers", multipliers},
+          {"multiplier_error", cycle.multipliers.empty() ? Json(nullptr) : number(cycle.multiplier_error)},
           {"sticking_fraction", number(cycle.sticking_fraction)},
           {"method", cycle.method},
           {"error", number(cycle.error)},

@@ -105,7 +105,11 @@ void Step::interpolate(double theta, State& x) const {
 }
 
 struct March::Stepper {
-  AnyStepper any;
+  AnyStepper moving;
+  std::optional<AnyStepper> waiting;  ///< see wait_patiently()
+  bool waits = false;
+
+  AnyStepper& any() { return waits ? *waiting : moving; }
 };
 
 March::~March() = default;
@@ -114,16 +118,23 @@ March::March(March&&) noexcept = default;
 March::March(LoopField& field, StepperKind kind, ErrorWeights weights)
     : field_(field),
       kind_(kind == StepperKind::automatic ? choose_stepper(field.loop(), weights.rtol, field.driven()) : kind),
-      stepper_(std::make_unique<Stepper>(Stepper{make(kind_, weights, field)})),
+      stepper_(std::make_unique<Stepper>(Stepper{make(kind_, weights, field), {}})),
       weights_(std::move(weights)) {
   if (kind_ == StepperKind::exact && (field.driven() || !AffineFlow::applies(field.loop())))
     throw std::invalid_argument("simulate.stepper exact is for loops of piecewise affine elements without signals");
   constexpr double widths = 8.0;  // beyond, a Stribeck curve is flat or changes slowly
   const Loop& loop = field.loop();
   steep_ = std::ranges::any_of(loop.elements, [](const Element& element) { return element.steep_exponent() < 1.0; });
+  if (kind == StepperKind::automatic) wait_patiently();
   for (std::size_t i = 0; i < loop.elements.size() && kind_ != StepperKind::exact; ++i)
     if (const double width = loop.elements[i].scales().velocity; loop.ports[i].rubs && std::isfinite(width))
       layers_.push_back({i, widths * width});
+}
+
+void March::wait_patiently() {
+  if (!steep_ || kind_ == StepperKind::exact) return;
+  const Loop& loop = field_.loop();
+  stepper_->waiting = make(StepperKind::rodas5p, loop_weights(loop, weights_.rtol, typical_sizes(loop), true), field_);
 }
 
 void March::begin(State x, double t, std::optional<Section> section) {
@@ -158,7 +169,7 @@ double March::first_dt() {
 /// An exact step; fails if the cubic through its ends is too far from the motion in the middle. Unless it must end at a
 /// given time its length is a power of two, whose exponential is kept.
 bool March::try_exact(double& dt) {
-  auto& exact = std::get<ExactStepper>(stepper_->any);
+  auto& exact = std::get<ExactStepper>(stepper_->moving);
   const int longest = 60 + static_cast<int>(std::log2(weights_.time));
   const int k = std::min(longest, static_cast<int>(std::floor(std::log2(dt))));  // at rest steps grow without limit
   const double h = truncated_ ? dt : std::ldexp(1.0, k);
@@ -203,7 +214,7 @@ bool March::try_step(double& dt) {
         else
           return stepper.try_step(right_side(field_), step_.x1, step_.t1, dt);
       },
-      stepper_->any);
+      stepper_->any());
   if (result != boost::numeric::odeint::success) return false;
   if (is_finite(step_.x1)) return true;
   dt = 0.1 * tried;  // a NaN that the error estimate did not show
@@ -224,14 +235,14 @@ void March::repeat(double h, State& out) {
           fresh.do_step(right_side(field_), step_.x0, step_.t0, out, h);
         }
       },
-      stepper_->any);
+      stepper_->any());
 }
 
 /// Derivative of the end of the present step over its start, before any switch.
 Eigen::MatrixXd March::smooth_transition() {
   const auto n = static_cast<Eigen::Index>(x_.size());
   if (step_.t1 == step_.t0) return Eigen::MatrixXd::Identity(n, n);
-  if (kind_ == StepperKind::exact) return std::get<ExactStepper>(stepper_->any).last.topLeftCorner(n, n);
+  if (kind_ == StepperKind::exact) return std::get<ExactStepper>(stepper_->moving).last.topLeftCorner(n, n);
   return transition(field_, step_);
 }
 
@@ -295,11 +306,13 @@ Status March::step(double t_end) {
   if (!is_finite(x_) || !is_finite(step_.dx0)) return Status::not_finite;
   field_.guards(x_, t_, guards_start_);
   if (fresh_) {
+    stepper_->waits = stepper_->waiting &&
+                      std::ranges::any_of(layers_, [this](const Layer& layer) { return field_.holds(layer.element); });
     std::visit(
         [](auto& s) {
           if constexpr (requires { s.reset(); }) s.reset();
         },
-        stepper_->any);
+        stepper_->any());
     dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
     fresh_ = false;
   }

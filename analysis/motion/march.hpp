@@ -90,6 +90,10 @@ class March {
   long events() const { return events_; }
   StepperKind kind() const { return kind_; }
   void limit_step(double dt_max) { dt_max_ = dt_max; }
+  /// For a curve with infinite slope at rest, which explicit steps with a narrow tolerance of the velocity pass:
+  /// implicit steps with the usual tolerances while a body is stuck. It may wait for an integrator many times as long
+  /// as the fastest pole permits an explicit step. StepperKind::automatic does so by itself.
+  void wait_patiently();
   /// Switches the computation of Step::transition on or off (autonomous loops only). Steps are then also short enough
   /// for their derivative.
   void track(bool wanted = true) { tracks_ = wanted; }

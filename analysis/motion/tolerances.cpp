@@ -204,7 +204,7 @@ double typical_rubbing_velocity(const Loop& loop) {
 
 ErrorWeights loop_weights(const Loop& loop, double rtol) { return loop_weights(loop, rtol, typical_sizes(loop)); }
 
-ErrorWeights loop_weights(const Loop& loop, double rtol, State typical) {
+ErrorWeights loop_weights(const Loop& loop, double rtol, State typical, bool stuck) {
   if (!(rtol > 0.0 && rtol <= 0.1))
     throw std::invalid_argument("rtol must be in (0, 0.1], got " + std::to_string(rtol));
   ErrorWeights weights{rtol, std::move(typical), std::exp2(std::round(std::log2(slow_time(loop))))};
@@ -220,7 +220,7 @@ ErrorWeights loop_weights(const Loop& loop, double rtol, State typical) {
     };
     if (!loop.ports[k].rubs) continue;
     limit(loop.ports[k].C, scales.displacement);
-    limit(loop.ports[k].C_v, scales.velocity * steepness(loop.elements[k], rtol));
+    limit(loop.ports[k].C_v, scales.velocity * (stuck ? 1.0 : steepness(loop.elements[k], rtol)));
     // The rubbing velocity of a belt is a difference from its speed: no tolerance may ask for less than its rounding.
     const double speed = std::abs(loop.ports[k].c_v.dot(loop.external));
     for (std::size_t i = 0; i < n; ++i)

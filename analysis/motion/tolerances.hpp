@@ -38,7 +38,8 @@ double typical_rubbing_velocity(const Loop& loop);
 /// typical size, or the law's own scale if that is smaller (a loose tolerance on v breaks stiction early and lands on a
 /// false cycle). Throws std::invalid_argument if rtol is not in (0, 0.1].
 ErrorWeights loop_weights(const Loop& loop, double rtol);
-/// The same for known typical_sizes().
-ErrorWeights loop_weights(const Loop& loop, double rtol, State typical);
+/// The same for known typical_sizes(); `stuck`: for a time in which no body moves, so that none passes the steep part
+/// of a curve about rest.
+ErrorWeights loop_weights(const Loop& loop, double rtol, State typical, bool stuck = false);
 
 }  // namespace limcycle

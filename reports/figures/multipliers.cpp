@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "limcycle/reports/json_values.hpp"
@@ -12,18 +13,23 @@ namespace {
 
 constexpr std::size_t widest = 48;  // columns of the multipliers shown
 constexpr double negligible = 1e-6;
-constexpr int shown_digits = 3;
 
-std::string in_words(std::complex<double> value, bool pair) {
-  std::string real = with_digits(value.real(), shown_digits);
+/// As many digits as are right, at most three.
+std::string right_digits(double value, double error) {
+  const double right = error > 0.0 ? std::floor(std::log10(std::abs(value) / error)) : 3.0;
+  return with_digits(value, static_cast<int>(std::clamp(right, 1.0, 3.0)));
+}
+
+std::string in_words(std::complex<double> value, bool pair, double error) {
+  std::string real = right_digits(value.real(), error);
   if (value.imag() == 0.0) return real;
-  const std::string imaginary = with_digits(std::abs(value.imag()), shown_digits) + "j";
+  const std::string imaginary = right_digits(std::abs(value.imag()), error) + "j";
   return real + (pair ? " ± " : value.imag() < 0.0 ? " - " : " + ") + imaginary;
 }
 
 }  // namespace
 
-std::string multipliers_in_words(const std::vector<std::complex<double>>& multipliers) {
+std::string multipliers_in_words(const std::vector<std::complex<double>>& multipliers, double error) {
   std::string out;
   std::size_t i = 0;
   while (i < multipliers.size()) {
@@ -31,7 +37,7 @@ std::string multipliers_in_words(const std::vector<std::complex<double>>& multip
     if (std::abs(value) < negligible) break;
     const bool pair = value.imag() != 0.0 && i + 1 < multipliers.size() &&
                       std::abs(multipliers[i + 1] - std::conj(value)) <= 1e-9 * std::abs(value);
-    const std::string own = (out.empty() ? "" : ", ") + in_words(value, pair);
+    const std::string own = (out.empty() ? "" : ", ") + in_words(value, pair, error);
     if (!out.empty() && display_width(out) + display_width(own) > widest) break;
     out += own;
     i += pair ? 2 : 1;
@@ -47,7 +53,8 @@ Table multiplier_table(const PredictReport& report) {
   for (std::size_t i = 0; i < report.cycles.size(); ++i) {
     const Cycle& cycle = report.cycles[i];
     if (!cycle.multipliers.empty())
-      table.rows.push_back({std::to_string(i), with_digits(cycle.period, 4), multipliers_in_words(cycle.multipliers)});
+      table.rows.push_back({std::to_string(i), with_digits(cycle.period, 4),
+                            multipliers_in_words(cycle.multipliers, cycle.multiplier_error)});
   }
   return table;
 }
@@ -65,7 +72,7 @@ std::optional<Figure> multiplier_figure(const PredictReport& report) {
     }
     cycles.push_back({{"name", fmt::format("limit cycle {}", i)}, {"re", re}, {"im", im}});
     words += fmt::format("{} {} of limit cycle {}", words.empty() ? "" : ",",
-                         with_digits(std::abs(cycle.multipliers.front()), shown_digits), i);
+                         right_digits(std::abs(cycle.multipliers.front()), cycle.multiplier_error), i);
   }
   if (cycles.empty()) return std::nullopt;
   return Figure{"multipliers", "Floquet multipliers and the unit circle",

@@ -53,7 +53,8 @@ TEST_CASE("predict: keys and values") {
                                "search", "absence", "notes", "status"});
   const auto& cycle = document["cycles"][0];
   CHECK(keys(cycle) == Keys{"amplitude", "first_harmonic", "period", "frequency", "offset", "stable", "multipliers",
-                            "sticking_fraction", "method", "error", "residual", "half_wave_symmetric", "remembered"});
+                            "multiplier_error", "sticking_fraction", "method", "error", "residual",
+                            "half_wave_symmetric", "remembered"});
   CHECK(cycle["amplitude"] == 0.65831343);
   CHECK(cycle["frequency"].get<double>() == Approx(1.0).epsilon(1e-15));
   CHECK(cycle["stable"] == true);

@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
+#include <optional>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
+#include "limcycle/analysis/frequency/kernels/linear_period.hpp"
 #include "limcycle/analysis/frequency/march/harmonic_sums.hpp"
 #include "limcycle/analysis/frequency/march/periodic_state.hpp"
 #include "limcycle/models/element/element.hpp"
@@ -26,7 +28,9 @@ class QuadratureRoute {
         try_symmetric_(try_symmetric),
         options_(options),
         tolerance_(1e-4 * options.accuracy),
-        sums_(options.harmonics) {}
+        sums_(options.harmonics) {
+    if (options.method == DfMethod::automatic) linear_ = LinearPeriod::of(element_);
+  }
 
   /// A first harmonic below this share of the mean |output| that two meshes cannot distinguish from zero is reported as
   /// zero: sliding without reversals on a level that has become constant.
@@ -68,12 +72,22 @@ class QuadratureRoute {
   DescribingFunction on_mesh(MeshSettings settings) {
     settings.harmonics = options_.harmonics;
     const PeriodMesh mesh = graded_mesh(motion_, element_.scales(), settings);
+    sums_.restart();
+    if (auto periodic = linear_ ? linear_->find(motion_, mesh, settings.stages, try_symmetric_, sums_) : std::nullopt)
+      return take(std::move(*periodic), linear_->evaluations());
     ElementMarch march(element_, motion_, settings.stages);
     PeriodicStateSearch search(march, mesh, try_symmetric_, tolerance_);
     sums_.restart();
     PeriodicState periodic = search.find(sums_, has_guess_ ? &guess_ : nullptr);
+    return take(std::move(periodic), march.evaluations());
+  }
+
+  const PeriodicState* periodic_state() const { return has_guess_ ? &guess_ : nullptr; }
+
+ private:
+  DescribingFunction take(PeriodicState periodic, long evaluations) {
     DescribingFunction result = collect(periodic);
-    result.evaluations = march.evaluations();
+    result.evaluations = evaluations;
     if (result.status == Status::converged) {
       guess_ = std::move(periodic);
       has_guess_ = true;
@@ -81,9 +95,6 @@ class QuadratureRoute {
     return result;
   }
 
-  const PeriodicState* periodic_state() const { return has_guess_ ? &guess_ : nullptr; }
-
- private:
   std::size_t first_level() const { return options_.accuracy >= 1e-7 ? 0 : options_.accuracy >= 1e-10 ? 1 : 2; }
 
   static double relative(double difference, std::complex<double> gain) {
@@ -136,6 +147,7 @@ class QuadratureRoute {
   const PrescribedMotion& motion_;
   bool try_symmetric_;
   DfOptions options_;
+  std::optional<LinearPeriod> linear_;
   double tolerance_;   ///< of the periodic state
   double size_ = 0.0;  ///< mean |output| of the last mesh
   HarmonicSums sums_;

@@ -20,36 +20,10 @@ constexpr double farthest = 32.0;  ///< tau: a phase of 2.5e-14
 double at(const double* row, int i) { return row[i]; }
 
 CollocationNumbers numbers_of(const RadauIIA& table) {
-  const auto s = static_cast<std::size_t>(table.stages);
   CollocationNumbers numbers{};
-  // Gauss-Jordan with row exchange, in extended precision.
-  std::vector<std::vector<long double>> rows(s, std::vector<long double>(2 * s, 0.0L));
-  for (std::size_t i = 0; i < s; ++i) {
-    for (std::size_t j = 0; j < s; ++j) rows[i][j] = table.a[i * s + j];
-    rows[i][s + i] = 1.0L;
-  }
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto largest =
-        std::max_element(rows.begin() + static_cast<std::ptrdiff_t>(k), rows.end(),
-                         [&](const auto& a, const auto& b) { return std::abs(a[k]) < std::abs(b[k]); });
-    std::swap(rows[k], *largest);
-    const long double pivot = rows[k][k];
-    for (auto& value : rows[k]) value /= pivot;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (i == k) continue;
-      const long double factor = rows[i][k];
-      for (std::size_t j = 0; j < rows[i].size(); ++j) rows[i][j] -= factor * rows[k][j];
-    }
-  }
-  for (std::size_t i = 0; i < s; ++i) {
-    long double sum = 0.0L;
-    for (std::size_t j = 0; j < s; ++j) {
-      const long double value = rows[i][s + j];
-      numbers.inverse[i * s + j] = static_cast<double>(value);
-      sum += value;
-    }
-    numbers.row_sum[i] = static_cast<double>(sum);
-  }
+  const auto count = static_cast<std::size_t>(table.stages);
+  std::copy_n(table.inverse.begin(), count * count, numbers.inverse);
+  std::copy_n(table.row_sum.begin(), count, numbers.row_sum);
   return numbers;
 }
 

@@ -1,5 +1,6 @@
 #include "limcycle/analysis/frequency/march/radau_iia.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -44,6 +45,37 @@ std::vector<Long> zeros(F f, int count) {
     f_left = f_right;
   }
   return found;
+}
+
+/// The inverse of `a` and its row sums, by Gauss-Jordan with row exchange.
+void invert(RadauIIA& table) {
+  const auto s = static_cast<std::size_t>(table.stages);
+  std::vector<std::vector<Long>> rows(s, std::vector<Long>(2 * s, 0.0L));
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t j = 0; j < s; ++j) rows[i][j] = table.a[i * s + j];
+    rows[i][s + i] = 1.0L;
+  }
+  for (std::size_t k = 0; k < s; ++k) {
+    const auto largest =
+        std::max_element(rows.begin() + static_cast<std::ptrdiff_t>(k), rows.end(),
+                         [&](const auto& a, const auto& b) { return std::abs(a[k]) < std::abs(b[k]); });
+    std::swap(rows[k], *largest);
+    const Long pivot = rows[k][k];
+    for (Long& value : rows[k]) value /= pivot;
+    for (std::size_t i = 0; i < s; ++i) {
+      if (i == k) continue;
+      const Long factor = rows[i][k];
+      for (std::size_t j = 0; j < 2 * s; ++j) rows[i][j] -= factor * rows[k][j];
+    }
+  }
+  for (std::size_t i = 0; i < s; ++i) {
+    Long sum = 0.0L;
+    for (std::size_t j = 0; j < s; ++j) {
+      table.inverse[i * s + j] = static_cast<double>(rows[i][s + j]);
+      sum += rows[i][s + j];
+    }
+    table.row_sum[i] = static_cast<double>(sum);
+  }
 }
 
 RadauIIA make_table(int s) {
@@ -91,6 +123,7 @@ RadauIIA make_table(int s) {
       if (m != j) product *= own - (m == 0 ? 0.0L : c[m - 1]);
     table.barycentric[j] = static_cast<double>(1.0L / product);
   }
+  invert(table);
   return table;
 }
 

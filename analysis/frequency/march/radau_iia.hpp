@@ -13,6 +13,8 @@ struct RadauIIA {
   std::array<double, most_stages> c{}, b{};
   std::array<double, static_cast<std::size_t>(most_stages) * most_stages> a{};
   std::array<double, most_stages + 1> barycentric{};  ///< weights of interpolation on the nodes 0, c_1 .. c_s
+  std::array<double, static_cast<std::size_t>(most_stages) * most_stages> inverse{};  ///< of a
+  std::array<double, most_stages> row_sum{};                                          ///< of that inverse
 
   /// Index of a_ij in `a`.
   std::size_t position(int i, int j) const {

@@ -81,6 +81,7 @@ class MultipleShooter {
 
   /// Residuals and segments of these nodes.
   Status evaluate(const std::vector<LoopState>& nodes, double span) {
+    if (steps_ >= options_.max_steps) return Status::max_iterations;
     ++maps_;
     const auto K = std::ssize(nodes), n = scale_.size();
     segments_.clear();
@@ -130,7 +131,7 @@ class MultipleShooter {
       span_ = kept_span * std::max(0.2, 1.0 + damping * change(K * n));
       if (evaluate(nodes_, span_) == Status::converged && residual_.norm() < (1.0 - 0.1 * damping) * before)
         return true;
-      if (options_.stop && options_.stop()) break;
+      if (steps_ >= options_.max_steps || (options_.stop && options_.stop())) break;
     }
     nodes_ = kept;
     segments_ = kept_segments;
@@ -184,6 +185,7 @@ ShootingResult shoot_multiple(const Loop& loop, const OrbitGuess& guess, const S
     return result;
   }
   ShootingOptions polish = options;
+  polish.max_steps -= shooter.steps();
   polish.warm_maps = 0;
   polish.longest_map = 5.0 * shooter.period();
   ShootingResult polished = shoot(loop, shooter.start(), choose_section(loop, period), guess.half, polish);

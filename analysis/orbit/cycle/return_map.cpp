@@ -64,6 +64,7 @@ March& ReturnMap::march() {
   if (!march_ || march_->kind() != kind || march_rtol_ != options_.rtol) {
     march_.reset();
     march_.emplace(*field_, kind, weights_.scaled_to(options_.rtol));
+    march_->wait_patiently();
     march_rtol_ = options_.rtol;
   }
   march_->reset();

@@ -20,8 +20,9 @@ struct ShootingOptions {
   int warm_maps = 4;      ///< plain maps before the first Newton step (0: start from the guess itself)
   int max_maps = 400;     ///< limit
   long max_steps_per_map = 200000;
-  double longest_map = infinite;  ///< s: a motion that has not returned by then is abandoned
-  int returns = 1;                ///< crossings of the section in one period, see returns_of
+  long max_steps = 1'000'000'000;  ///< in all maps: none is begun once as many are done
+  double longest_map = infinite;   ///< s: a motion that has not returned by then is abandoned
+  int returns = 1;                 ///< crossings of the section in one period, see returns_of
   std::function<bool()> stop;
 };
 

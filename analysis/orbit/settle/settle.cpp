@@ -18,6 +18,8 @@ namespace {
 
 /// Step limit of shooting before a motion is decided: this constant, plus a multiple of the motion's own steps.
 constexpr long steps_of_tries = 500'000, tries_per_step = 6;
+constexpr double settled_change = 1e-3;  ///< relative change of the swings of a motion that has all but settled
+constexpr long periods_of_a_try = 40;    ///< of return maps; most that converge take 5 to 20, up to 15 maps
 
 /// One run: simulation, and shooting whenever the swings look steady.
 class Settling {
@@ -149,15 +151,23 @@ class Settling {
                     "the oscillation decayed below the smallest amplitude of interest");
     }
     if (points.size() < next_try_) return;
-    for (std::size_t order : {2U, 4U, 6U})  // turning points per period
-      if (points.size() > 2 * order && steady(order) && try_cycle(order)) return;
+    // A period of more turning points is one only if the swings repeat better with it: those of a slow drift do not.
+    double least = 0.05;
+    for (std::size_t order : {2U, 4U, 6U}) {
+      if (points.size() <= 2 * order) return;
+      const double change = largest_change(order);
+      if (change > least) continue;
+      if (try_cycle(order, change)) return;
+      least = 0.5 * change;
+    }
   }
 
-  /// True if the last swings repeat those one period (of `order` turning points) before, to within 5 %.
-  bool steady(std::size_t order) const {
+  /// Largest relative change of the last swings from those one period (of `order` turning points) before.
+  double largest_change(std::size_t order) const {
+    double largest = 0.0;
     for (std::size_t k = 0; k < order; ++k)
-      if (std::abs(turning_.swing(k) / turning_.swing(k + order) - 1.0) > 0.05) return false;
-    return true;
+      largest = std::max(largest, std::abs(turning_.swing(k) / turning_.swing(k + order) - 1.0));
+    return largest;
   }
 
   /// The part of the trace since the turning point `count` back.
@@ -254,7 +264,8 @@ class Settling {
     return back;
   }
 
-  bool try_cycle(std::size_t order) {
+  /// `change`: see largest_change().
+  bool try_cycle(std::size_t order, double change) {
     if (tried_ > steps_of_tries + tries_per_step * march_.steps()) return false;
     next_try_ = turning_.points().size() + turning_.points().size() / 2 + 1;
     const Trace period = recent(order);
@@ -268,14 +279,21 @@ class Settling {
     }
     const auto reflection = symmetry(loop_);
     const double middle = reflection ? (loop_.C_y * reflection->centre).value() : 0.0;
-    const bool half = reflection && order % 4 == 2 && std::abs(0.5 * (low + high) - middle) < 0.02 * swing;
+    bool half = reflection && order % 4 == 2 && std::abs(0.5 * (low + high) - middle) < 0.02 * swing;
     ShootingOptions shooting = options_.shooting;
-    shooting.max_maps = std::min(shooting.max_maps, 80);
+    shooting.max_maps = std::min(shooting.max_maps, 40);
+    shooting.max_steps = periods_of_a_try * std::ssize(period.t);
     shooting.longest_map = 10.0 * (period.t.back() - period.t.front());
     const Section section = choose_section(loop_, period);
     shooting.returns = returns_of(section, period);
     auto shot = shoot(loop_, here, section, half, shooting);
     tried_ += shot.steps;
+    // Swings that are as large on both sides, and repeat, may differ in form.
+    if (half && shot.status != Status::converged && change < settled_change) {
+      half = false;
+      shot = shoot(loop_, here, section, half, shooting);
+      tried_ += shot.steps;
+    }
     if (shot.status == Status::converged) shorten(shot, section, half, shooting);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
     if (shot.status != Status::converged || shot.cycle.stable == false) return false;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/nyquist.hpp"
 #include "limcycle/analysis/study/predict/failure_note.hpp"
 
 namespace limcycle {
@@ -31,7 +32,7 @@ void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& ba
   if (!options.nyquist) return;
   std::vector<SearchPoint> roots;
   for (const Root& root : found.roots) roots.push_back({root.amplitude, root.frequency});
-  result.nyquist = nyquist_picture(loop, box, roots, options.stop);
+  result.nyquist = nyquist_picture(loop, balance, box, roots, options.stop);
 }
 
 }  // namespace

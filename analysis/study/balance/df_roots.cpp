@@ -66,10 +66,11 @@ class RootStudy {
     // For each frequency the gain of the main element is sampled over all amplitudes: without a closed form at an
     // accuracy that its kernel still reaches, a fiftieth of the work of a quadrature.
     const bool closed_form = loop_.elements[balance_.main_element()].facts().has_closed_form;
-    if (balance_.has_second() && !closed_form) options.fine_accuracy = 1e-10;
-    // Each sample of a law of many states, or of a belt, takes long; a root is polished to the fine accuracy in any
+    const bool sampled = balance_.has_second() && !closed_form;
+    if (sampled) options.fine_accuracy = 1e-10;
+    // Each sample of a law of many states, or of a belt, takes long too; a root is polished to the fine accuracy in any
     // case.
-    if (loop_.elements[balance_.main_element()].states() > 2 || balance_.mean_velocity() != 0.0)
+    if (sampled || loop_.elements[balance_.main_element()].states() > 2 || balance_.mean_velocity() != 0.0)
       options.coarse_accuracy = 1e-4;
     for (const auto& pole : eigenvalues(loop_.tangent()))
       if (pole.imag() > box.frequency_min && pole.imag() < box.frequency_max)

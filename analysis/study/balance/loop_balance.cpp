@@ -11,7 +11,9 @@
 #include <span>
 
 #include "limcycle/analysis/frequency/describing_function/df_table.hpp"
+#include "limcycle/analysis/frequency/describing_function/gain_surface.hpp"
 #include "limcycle/analysis/motion/field/loop_field.hpp"
+#include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/return_map.hpp"
 #include "limcycle/analysis/study/balance/quasi_linear.hpp"
 #include "limcycle/models/element/dead_zone.hpp"
@@ -67,6 +69,17 @@ class LoopBalance::MainGain {
  public:
   explicit MainGain(const Element& element) : element_(&element) {}
 
+  /// The gain interpolated, for a search that needs many values; empty where it is not smooth, or at this accuracy.
+  std::optional<Complex> interpolated(const DfPoint& point, double accuracy) {
+    if (accuracy < interpolation_accuracy) return std::nullopt;
+    const std::lock_guard lock(guard_);
+    if (!surface_) surface_.emplace(*element_, point.bias, interpolation_accuracy);
+    const long before = surface_->evaluations();
+    const auto found = surface_->at(point.amplitude, point.frequency);
+    evaluations += surface_->evaluations() - before;
+    return found;
+  }
+
   std::atomic<long> evaluations = 0;  ///< of the element's equations
 
   DescribingFunction at(const DfPoint& point, double accuracy) {
@@ -112,8 +125,11 @@ class LoopBalance::MainGain {
     return *made;
   }
 
+  static constexpr double interpolation_accuracy = 1e-4;
+
   const Element* element_;
   std::mutex guard_;
+  std::optional<GainSurface> surface_;
   std::map<double, std::unique_ptr<DfTable>> by_accuracy_;
   double prepared_accuracy_ = 0.0;
   std::map<Place, DescribingFunction> prepared_;
@@ -121,7 +137,8 @@ class LoopBalance::MainGain {
 
 void LoopBalance::prepare(const std::vector<SearchPoint>& points, double accuracy,
                           const std::function<bool()>& stop) const {
-  if (!is_friction(*loop_, main_)) return;  // means of the inputs of other elements depend on the point
+  // Means of the inputs of other elements depend on the point; values beside a second element are interpolated.
+  if (!is_friction(*loop_, main_) || other_) return;
   if (!points.empty() && exact_gain(loop_->elements[main_], points[0].amplitude, points[0].frequency, mean_velocity_))
     return;  // nothing to compute
   std::vector<DfPoint> at;
@@ -181,10 +198,16 @@ LoopBalance::LoopBalance(const Loop& loop)
     other_ = sorted.others.front();
     second_.emplace(loop.elements[*other_]);
   }
-  if (!is_friction(loop, main_) || symmetric_) return;
+  if (symmetric_) return;
+  if (other_) {
+    passing_.emplace(loop);
+    passing_->A = working_loop(loop) - loop.A_delayed;
+  }
+  if (!is_friction(loop, main_)) return;
   bool exact = false;
   const Port& port = loop.ports[main_];
-  mean_velocity_ = (port.C_v * loop.rest_point(exact) + port.c_v * loop.external).value();
+  const double mean = (port.C_v * mean_loop().rest_point(exact) + port.c_v * loop.external).value();
+  if (std::abs(mean) > 1e-12 * typical_rubbing_velocity(loop)) mean_velocity_ = mean;  // else a rounding
 }
 
 double LoopBalance::mean_velocity() const { return mean_velocity_; }
@@ -231,7 +254,7 @@ Eigen::VectorXd LoopBalance::mean_state(double amplitude, double frequency, doub
   const double b = bias(amplitude, frequency, accuracy);
   outputs(static_cast<Index>(main_)) = df(loop_->elements[main_], amplitude, frequency, b, accuracy).mean;
   for (const auto& [index, factor] : beside_) swings(static_cast<Index>(index)) = std::abs(factor) * amplitude;
-  return loop_->mean_point(outputs, swings, exact);
+  return mean_loop().mean_point(outputs, swings, exact);
 }
 
 Eigen::VectorXd LoopBalance::mean_inputs(double amplitude, double frequency, double accuracy) const {
@@ -253,6 +276,10 @@ Complex LoopBalance::gain(double amplitude, double frequency, double accuracy) c
   if (exact && *exact == 0.0 && !symmetric_ && !is_friction(*loop_, main_))
     return undefined;  // e.g. a biased relay that does not switch
   if (exact) return *exact;
+  // Beside a second element, each point of the loop condition needs many amplitudes.
+  if (other_ && is_friction(*loop_, main_))
+    if (const auto interpolated = main_gain_->interpolated({amplitude, frequency, mean}, accuracy))
+      return *interpolated;
   const auto result = main_gain_->at({amplitude, frequency, mean}, accuracy);
   if (result.status != Status::converged && result.status != Status::incomplete) return undefined;
   if (symmetric_ && !result.symmetric) return undefined;  // e.g. a relay that does not switch

@@ -104,6 +104,7 @@ class LoopBalance {
   std::complex<double> beside_gain(const Beside& beside, double amplitude, double frequency, double mean,
                                    double accuracy) const;
   bool has_gravity() const;
+  const Loop& mean_loop() const { return passing_ ? *passing_ : *loop_; }
   Eigen::VectorXd mean_state(double amplitude, double frequency, double accuracy, bool& exact) const;
   Eigen::VectorXcd own_outputs(double amplitude, double frequency, double accuracy) const;
   Eigen::VectorXcd outputs(double amplitude, double frequency, double accuracy) const;
@@ -116,6 +117,9 @@ class LoopBalance {
   std::vector<Beside> beside_;        ///< without the main element itself
   std::optional<std::size_t> other_;  ///< the one that is eliminated
   std::optional<Second> second_;      ///< the same one
+  /// Of a biased loop with a second element: the loop closed through that element's gain in its working range (a
+  /// saturated command passes the mean that holds a load).
+  std::optional<Loop> passing_;
   bool symmetric_ = false;
   double mean_velocity_ = 0.0;
 };

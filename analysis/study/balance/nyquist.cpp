@@ -1,8 +1,7 @@
+#include "limcycle/analysis/study/balance/nyquist.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
-#include "limcycle/analysis/study/predict/predict.hpp"
 
 namespace limcycle {
 namespace {
@@ -57,8 +56,8 @@ void sample_response(const Loop& loop, const std::vector<double>& grid, NyquistP
 
 }  // namespace
 
-NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std::vector<SearchPoint>& roots,
-                               const std::function<bool()>& stop) {
+NyquistPicture nyquist_picture(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+                               const std::vector<SearchPoint>& roots, const std::function<bool()>& stop) {
   NyquistPicture picture;
   std::vector<double> amplitudes, frequencies;
   for (const auto& root : roots) {
@@ -66,7 +65,6 @@ NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std
     frequencies.push_back(root.frequency);
   }
   sample_response(loop, grid_with(box.frequency_min, box.frequency_max, 400, frequencies), picture);
-  const LoopBalance balance(loop);
   picture.family_amplitude = grid_with(box.amplitude_min, box.amplitude_max, 90, amplitudes);
   if (balance.depends_on_frequency())
     picture.family_frequency = grid_with(box.frequency_min, box.frequency_max, 24, frequencies);

@@ -8,12 +8,11 @@
 namespace limcycle {
 namespace {
 
-constexpr int bisections = 6;             ///< of one border
-constexpr double close_enough = 1.1;      ///< ratio of two starts between which the search ends
-constexpr double within_edge = 5.0;       ///< ratio of two starts between which an unstable cycle is searched for
-constexpr double apart = 5.0;             ///< ratio of neighbouring starts if those of a user come to rest
-constexpr long steps_of_a_trend = 6'000;  ///< of one of the fifty motions along a border
-constexpr double step_aside = 0.01;       ///< relative distance from an unstable cycle
+constexpr int bisections = 6;         ///< of one border
+constexpr double close_enough = 1.1;  ///< ratio of two starts between which the search ends
+constexpr double within_edge = 5.0;   ///< ratio of two starts between which an unstable cycle is searched for
+constexpr double apart = 5.0;         ///< ratio of neighbouring starts if those of a user come to rest
+constexpr double step_aside = 0.01;   ///< relative distance from an unstable cycle
 
 /// The time between the third and the fifth turn of y: a motion that begins near an unstable cycle first follows it.
 std::optional<double> first_period(const Trace& trace) {
@@ -51,8 +50,7 @@ bool BetweenStarts::find_border(double low, double high, const Trace& diverging,
   if (!period) return false;
   const double middle = std::sqrt(low * high);
   const long before = hunt_.steps();
-  const auto found =
-      hunt_.edge_between([&](double scale) { return ray.state(scale * middle); }, *period, steps_of_a_trend);
+  const auto found = hunt_.edge_between([&](double scale) { return ray.state(scale * middle); }, *period);
   left_ -= hunt_.steps() - before;
   return found.has_value();
 }

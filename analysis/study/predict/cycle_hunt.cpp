@@ -8,6 +8,12 @@
 #include "limcycle/analysis/study/predict/verdicts.hpp"
 
 namespace limcycle {
+namespace {
+
+constexpr long steps_of_a_guess = 20'000;  ///< of Newton's method from a guess; those that converge take up to 4'000
+constexpr long steps_of_a_trend = 6'000;   ///< of one of the fifty motions along a border
+
+}  // namespace
 
 CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box)
     : loop_(loop), settle_(cycle_search(loop, box, options.accuracy, options.stop)) {}
@@ -60,6 +66,7 @@ std::optional<std::size_t> CycleHunt::keep(const ShootingResult& shot) {
 std::optional<std::size_t> CycleHunt::shoot_from(const OrbitGuess& guess) {
   ShootingOptions options = settle_.shooting;
   options.max_maps = 60;
+  options.max_steps = steps_of_a_guess;
   return keep(shoot_multiple(loop_, guess, options));
 }
 
@@ -72,13 +79,12 @@ std::optional<std::size_t> CycleHunt::edge_along(const std::function<LoopState(d
   if (same && !small.shot && !large.shot) return std::nullopt;
   for (const Settled* end : {&small, &large})
     if (end->shot) merge(cycles_, end->shot->cycle);
-  return keep(edge_cycle(loop_, ray, period, settle_));
+  return edge_between(ray, period);
 }
 
-std::optional<std::size_t> CycleHunt::edge_between(const std::function<LoopState(double scale)>& ray, double period,
-                                                   long max_steps) {
+std::optional<std::size_t> CycleHunt::edge_between(const std::function<LoopState(double scale)>& ray, double period) {
   SettleOptions along = settle_;
-  along.max_steps = max_steps;
+  along.max_steps = steps_of_a_trend;
   return keep(edge_cycle(loop_, ray, period, along));
 }
 

@@ -24,9 +24,8 @@ class CycleHunt {
   /// The unstable cycle between the smaller and larger oscillations of a family that shrink and grow, if the smallest
   /// and the largest end differently.
   std::optional<std::size_t> edge_along(const std::function<LoopState(double scale)>& ray, double period);
-  /// The same where it is known that they do; each motion is followed for `max_steps` at most.
-  std::optional<std::size_t> edge_between(const std::function<LoopState(double scale)>& ray, double period,
-                                          long max_steps);
+  /// The same where it is known that they do.
+  std::optional<std::size_t> edge_between(const std::function<LoopState(double scale)>& ray, double period);
 
   const std::vector<Cycle>& cycles() const { return cycles_; }
   const std::vector<OutcomeOfStart>& outcomes() const { return outcomes_; }

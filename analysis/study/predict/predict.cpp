@@ -120,6 +120,7 @@ class PredictionStudy {
 
   /// Searches for cycles between the starts.
   void look_between_starts(const WorkShare& share) {
+    tell(0.9, "motions between the starts");
     between_.emplace(time_, *hunt_, share.between_steps, options_.stop);
     between_->look_between(starts_, {[&](double displacement) { return displaced(time_, displacement); },
                                      [&](double displacement) { return start_name(displacement); }});
@@ -193,7 +194,7 @@ class PredictionStudy {
 
   void balance_harmonics(const WorkShare& share) {
     if (!options_.methods.harmonic_balance || stopped()) return;
-    tell(0.9, "harmonic balance");
+    tell(0.95, "harmonic balance");
     BalancePredictions found = balance_predictions(
         {loop_, time_, balance_ ? &*balance_ : nullptr, report_.predictions, share.balance_evaluations, options_.stop},
         *hunt_);

@@ -94,13 +94,6 @@ struct NyquistPicture {
   std::vector<std::vector<std::complex<double>>> minus_inverse_N;
 };
 
-/// Both curves over the search box, finer where G turns fast; where an amplitude or frequency belongs to a root, the
-/// curves have a point there. G is that of small motions: other elements of the loop, and gravity, change it with the
-/// amplitude. Points where N or G does not exist are NaN or omitted. `stop` is called between points: when it returns
-/// true the curves end there.
-NyquistPicture nyquist_picture(const Loop& loop, const SearchBox& box, const std::vector<SearchPoint>& roots = {},
-                               const std::function<bool()>& stop = {});
-
 /// Results of predict(): cycles, predictions with verdicts, outcomes of simulations.
 struct PredictReport {
   SearchBox search;

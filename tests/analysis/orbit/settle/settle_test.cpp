@@ -57,6 +57,41 @@ TEST_CASE("slow hunting is never rest: Fs 1 % and 0.1 % above Fc") {
   CHECK(bristle.shot->cycle.period > 700.0);
 }
 
+TEST_CASE("a cycle whose halves are as large but differ in form is found by the whole map") {
+  // Two masses on a stiff spring, Fs twice Fc, in N, m, s: the half map of the settled motion has no fixed point.
+  LoopParts parts;
+  parts.plant = TwoMass{143.094, 36.8537, 1.41105e8, 9531.94, {1}, {1}};
+  parts.controller = pid(1.33191e7, 6.05072e8, 85820.3);
+  parts.friction = coulomb(3972.33, 1934.09);
+  const Loop loop = build_loop(parts);
+  SettleOptions options;
+  options.amplitude_floor = 1e-9;
+  options.amplitude_ceiling = 10.0;
+  const Settled settled = settle(loop, displaced(loop, 8.856e-5), options);
+  REQUIRE(settled.outcome == Outcome::cycle);
+  CHECK_FALSE(settled.shot->cycle.half_wave_symmetric);
+  CHECK(settled.shot->cycle.period == Approx(0.25354608).epsilon(1e-6));
+  CHECK(settled.shot->cycle.amplitude == Approx(8.28099e-5).epsilon(1e-5));
+}
+
+TEST_CASE("growth like a power of time: shooting in vain takes no more than the motion itself") {
+  // A saturated servo just outside its unstable cycle, in N, m, s.
+  LoopParts parts;
+  parts.plant = Mass{0.0562901, 0.0031086, 0.0};
+  Pid controller = pid(1.4743, 1.4051, 0.494994);
+  controller.saturation = 1.29358;
+  parts.controller = controller;
+  auto law = lugre(0.196459, 0.0874896, 0.00662003);
+  law.vs = 0.0484253;
+  law.sigma0 = 622.469;
+  law.sigma1 = 0.0;
+  parts.friction = law;
+  const Loop loop = build_loop(parts);
+  const Settled settled = run(loop, 47.85, 0.01);
+  CHECK(settled.outcome == Outcome::divergence);
+  CHECK(settled.work < 2 * settled.steps);
+}
+
 TEST_CASE("a servo without integral action comes to rest with an error") {
   auto parts = servo_parts(coulomb(1.5, 1.0));
   parts.controller = pid(3.0, 0.0, 1.0);

@@ -1,14 +1,15 @@
 #include "limcycle/analysis/study/balance/balance_predictions.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
 using namespace limcycle::test;
 
-TEST_CASE("harmonic balance begins at the rest point where no static balance gives the means") {
-  // A loaded servo whose saturated command with an integrator leaves the mean undetermined (loop 14 of seed 4242).
+TEST_CASE("harmonic balance of a loaded servo with a limited command begins where the integrator holds the load") {
+  // Loop 14 of seed 4242.
   LoopParts parts;
   parts.plant = Mass{10.898, 0.522318, 0.0};
   Pid controller = pid(24.4644, 5.6416, 31.6119);
@@ -22,10 +23,12 @@ TEST_CASE("harmonic balance begins at the rest point where no static balance giv
   Prediction root;
   root.amplitude = root.input_amplitude = 66.9548;
   root.frequency = 0.334771;
-  REQUIRE_FALSE(balance.mean_inputs(root.input_amplitude, root.frequency, 1e-9).allFinite());
+  const Eigen::VectorXd means = balance.mean_inputs(root.input_amplitude, root.frequency, 1e-9);
+  REQUIRE(means.allFinite());
+  CHECK(std::abs(means(0)) == Approx(1.04564));  // the command
   const PredictOptions options;
   CycleHunt hunt(loop, options, default_search_box(loop));
-  const BalancePredictions found = balance_predictions({loop, loop, &balance, {root}, 1'000'000, {}}, hunt);  // threw
+  const BalancePredictions found = balance_predictions({loop, loop, &balance, {root}, 1'000'000, {}}, hunt);
   REQUIRE_FALSE(found.predictions.empty());
   CHECK(found.predictions.front().frequency == Approx(0.307837).epsilon(0.01));  // of the exact cycle, to 0.01 %
 }

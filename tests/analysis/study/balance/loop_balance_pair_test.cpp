@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/study/balance/df_roots.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/tests/analysis/predictions.hpp"
@@ -96,6 +97,27 @@ TEST_CASE("a weak motor beside friction: there is an unstable cycle between hunt
   REQUIRE(seen.size() == 1);
   CHECK(seen[0].stable == false);
   CHECK(seen[0].cycle == std::size_t(unstable - report.cycles.begin()));
+}
+
+TEST_CASE("a limited integrator holds a load: the body has no mean velocity, and the roots are those without load") {
+  const auto loaded = [](double load) {
+    LoopParts parts = servo_parts(lugre());
+    Pid limited = pid(3.0, 4.0, 6.0);
+    limited.saturation = 40.0;
+    parts.controller = limited;
+    parts.load = load;
+    return build_loop(parts);
+  };
+  const Loop with = loaded(-7.7), without = loaded(0.0);
+  const LoopBalance balance(with), free(without);
+  CHECK(balance.mean_velocity() == 0.0);
+  for (const double A : {1e-3, 0.1, 10.0})
+    for (const double w : {0.1, 1.0, 10.0})
+      CHECK(std::abs(balance(A, w, 1e-9) - free(A, w, 1e-9)) < 1e-8 * std::abs(free(A, w, 1e-9)));
+  // A motion that begins in a predicted oscillation carries the load in its integrator.
+  const Eigen::VectorXd swing = balance.linear_state(1e-3, 1.0, 0.0) - free.linear_state(1e-3, 1.0, 0.0);
+  const Eigen::VectorXd rate = working_loop(with) * swing + with.E * with.external;
+  CHECK(rate.norm() < 1e-9 * 7.7);
 }
 
 TEST_CASE("branches of an amplitude are the monotone pieces of what drives it") {

@@ -1,0 +1,17 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
+
+namespace limcycle {
+
+/// Both curves over the search box, finer where G turns fast; where an amplitude or frequency belongs to a root, the
+/// curves have a point there. G is that of small motions: other elements of the loop, and gravity, change it with the
+/// amplitude. Points where N or G does not exist are NaN or omitted. `stop` is called between points: when it returns
+/// true the curves end there.
+NyquistPicture nyquist_picture(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+                               const std::vector<SearchPoint>& roots = {}, const std::function<bool()>& stop = {});
+
+}  // namespace limcycle
