@@ -66,14 +66,21 @@ TEST_CASE("gain surface: a value does not depend on those asked for before") {
 }
 
 TEST_CASE("gain surface: a law of one variable needs a row of values, not a plane") {
-  const auto evaluations = [](const Element& law) {
+  // Along this line in the plane of ln A and ln w, does each new point need new values of the law?
+  const auto more_along = [](const Element& law, double growth_of_A, double growth_of_w) {
     GainSurface surface(law, 0.0, 1e-4);
-    for (const DfPoint& point : grid(40, 40)) surface.at(point.amplitude, point.frequency);
-    return surface.evaluations();
+    surface.at(1e-3, 1.0);
+    const long first = surface.evaluations();
+    REQUIRE(first > 0);
+    for (int k = 1; k < 10; ++k) surface.at(1e-3 * std::pow(growth_of_A, k), std::pow(growth_of_w, k));
+    return surface.evaluations() > first;
   };
-  const long plane = evaluations(lugre());
-  CHECK(evaluations(dahl(0.7)) < plane / 4);
-  CHECK(evaluations(stribeck(1.5, 1.0, 1e-3)) < plane / 4);
+  CHECK_FALSE(more_along(dahl(0.7), 1.0, 3.0));  // rate-independent: a function of A
+  CHECK(more_along(dahl(0.7), 3.0, 1.0));
+  CHECK_FALSE(more_along(stribeck(1.5, 1.0, 1e-3), 3.0, 1.0 / 3.0));  // without states: a function of A w
+  CHECK(more_along(stribeck(1.5, 1.0, 1e-3), 1.0, 3.0));
+  CHECK(more_along(lugre(), 1.0, 3.0));
+  CHECK(more_along(lugre(), 3.0, 1.0));
 }
 
 TEST_CASE("gain surface: none where the gain does not exist") {
