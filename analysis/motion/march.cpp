@@ -124,7 +124,7 @@ March::March(LoopField& field, StepperKind kind, ErrorWeights weights)
     throw std::invalid_argument("simulate.stepper exact is for loops of piecewise affine elements without signals");
   constexpr double widths = 8.0;  // beyond, a Stribeck curve is flat or changes slowly
   const Loop& loop = field.loop();
-  steep_ = std::ranges::any_of(loop.elements, [](const Element& element) { return element.steep_exponent() < 1.0; });
+  steep_ = has_infinite_slope(loop);
   if (kind == StepperKind::automatic) wait_patiently();
   for (std::size_t i = 0; i < loop.elements.size() && kind_ != StepperKind::exact; ++i)
     if (const double width = loop.elements[i].scales().velocity; loop.ports[i].rubs && std::isfinite(width))

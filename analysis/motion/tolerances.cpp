@@ -202,6 +202,10 @@ double typical_rubbing_velocity(const Loop& loop) {
   return (port.C_v.cwiseAbs() * states + port.c_v.cwiseAbs() * loop.external.cwiseAbs()).value();
 }
 
+bool has_infinite_slope(const Loop& loop) {
+  return std::ranges::any_of(loop.elements, [](const Element& element) { return element.steep_exponent() < 1.0; });
+}
+
 ErrorWeights loop_weights(const Loop& loop, double rtol) { return loop_weights(loop, rtol, typical_sizes(loop)); }
 
 ErrorWeights loop_weights(const Loop& loop, double rtol, State typical, bool stuck) {

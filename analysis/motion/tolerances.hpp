@@ -34,6 +34,9 @@ State typical_sizes(const Loop& loop);
 /// Typical rubbing velocity of the last element, from typical_sizes() and the speed of the other surface.
 double typical_rubbing_velocity(const Loop& loop);
 
+/// True if a curve of the loop begins at rest with infinite slope (Stribeck with delta < 1).
+bool has_infinite_slope(const Loop& loop);
+
 /// Tolerances for marching the loop at relative tolerance rtol: absolute ones are rtol times a thousandth of the
 /// typical size, or the law's own scale if that is smaller (a loose tolerance on v breaks stiction early and lands on a
 /// false cycle). Throws std::invalid_argument if rtol is not in (0, 0.1].

@@ -16,7 +16,7 @@ constexpr double negligible = 1e-6;
 
 /// As many digits as are right, at most three.
 std::string right_digits(double value, double error) {
-  const double right = error > 0.0 ? std::floor(std::log10(std::abs(value) / error)) : 3.0;
+  const double right = error > 0.0 && std::isfinite(value) ? std::floor(std::log10(std::abs(value) / error)) : 3.0;
   return with_digits(value, static_cast<int>(std::clamp(right, 1.0, 3.0)));
 }
 

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "limcycle/analysis/frequency/march/barycentric.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -24,16 +26,7 @@ struct ChebyshevRow {
   }
   std::array<double, nodes> shares(double at) const {
     std::array<double, nodes> share{};
-    double sum = 0.0;
-    for (std::size_t i = 0; i < nodes; ++i) {
-      if (at == x[i]) {
-        share.fill(0.0);
-        share[i] = 1.0;
-        return share;
-      }
-      sum += share[i] = weight[i] / (at - x[i]);
-    }
-    for (double& one : share) one /= sum;
+    barycentric_shares(x, weight, at, share);
     return share;
   }
 };
@@ -43,20 +36,13 @@ const ChebyshevRow& row() {
   return made;
 }
 
-DfOptions first_harmonic(double accuracy) {
-  DfOptions options;
-  options.harmonics = 1;
-  options.accuracy = accuracy;
-  return options;
-}
-
 double size_of(std::int64_t halvings) { return std::ldexp(width, -static_cast<int>(halvings)); }
 
 }  // namespace
 
 GainSurface::GainSurface(Element element, double bias, double accuracy)
     : element_(std::move(element)),
-      table_(element_, {}, first_harmonic(0.3 * accuracy)),
+      table_(element_, {}, {.harmonics = 1, .accuracy = 0.3 * accuracy}),
       bias_(bias),
       accuracy_(accuracy),
       of_amplitude_(element_.facts().rate_independent && bias == 0.0),

@@ -19,8 +19,8 @@ namespace limcycle {
 /// law without states one of A w alone: there a cell needs 8 values. Cells are made when first used; a value does not
 /// depend on the order of the calls.
 ///
-/// Error: the largest of 10^4 random points on five laws was below the wanted accuracy (see the test). Cost: 73 or 11
-/// describing functions for a new cell, else about 0.3 microseconds.
+/// Error: the largest of thousands of random points on four laws was below the wanted accuracy (see the test). Cost: 73
+/// or 11 describing functions for a new cell, else two logarithms and some hundred multiplications.
 class GainSurface {
  public:
   /// `accuracy`: wanted relative accuracy of N, 1e-7..1e-2.

@@ -77,7 +77,6 @@ class QuadratureRoute {
       return take(std::move(*periodic), linear_->evaluations());
     ElementMarch march(element_, motion_, settings.stages);
     PeriodicStateSearch search(march, mesh, try_symmetric_, tolerance_);
-    sums_.restart();
     PeriodicState periodic = search.find(sums_, has_guess_ ? &guess_ : nullptr);
     return take(std::move(periodic), march.evaluations());
   }

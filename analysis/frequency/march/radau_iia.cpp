@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "limcycle/analysis/frequency/march/barycentric.hpp"
 
 namespace limcycle {
 
@@ -130,18 +133,12 @@ RadauIIA make_table(int s) {
 }  // namespace
 
 void RadauIIA::interpolation(double t, std::array<double, most_stages + 1>& weights) const {
+  const auto count = static_cast<std::size_t>(stages) + 1;
+  std::array<double, most_stages + 1> nodes{};
+  std::copy_n(c.begin(), count - 1, nodes.begin() + 1);
   weights.fill(0.0);
-  double sum = 0.0;
-  for (std::size_t j = 0; j <= static_cast<std::size_t>(stages); ++j) {
-    const double distance = t - (j == 0 ? 0.0 : c[j - 1]);
-    if (distance == 0.0) {
-      weights.fill(0.0);
-      weights[j] = 1.0;
-      return;
-    }
-    sum += weights[j] = barycentric[j] / distance;
-  }
-  for (double& weight : weights) weight /= sum;
+  barycentric_shares(std::span(nodes).first(count), std::span(barycentric).first(count), t,
+                     std::span(weights).first(count));
 }
 
 const RadauIIA& radau_iia(int stages) {

@@ -324,10 +324,6 @@ Status refine(Shooter& shooter, const ShootingOptions& options, double& rtol, do
   }
 }
 
-bool has_infinite_slope(const Loop& loop) {
-  return std::ranges::any_of(loop.elements, [](const Element& element) { return element.steep_exponent() < 1.0; });
-}
-
 /// True if y swings by more than roundings. A body that sticks returns to the section for any length of time.
 bool moves(const Loop& loop, const Cycle& cycle) {
   const State typical = typical_sizes(loop);
