@@ -117,18 +117,20 @@ double frequency_of_scales(const Loop& loop) {
   return std::isfinite(found) ? found : 0.0;
 }
 
-/// Moduli of the poles that are not zero. A double pole at the origin (a free body) is computed as two small ones, of
-/// the root of rounding: how many of such a size are zero is decided by ranks.
+/// Moduli of the poles that are not zero. A pole at the origin of order k (a free body: 2; with an integrator before
+/// it: 3) is computed as k small ones, of the kth root of rounding: how many of such a size are zero is decided by
+/// ranks.
 void add_moduli(const MatrixXd& A, std::vector<double>& found) {
-  constexpr double root_of_rounding = 1e-7;
+  constexpr double rounding = 1e-14, doubtful_up_to = 1e-3;
   VectorXd moduli = eigenvalues(A).cwiseAbs();
   std::ranges::sort(moduli);
   const double largest = moduli.maxCoeff();
   const bool doubtful =
-      std::ranges::any_of(moduli, [&](double m) { return m > negligible * largest && m < root_of_rounding * largest; });
+      std::ranges::any_of(moduli, [&](double m) { return m > negligible * largest && m < doubtful_up_to * largest; });
   const int zero = doubtful ? zero_modes(balanced(A)).times : 0;
+  const double none_below = zero > 1 ? std::pow(rounding, 1.0 / zero) : negligible;
   for (Index i = 0; i < moduli.size(); ++i)
-    if (moduli(i) > (i < zero ? root_of_rounding : negligible) * largest) found.push_back(moduli(i));
+    if (moduli(i) > (i < zero ? none_below : negligible) * largest) found.push_back(moduli(i));
 }
 
 /// Factor on the velocity scale of a law whose steep_exponent() is below 1: for a force accurate to rtol, v must be

@@ -224,9 +224,9 @@ void LoopField::solve_held(const State& x) {
       w_[i] = outputs(k);
       add_output(i, w_[i]);
     }
-    // Forces that hold one another leave a rate of rounding size, on which a body at rest would creep.
-    for (Index k = 0; m > 1 && k < m; ++k)
-      if (const auto only = held_state(holding_[static_cast<std::size_t>(k)])) dX_[*only] = 0.0;
+    // The forces leave a rate of rounding size, on which a body at rest would creep.
+    for (const std::size_t i : holding_)
+      if (const auto only = held_state(i)) dX_[*only] = 0.0;
   }
   for (const std::size_t i : holding_) inputs_[i].drive = w_[i];
 }

@@ -104,7 +104,7 @@ class LoopField {
   void find_inputs(const State& x);
   double hold_row(std::size_t i, Eigen::RowVectorXd& row) const;
   std::optional<std::size_t> held_state(std::size_t i) const;
-  std::vector<std::size_t> held_together() const;
+  std::vector<std::size_t> held_states() const;
   double drive_of(std::size_t i) const;
   double drive_with_follower(std::size_t i, const State& x);
   Held held(std::size_t i) const;

@@ -80,16 +80,15 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
   // and continues as before would already be past its guard, and switch for ever.
   if (held(i) == Held::rate || (before == modes_[i] && slides_through_zero(*loop_, i))) arrest(x, i);
   if (held(i) == Held::rate)
-    for (const std::size_t only : held_together()) x[only] = 0.0;
+    for (const std::size_t only : held_states()) x[only] = 0.0;
 }
 
-/// The velocities of bodies that are at rest together, if there are several: the force that stops one of them passes on
-/// to the others, which stay at rest, to the last bit.
-std::vector<std::size_t> LoopField::held_together() const {
+/// The velocities of all bodies that are held: the force that stops one of them passes on to the others, which stay at
+/// rest, to the last bit.
+std::vector<std::size_t> LoopField::held_states() const {
   std::vector<std::size_t> at_rest;
   for (std::size_t i = 0; i < ne_; ++i)
     if (const auto only = held_state(i)) at_rest.push_back(*only);
-  if (at_rest.size() < 2) at_rest.clear();
   return at_rest;
 }
 
@@ -128,7 +127,7 @@ bool LoopField::fire(State& x, double t, std::size_t guard, SwitchSlopes& slopes
   if (held(i) == Held::rate) {  // deviations of the held velocity end here, to the last bit
     stop(slopes.reset);
     stop(slopes.saltation);
-    for (const std::size_t only : held_together())
+    for (const std::size_t only : held_states())
       for (Eigen::MatrixXd* gradient : {&slopes.reset, &slopes.saltation})
         gradient->row(static_cast<Index>(only)).setZero();
   }

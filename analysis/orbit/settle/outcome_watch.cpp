@@ -72,6 +72,7 @@ void OutcomeWatch::look(double t, const State& x, const State& dx, const std::ve
 
 void OutcomeWatch::switched(const LoopField& field, const State& x, double t, std::size_t i) {
   if (decided()) return;
+  stillness_.restart(t);
   const auto still = switching_.switched(field, x, t, i);
   if (!still) return;
   by_ = still->by;

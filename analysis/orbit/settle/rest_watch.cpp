@@ -9,7 +9,7 @@ namespace limcycle {
 
 RestWatch::Verdict RestWatch::look(double t, const State& x, const State& dx) {
   if (t < next_) return Verdict::moving;
-  next_ = std::max(1.5 * t, t + slow_);
+  next_ = t + std::max(0.5 * (t - since_), slow_);
   steady_ = rates_constant(dx) ? steady_ + 1 : 0;
   calm_ = rates_fade(t, dx) ? calm_ + 1 : 0;
   still_ = stays(t, x) ? still_ + 1 : 0;

@@ -1,12 +1,14 @@
 #pragma once
+#include <algorithm>
+
 #include "limcycle/analysis/motion/state.hpp"
 #include "limcycle/analysis/orbit/settle/turning_points.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {
 
-/// Watches if a motion dies out, by samples at least the slowest time constant and a third of the time since the start
-/// apart. Rest shows by either of two signs, three times in a row:
+/// Watches if a motion dies out, by samples at least the slowest time constant and a third of the time since the start,
+/// or since the last switch, apart. Rest shows by either of two signs, three times in a row:
 /// - the displacement that the rates would cause in the same time again fades, compared with the size of the state.
 ///   Rates as small as the noise of the integration count as none.
 /// - on the mean since the last sample, no rate is more than that noise. A body at rest on a bristle may tremble, and
@@ -24,13 +26,19 @@ class RestWatch {
   /// not zero.
   Verdict look(double t, const State& x, const State& dx);
   double next() const { return next_; }
+  /// A body stuck behind a winding integrator may wait for millions of time constants. What it does once it breaks away
+  /// is looked at on the scale of that motion, not of the wait.
+  void switched(double t) {
+    since_ = t;
+    next_ = std::min(next_, t + slow_);
+  }
   /// The largest of the rates, in sizes per slowest time constant.
   double rate(const State& dx) const;
   double noise() const { return noise_; }  ///< rates as small as that count as none
 
  private:
   State sizes_;
-  double slow_, noise_, next_ = 0.0, last_ = infinite;
+  double slow_, noise_, since_ = 0.0, next_ = 0.0, last_ = infinite;
   bool rates_constant(const State& dx);
   bool rates_fade(double t, const State& dx);
   bool stays(double t, const State& x);

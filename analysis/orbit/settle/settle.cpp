@@ -10,6 +10,7 @@
 #include "limcycle/analysis/orbit/settle/displaced.hpp"
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
+#include "limcycle/analysis/orbit/settle/surroundings.hpp"
 #include "limcycle/analysis/orbit/settle/switching_watch.hpp"
 #include "limcycle/analysis/orbit/settle/turning_points.hpp"
 
@@ -78,7 +79,7 @@ class Settling {
     if (decided_) return;
     if (auto still = stillness_.look(march_.t(), march_.x(), dx_, field_.modes())) come_to(*still);
     if (decided_ || !march_.last().switched) return;
-    if (auto still = stillness_.switched(dx_)) return come_to(*still);
+    if (auto still = stillness_.switched(march_.t(), dx_)) return come_to(*still);
     if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
   }
 
@@ -227,43 +228,6 @@ class Settling {
     }
   }
 
-  /// True if another periodic motion lies close to this one: shooting from 2 % farther out finds it.
-  bool has_neighbour(const Cycle& cycle, const Section& section, bool half, const ShootingOptions& options) const {
-    constexpr double farther = 1.02, apart = 0.005;
-    ShootingOptions there = options;
-    there.warm_maps = 0;
-    const auto found = shoot(loop_, scaled(loop_, cycle.start, farther), section, half, there);
-    const double larger = found.cycle.amplitude / cycle.amplitude - 1.0;
-    return found.status == Status::converged && std::abs(larger) > apart && std::abs(larger) < 10.0 * (farther - 1.0);
-  }
-
-  /// True if motions that begin 1 % farther out and 1 % nearer return to this cycle within a few periods. Decides if
-  /// its multipliers do not, as for a Stribeck curve that begins with infinite slope.
-  bool attracts(const Cycle& cycle, const Section& section) {
-    constexpr double aside = 0.01, left = 0.05;
-    constexpr int periods = 8;
-    const State sizes = typical_sizes(loop_);
-    const auto distance = [&](const State& x) {
-      double largest = 0.0;
-      for (std::size_t i = 0; i < x.size(); ++i)
-        largest = std::max(largest, std::abs(x[i] - cycle.start.x[i]) / sizes[i]);
-      return largest;
-    };
-    ReturnMap map(loop_, section, std::nullopt,
-                  {options_.rtol, options_.shooting.max_steps_per_map, options_.stop, false, infinite,
-                   returns_of(section, cycle.trace)});
-    bool back = true;
-    for (const double side : {1.0 + aside, 1.0 - aside}) {
-      const LoopState other = scaled(loop_, cycle.start, side);
-      const double before = distance(other.x);
-      auto at = map.approach(other);
-      for (int k = 0; k < periods && at.status == Status::converged; ++k) at = map(at.state);
-      back = back && at.status == Status::converged && distance(at.state.x) < left * before;
-    }
-    tried_ += map.steps();
-    return back;
-  }
-
   /// `change`: see largest_change().
   bool try_cycle(std::size_t order, double change) {
     if (tried_ > steps_of_tries + tries_per_step * march_.steps()) return false;
@@ -298,13 +262,16 @@ class Settling {
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
     if (shot.status != Status::converged || shot.cycle.stable == false) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);
-    if (!shot.cycle.stable && mismatch < 0.01 && attracts(shot.cycle, section)) shot.cycle.stable = true;
     if (!shot.cycle.stable && mismatch < 0.01) {
-      if (has_neighbour(shot.cycle, section, half, shooting))
+      Surroundings around(loop_, shot.cycle, section, shooting, options_.rtol);
+      if (around.attracts())
+        shot.cycle.stable = true;
+      else if (around.has_neighbour(half))
         decide(Outcome::family, "periodic, one of a family of periodic motions whose size depends on the start");
       else
         decide(Outcome::undecided, "periodic, but its stability was not determined (multiplier 1)");
-      return true;
+      tried_ += around.steps();
+      if (decided_) return true;
     }
     // Still far from the cycle, but nearer to it than at the last try: a slow approach.
     const bool nearer =

@@ -22,7 +22,7 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
   if (t < rest_.next()) return std::nullopt;
   const auto verdict = rest_.look(t, x, dx);
   ++looks_;
-  if (verdict == RestWatch::Verdict::moving && looks_ < patience) return std::nullopt;
+  if (verdict == RestWatch::Verdict::moving && (looks_ < patience || t < next_algebra_)) return std::nullopt;
   LoopField field(loop_);
   field.modes() = modes;
   if (verdict == RestWatch::Verdict::at_rest) return at_rest(field, x, dx);
@@ -31,15 +31,17 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
   if (verdict == RestWatch::Verdict::steady && held_while_winding_up(field, x, dx, scale_))
     return Stillness{Outcome::rest, rest_.rate(dx) > drift ? "held at rest for ever, although the controller winds up"
                                                            : "came to rest, but for a drift within rounding"};
-  if (looks_ < patience) return std::nullopt;
+  if (looks_ < patience || t < next_algebra_) return std::nullopt;
+  next_algebra_ = 1.5 * t;
   const auto approach = approach_from(field, x, scale_);
   if (!approach) return std::nullopt;
   return Stillness{approach->to.slides ? Outcome::sliding : Outcome::rest,
                    "the motion decays linearly, at a rate of at least " + short_number(approach->decay, 3) + " 1/s"};
 }
 
-std::optional<Stillness> StillnessWatch::switched(const State& dx) {
+std::optional<Stillness> StillnessWatch::switched(double t, const State& dx) {
   constexpr int many = 50;
+  restart(t);
   const auto still = within_rounding(dx);
   idle_ = still ? idle_ + 1 : 0;
   return idle_ >= many ? still : std::nullopt;

@@ -28,9 +28,12 @@ class StillnessWatch {
   double next() const { return rest_.next(); }
   /// The state, its rates and the modes at a time not before next(), or after every step.
   std::optional<Stillness> look(double t, const State& x, const State& dx, const std::vector<Mode>& modes);
-  /// The rates after a switch. A body that creeps to rest at the edge of stiction finally sticks and breaks away by
-  /// rounding: it rests once the rates vanish after many switches in a row.
-  std::optional<Stillness> switched(const State& dx);
+  /// After a switch: see RestWatch::switched.
+  void restart(double t) { rest_.switched(t); }
+  /// The same, with a look at it: the time of a switch and the rates after it. A body that creeps to rest at the edge
+  /// of stiction finally sticks and breaks away by rounding: it rests once the rates vanish after many switches in a
+  /// row.
+  std::optional<Stillness> switched(double t, const State& dx);
   /// The same if the march itself stopped because its switches accumulate.
   std::optional<Stillness> within_rounding(const State& dx) const;
 
@@ -41,6 +44,7 @@ class StillnessWatch {
   LoopSizes scale_;
   RestWatch rest_;
   int looks_ = 0, idle_ = 0;
+  double next_algebra_ = 0.0;
 };
 
 }  // namespace limcycle

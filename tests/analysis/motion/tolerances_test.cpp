@@ -16,6 +16,22 @@ TEST_CASE("moduli of the poles: sorted, complex ones by their natural frequency,
   CHECK(pole_moduli(test::forward(test::relay(1.0), {1.0}, {1.0, 0.0})).empty());
 }
 
+TEST_CASE("moduli of the poles: those at the origin are left out whatever their order") {
+  // s^k (s + 7) (s^2 + 2 s + 2500): the k poles are computed as small ones, of the kth root of rounding.
+  std::vector<double> denominator{1.0, 9.0, 2514.0, 17500.0};
+  for (int k = 1; k <= 4; ++k) {
+    denominator.push_back(0.0);
+    CAPTURE(k);
+    const auto moduli = pole_moduli(test::forward(test::relay(1.0), {1.0}, denominator));
+    REQUIRE(moduli.size() == 3);
+    CHECK(moduli[0] == Approx(7.0).epsilon(1e-9));
+    CHECK(moduli[2] == Approx(50.0).epsilon(1e-9));
+  }
+  // A pole that is slow, though not at the origin, stays.
+  CHECK(pole_moduli(test::forward(test::relay(1.0), {1.0}, {1.0, 100.0001, 0.01, 0.0})).front() ==
+        Approx(1e-4).epsilon(1e-6));
+}
+
 TEST_CASE("rtol out of range is refused with its value") {
   const Loop loop = test::servo(test::coulomb(1.5, 1.0));
   CHECK_THROWS_WITH(loop_weights(loop, 0.2), Catch::Matchers::Contains("0.2"));

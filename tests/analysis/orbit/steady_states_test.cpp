@@ -202,6 +202,41 @@ TEST_CASE("a centre is a family of periodic motions") {
   }
 }
 
+TEST_CASE("a body that slides on a belt with constant friction on an undamped spring swings by what it began with") {
+  // It swings about y = Fc/k = 0.5 as long as it stays slower than the belt, at 0.1 m/s; faster motions end at
+  // amplitude v/w = 0.1/sqrt(2), which touches the speed of the belt.
+  const Loop loop = belt(coulomb(1.0, 1.0));
+  for (const double start : {0.7, 1e-3, 1e-6}) {
+    const auto found = from(loop, start);
+    CAPTURE(start);
+    CHECK(found.outcome == Outcome::family);
+  }
+}
+
+TEST_CASE("a body that creeps to rest at the edge of stiction rests, however long it waited before") {
+  // Viscous friction is stronger than the fall of the curve at low speed (delta = 2), and every pole of the sliding
+  // motion is real: with a start of y0, the integrator winds up for Fs/(ki y0), and then the body creeps to y = 0.
+  auto law = stribeck(2.43802, 1.2087, 0.000126115);
+  law.sigma2 = 6.54143;
+  law.delta = 2.0;
+  LoopParts parts;
+  parts.plant = Mass{741.747, 0.0, 0.0};
+  parts.controller = pid(686.146, 113.127, 955.585);
+  parts.friction = law;
+  LoopParts otherwise = parts;
+  otherwise.plant = ZeroPoleGain{{}, {0.0, 0.0}, 1.0 / 741.747};
+  for (const LoopParts& writing : {parts, otherwise}) {
+    const Loop loop = build_loop(writing);
+    for (const double y0 : {1.141e-05, 1.141e-07, 1.141e-09}) {
+      CAPTURE(y0);
+      const auto found = from(loop, y0);
+      CHECK(found.outcome == Outcome::rest);
+      CHECK(found.steps < 1000);
+      CHECK(found.time > 2.43802 / (113.127 * y0));
+    }
+  }
+}
+
 TEST_CASE("a slow decay is rest, with its rate") {
   LoopParts parts;
   parts.plant = TransferFunction{{1.0}, {1.0, 2e-5, 1.0}, 0.0};

@@ -136,3 +136,20 @@ TEST_CASE("an ideal relay before a first-order plant can be held at zero input, 
   other.start(origin, 0.0);
   CHECK(other.modes()[0] != Mode{2});
 }
+
+TEST_CASE("a body that sticks does not creep: the rate of its velocity is exactly zero, whatever holds it") {
+  // Forces of 1e3 N and of 1 N that balance leave 1e-13 N of rounding, which moves 1 kg by metres in 1e7 s.
+  for (const auto& law : {Element(coulomb(1e4, 1e3)), Element(stribeck(1e4, 1e3, 1e-3))}) {
+    LoopParts parts = servo_parts(law);
+    parts.plant = Mass{0.37, 0.0, 0.0};
+    const Loop loop = build_loop(parts);
+    LoopField field(loop);
+    for (int i = 1; i < 50; ++i) {
+      State x{0.1 * i, 0.0, 31.7 / i}, dx;
+      field.start(x, 0.0);
+      REQUIRE(field.holds(loop.elements.size() - 1));
+      field.rate(x, dx, 0.0);
+      CHECK(dx[1] == 0.0);
+    }
+  }
+}

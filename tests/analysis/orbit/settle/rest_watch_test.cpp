@@ -100,6 +100,22 @@ TEST_CASE("rest watch: one state that winds up slowly while all others stay is n
   CHECK(watched(sliding, 1e-6, 1e4) == RestWatch::Verdict::steady);
 }
 
+TEST_CASE("rest watch: a motion that fades after a long wait is looked at on its own scale") {
+  const double wait = 1e9, rtol = 1e-6;
+  const auto fading = [](double t) { return std::pair<State, State>{{std::exp(-t), 0.0}, {-std::exp(-t), 0.0}}; };
+  RestWatch watch({1.0, 1.0}, 1.0, rtol);
+  for (double t = 0.0; t < wait; t = watch.next())
+    REQUIRE(watch.look(t, {1.0, 1e-3 * t}, {0.0, 1e-3}) != RestWatch::Verdict::at_rest);
+  watch.switched(wait);
+  double rested = 0.0;
+  for (double t = 0.0; t < 100.0 && rested == 0.0; t += 0.1) {
+    const auto [x, dx] = fading(t);
+    if (watch.look(wait + t, x, dx) == RestWatch::Verdict::at_rest) rested = t;
+  }
+  CHECK(rested > 10.0);
+  CHECK(rested < 100.0);
+}
+
 TEST_CASE("a servo that trembles on its bristle has come to rest, alone and in lanes of every kind") {
   for (const Loop& loop : trembling()) {
     const auto settled = settle(loop, displaced(loop, 0.5), {});

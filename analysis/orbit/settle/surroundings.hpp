@@ -1,0 +1,37 @@
+#pragma once
+#include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/orbit/cycle/shooting.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// Motions close to a periodic one, where its multipliers do not tell what it is.
+class Surroundings {
+ public:
+  /// `options`: of the shooting that found the cycle. All must outlive this. `rtol`: of the marches.
+  Surroundings(const Loop& loop, const Cycle& cycle, const Section& section, const ShootingOptions& options,
+               double rtol);
+
+  /// True if motions that begin 1 % farther out and 1 % nearer return to the cycle within a few periods. Decides where
+  /// a multiplier does not exist, as for a Stribeck curve that begins with infinite slope.
+  bool attracts();
+  /// True if another periodic motion lies close: shooting from 2 % farther out, or nearer, finds it. `half`: by half
+  /// periods.
+  bool has_neighbour(bool half);
+  /// Steps of all marches so far.
+  long steps() const { return steps_; }
+
+ private:
+  LoopState farther_out(double factor) const;
+  LoopState opposite() const;
+
+  const Loop& loop_;
+  const Cycle& cycle_;
+  const Section& section_;
+  const ShootingOptions& options_;
+  double rtol_;
+  State middle_;
+  long steps_ = 0;
+};
+
+}  // namespace limcycle
