@@ -33,7 +33,8 @@ struct Cycle {
   double offset = 0.0;                            ///< mean of y
   std::optional<bool> stable;                     ///< empty: could not be decided
   std::vector<std::complex<double>> multipliers;  ///< Floquet, of the full period, without the trivial 1, largest first
-  double multiplier_error = 0.0;                  ///< estimated absolute error of each multiplier
+  /// Estimated absolute error of each multiplier; above 0.5 if they could not be determined, and none are given.
+  double multiplier_error = 0.0;
   /// States in which an element keeps part of its history (return points of an outer hysteresis loop) and which the
   /// motion neither changes nor forgets: another history gives another cycle, close to this one. Their multipliers, all
   /// 1, are not among those above, and `stable` is for a given history.

@@ -117,6 +117,32 @@ double frequency_of_scales(const Loop& loop) {
   return std::isfinite(found) ? found : 0.0;
 }
 
+/// The states that an element or the output sees, in the end: a part of a plant that reaches neither has no say in the
+/// scales of the loop.
+std::vector<Index> seen_states(const Loop& loop, const MatrixXd& A) {
+  VectorXd seen = loop.C_y.cwiseAbs().transpose();
+  for (const Port& port : loop.ports) {
+    seen += (port.C.cwiseAbs() + port.C_v.cwiseAbs()).transpose();
+    if (port.C_delayed.size() > 0) seen += port.C_delayed.cwiseAbs().transpose();
+  }
+  std::vector<Index> kept, fresh;
+  const auto keep = [&](Index i) {
+    if (std::ranges::find(kept, i) != kept.end()) return;
+    kept.push_back(i);
+    fresh.push_back(i);
+  };
+  for (Index i = 0; i < seen.size(); ++i)
+    if (seen(i) != 0.0) keep(i);
+  while (!fresh.empty()) {
+    const Index i = fresh.back();
+    fresh.pop_back();
+    for (Index j = 0; j < A.cols(); ++j)
+      if (A(i, j) != 0.0) keep(j);
+  }
+  std::ranges::sort(kept);
+  return kept;
+}
+
 /// Moduli of the poles that are not zero. A pole at the origin of order k (a free body: 2; with an integrator before
 /// it: 3) is computed as k small ones, of the kth root of rounding: how many of such a size are zero is decided by
 /// ranks.
@@ -161,9 +187,11 @@ MatrixXd working_loop(const Loop& loop) {
 std::vector<double> pole_moduli(const Loop& loop) {
   std::vector<double> found;
   if (loop.states() == 0) return found;
-  add_moduli(loop.tangent(), found);
+  const MatrixXd tangent = loop.tangent();
+  const auto seen = seen_states(loop, tangent);
+  if (!seen.empty()) add_moduli(tangent(seen, seen), found);
   if (const MatrixXd working = working_loop(loop); working.allFinite() && working != loop.A + loop.A_delayed)
-    add_moduli(working, found);
+    add_moduli(working(seen, seen), found);
   if (found.empty() && !loop.elements.empty())
     if (const double own = frequency_of_scales(loop); own > 0.0) found.push_back(own);
   std::ranges::sort(found);

@@ -34,12 +34,12 @@ bool has_element(const Trace& trace) {
   return trace.input.size() == n && trace.velocity.size() == n && trace.output.size() == n;
 }
 
-struct Extent {
+struct LeastAndGreatest {
   double least = INFINITY, greatest = -INFINITY;
 };
 
-Extent extent(const std::vector<double>& values) {
-  Extent out;
+LeastAndGreatest extent(const std::vector<double>& values) {
+  LeastAndGreatest out;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
     out.least = std::min(out.least, value);
@@ -49,7 +49,7 @@ Extent extent(const std::vector<double>& values) {
 }
 
 std::string between(const std::vector<double>& values, const std::string& unit) {
-  const Extent range = extent(values);
+  const LeastAndGreatest range = extent(values);
   return fmt::format("between {} and {}", with_digits(range.least, 3),
                      Units::attach(with_digits(range.greatest, 3), unit));
 }

@@ -52,9 +52,11 @@ Table multiplier_table(const PredictReport& report) {
   Table table{{{"#", "", Align::left}, {"over", "s"}, {"largest first", "", Align::left}}, {}};
   for (std::size_t i = 0; i < report.cycles.size(); ++i) {
     const Cycle& cycle = report.cycles[i];
-    if (!cycle.multipliers.empty())
-      table.rows.push_back({std::to_string(i), with_digits(cycle.period, 4),
-                            multipliers_in_words(cycle.multipliers, cycle.multiplier_error)});
+    const bool unknown = cycle.multipliers.empty() && cycle.multiplier_error > 0.5;
+    if (unknown || !cycle.multipliers.empty())
+      table.rows.push_back(
+          {std::to_string(i), with_digits(cycle.period, 4),
+           unknown ? "could not be determined" : multipliers_in_words(cycle.multipliers, cycle.multiplier_error)});
   }
   return table;
 }

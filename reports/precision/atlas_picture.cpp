@@ -28,7 +28,7 @@ constexpr std::array<Look, 9> looks{{{RunClass::right, "#2e9e5b", ""},
 
 const Look& look_of(RunClass kind) { return *std::ranges::find(looks, kind, &Look::kind); }
 
-constexpr double square_width = 17.0, square_height = 13.0, stepper_width = 150.0, width = 760.0, margin = 10.0;
+constexpr double square_width = 17.0, square_height = 13.0, stepper_width = 150.0, width = 760.0, outer_margin = 10.0;
 constexpr std::string_view atlas_style =
     "text{font:11px system-ui,sans-serif;fill:#59636e}.title{font-size:14px;font-weight:600}.law{font-size:13px;"
     "font-weight:600}.cell{fill:#fff;text-anchor:middle;font-weight:600}.dark{fill:#1f2328}rect{stroke:#8b949e;"
@@ -94,15 +94,15 @@ Drawn law_panels(const StepperAtlas& atlas, const std::string& law, double top) 
   std::vector<const AtlasPoint*> own;
   for (const auto& point : atlas.points)
     if (point.law == law) own.push_back(&point);
-  Drawn drawn{text(margin, top + 14.0, "law", law), top + 24.0};
-  double left = margin, row_height = 0.0;
+  Drawn drawn{text(outer_margin, top + 14.0, "law", law), top + 24.0};
+  double left = outer_margin, row_height = 0.0;
   for (const auto& stepper : distinct<std::string>(own, [](const AtlasPoint& point) { return point.stepper; })) {
     std::vector<const AtlasPoint*> points;
     std::ranges::copy_if(own, std::back_inserter(points), [&](const auto* point) { return point->stepper == stepper; });
     const auto rows = distinct<double>(points, [](const AtlasPoint& point) { return point.setting; }).size();
     const double height = 40.0 + square_height * static_cast<double>(rows);
     if (left + stepper_width > width) {
-      left = margin;
+      left = outer_margin;
       drawn.bottom += row_height;
       row_height = 0.0;
     }
@@ -116,7 +116,7 @@ Drawn law_panels(const StepperAtlas& atlas, const std::string& law, double top) 
 
 std::string legend(double top) {
   std::string out;
-  double left = margin;
+  double left = outer_margin;
   for (const auto& look : looks) {
     AtlasPoint sample;
     sample.kind = look.kind;
@@ -135,8 +135,8 @@ std::string atlas_picture(const StepperAtlas& atlas) {
   std::vector<std::string> laws;
   for (const auto& point : atlas.points)
     if (std::ranges::find(laws, point.law) == laws.end()) laws.push_back(point.law);
-  std::string body =
-      text(margin, 20.0, "title", "Where steppers fail: tolerance (or step, s) against log10 of the stiffness, N/m");
+  std::string body = text(outer_margin, 20.0, "title",
+                          "Where steppers fail: tolerance (or step, s) against log10 of the stiffness, N/m");
   body += legend(32.0);
   double top = 56.0;
   for (const auto& law : laws) {

@@ -227,11 +227,18 @@ def stiff_shaft(case, dice):
 
 
 def bristles(case, dice):
-    """Coulomb or Stribeck friction as LuGre with bristles 1e5 times stiffer than the loop."""
+    """Coulomb or Stribeck friction as LuGre with bristles 1e5 times stiffer than the loop.
+
+    Not for a curve that begins with infinite slope: the creep of the bristles before break-away lowers the force by
+    (Fs - Fc) (creep/vs)^delta. Of a belt loop with delta = 0.5, an integration by SciPy gave the periods 45.885,
+    47.016 and 47.543 s for bristles of 1e5, 1e6 and 1e7 times the stiffness, against 47.996 s without bristles.
+    """
     loop = case["loop"]
     friction, plant = loop.get("friction", {}), loop["plant"]
     levels = friction.get("Fc", 0.0), friction.get("Fs", 0.0)
     if friction.get("kind") not in ("coulomb", "stribeck") or plant["kind"] not in ("mass", "belt") or levels[1] < 1.05 * levels[0]:
+        return None
+    if friction.get("delta", 2.0) < 1.0:
         return None
     stiff = loop.get("controller", {}).get("kp", 0.0) + plant.get("stiffness", 0.0)
     bristle = 1e5 * stiff

@@ -392,6 +392,9 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
     if (!exact && options.derivative_rtol > tight && (!cycle.stable || is_rough()))
       judge(shooter, result, exact, tight);
     if (is_rough() && !has_infinite_slope(loop)) judge(shooter, result, exact, tighter);
+    // A derivative that does not even carry the motion along itself tells nothing of its neighbours.
+    constexpr double lost = 0.5;
+    if (result.trivial_error > lost) cycle.multipliers.clear();
   }
   result.status = Status::converged;
   result.maps = shooter.maps();

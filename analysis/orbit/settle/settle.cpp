@@ -18,7 +18,7 @@ namespace limcycle {
 namespace {
 
 /// Step limit of shooting before a motion is decided: this constant, plus a multiple of the motion's own steps.
-constexpr long steps_of_tries = 500'000, tries_per_step = 6;
+constexpr long steps_of_tries = 200'000, tries_per_step = 3;
 constexpr double settled_change = 1e-3;  ///< relative change of the swings of a motion that has all but settled
 constexpr long periods_of_a_try = 40;    ///< of return maps; most that converge take 5 to 20, up to 15 maps
 

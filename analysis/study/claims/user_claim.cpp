@@ -49,7 +49,7 @@ Computed of_cycle(const std::string& quantity, const ClaimPoint& point, const Pr
   if (quantity == "offset") return {cycle->offset, 10.0 * cycle->error * cycle->amplitude, cycle->amplitude};
   if (quantity == "sticking_fraction") return {cycle->sticking_fraction, 10.0 * cycle->error};
   const double largest = cycle->multipliers.empty() ? 0.0 : std::abs(cycle->multipliers.front());
-  return {largest, 1e-6 + 10.0 * cycle->error};
+  return {largest, std::max(cycle->multiplier_error, 1e-6 + 10.0 * cycle->error)};
 }
 
 Computed of_describing_function(const std::string& quantity, const ClaimPoint& point) {

@@ -56,14 +56,14 @@ LawPart breakaway_of_law(const LawSetting& setting) {
   return part;
 }
 
-struct Triple {
+struct ThreeSizes {
   double half, normal, twice;
   std::string words(const std::string& unit, int digits = 5) const {
     return quantity(half, "", digits) + ", " + quantity(normal, "", digits) + ", " + quantity(twice, unit, digits);
   }
 };
 
-Triple triple(const Experiment& e, const std::string& key, const std::string& number) {
+ThreeSizes triple(const Experiment& e, const std::string& key, const std::string& number) {
   return {e.value("non-drift", number, parameter_in_words(key, 0.5)), e.value("non-drift", number, "default"),
           e.value("non-drift", number, parameter_in_words(key, 2.0))};
 }
@@ -73,8 +73,8 @@ ExperimentClaim decided(const std::string& statement, bool right, const std::str
           right ? ClaimOutcome::confirmed : ClaimOutcome::not_confirmed, measure};
 }
 
-ExperimentClaim by_both(const std::string& statement, const Triple& peak, const Triple& applied, bool rises) {
-  const auto right = [rises](const Triple& t) {
+ExperimentClaim by_both(const std::string& statement, const ThreeSizes& peak, const ThreeSizes& applied, bool rises) {
+  const auto right = [rises](const ThreeSizes& t) {
     return rises ? t.half < t.normal && t.normal < t.twice : t.half > t.normal && t.normal > t.twice;
   };
   ExperimentClaim claim =
@@ -98,11 +98,11 @@ std::vector<ExperimentClaim> parameter_claims(const Experiment& e) {
       list.push_back({statement, "thesis, section 3.6.2, figures 3.38 to 3.41", ClaimOutcome::not_tested, ""});
     return list;
   }
-  const auto small = [](const Triple& t) {
+  const auto small = [](const ThreeSizes& t) {
     return std::max(std::abs(t.half - t.normal), std::abs(t.twice - t.normal)) < 0.01 * t.normal;
   };
-  const Triple sigma = triple(e, "sigma", "peak"), tau = triple(e, "tau", "peak");
-  const Triple x = triple(e, "Zb", "displacement"), v = triple(e, "vs", "velocity"), s = triple(e, "tau", "slope");
+  const ThreeSizes sigma = triple(e, "sigma", "peak"), tau = triple(e, "tau", "peak");
+  const ThreeSizes x = triple(e, "Zb", "displacement"), v = triple(e, "vs", "velocity"), s = triple(e, "tau", "slope");
   list.push_back(decided(statements[0], small(sigma), "half, default, double: peak " + sigma.words("N")));
   list.push_back(by_both(statements[1], triple(e, "Zb", "peak"), triple(e, "Zb", "applied"), false));
   list.push_back(

@@ -30,11 +30,11 @@ Signal drift_force() {
 }
 
 /// Drift per cycle, m: over the last cycles, and over as many before them.
-struct Drift {
+struct TwoDrifts {
   double late = NAN, early = NAN;
 };
 
-Drift drift(const LawSetting& setting, Status& status) {
+TwoDrifts drift(const LawSetting& setting, Status& status) {
   ForcedOptions options;
   options.duration = 1.0 + 2.0 * drift_cycles * drift_half_period;
   options.rtol = 1e-9;
@@ -60,7 +60,7 @@ double slow_drift() {
 constexpr double negligible_drift = 1e-11;
 
 /// A drift that has halved since then is the end of a shakedown, or of a ringing of the mass, not a drift.
-std::string drift_in_words(const Drift& drift) {
+std::string drift_in_words(const TwoDrifts& drift) {
   if (!std::isfinite(drift.late)) return "was not answered in time";
   if (std::abs(drift.late) < negligible_drift) return "does not drift";
   if (std::abs(drift.late) < 0.5 * std::abs(drift.early))
@@ -72,7 +72,7 @@ std::string drift_in_words(const Drift& drift) {
 LawPart drift_of_law(const LawSetting& setting) {
   LawPart part;
   if (setting.kind != "elasto-plastic") {
-    const Drift own = drift(setting, part.status);
+    const TwoDrifts own = drift(setting, part.status);
     part.rows.push_back({"", "", {own.late}});
     part.finding = drift_in_words(own);
     return part;

@@ -9,8 +9,7 @@
 namespace limcycle {
 namespace {
 
-constexpr double hardly = 0.05;  // a change of swing below this counts as none
-constexpr double shown = 0.1;    // s of the fast motion that are drawn
+constexpr double shown = 0.1;  // s of the fast motion that are drawn
 
 std::string label(double clearance) { return clearance == 0.0 ? "no play" : short_number(1e3 * clearance, 3) + " mm"; }
 
@@ -74,7 +73,7 @@ void add_claims(Experiment& e, const FroudeResult& result) {
   for (const auto& series : result.series) {
     const auto& c = series.clearances;
     fast = fast && c.back().fast_rubbing > 10.0 * c.front().fast_rubbing;
-    const bool kept = largest_change(series, &FroudeComparison::swing_change) < hardly;
+    const bool kept = largest_change(series, &FroudeComparison::swing_change) < unchanged_swing;
     some = some || kept;
     all = all && kept;
     speeds += (speeds.empty() ? "" : "; ") + series.setting.name + ": swing " +

@@ -32,6 +32,26 @@ TEST_CASE("moduli of the poles: those at the origin are left out whatever their 
         Approx(1e-4).epsilon(1e-6));
 }
 
+TEST_CASE("moduli of the poles: a part of the plant that nothing sees has none, however slow or fast it is") {
+  for (const double pole : {-1e-3, -1.0, -1e4}) {
+    LoopParts parts = test::servo_parts(test::coulomb(1.5, 1.0));
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3, 3);
+    A(0, 1) = 1.0;
+    A(2, 2) = pole;
+    A(2, 0) = 0.7;  // driven by the position, but seen by nobody
+    StateSpacePlant plant;
+    plant.A = A;
+    plant.B = plant.B_friction = Eigen::Vector3d(0.0, 1.0, 0.0);
+    plant.C = Eigen::RowVector3d(1.0, 0.0, 0.0);
+    plant.C_velocity = Eigen::RowVector3d(0.0, 1.0, 0.0);
+    parts.plant = plant;
+    const auto with = pole_moduli(build_loop(parts)), without = pole_moduli(test::servo(test::coulomb(1.5, 1.0)));
+    CAPTURE(pole);
+    REQUIRE(with.size() == without.size());
+    for (std::size_t i = 0; i < with.size(); ++i) CHECK(with[i] == Approx(without[i]).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("rtol out of range is refused with its value") {
   const Loop loop = test::servo(test::coulomb(1.5, 1.0));
   CHECK_THROWS_WITH(loop_weights(loop, 0.2), Catch::Matchers::Contains("0.2"));

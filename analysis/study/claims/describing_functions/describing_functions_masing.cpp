@@ -30,16 +30,21 @@ double integral(const std::function<double(double)>& f, double from, double to) 
   return value;
 }
 
-enum Curve : int { exponential = 0, hyperbolic = 1, koizumi_shibazaki = 2, linear = 3 };
+enum VirginCurve : int {
+  virgin_exponential = 0,
+  virgin_hyperbolic = 1,
+  virgin_koizumi_shibazaki = 2,
+  virgin_linear = 3
+};
 
 /// Virgin curve over Fs at u = z/Zb >= 0.
 double virgin(int curve, double u) {
   switch (curve) {
-    case exponential:
+    case virgin_exponential:
       return -std::expm1(-u);
-    case hyperbolic:
+    case virgin_hyperbolic:
       return u / (1.0 + u);
-    case koizumi_shibazaki:
+    case virgin_koizumi_shibazaki:
       return u >= 1.0 ? 1.0 : u > 0.0 ? u * (1.0 - std::log(u)) : 0.0;
     default:
       return std::min(u, 1.0);
@@ -110,12 +115,12 @@ GainClaim exponential_curve() {
     return {4.0 * Fs / A * gsl_sf_bessel_I1_scaled(0.5 * a),
             4.0 * Fs / (pi * A) * (1.0 + std::exp(-a) + 2.0 / a * std::expm1(-a))};
   };
-  const Numbers p{1.5, 1e-3, exponential};
+  const Numbers p{1.5, 1e-3, virgin_exponential};
   f.printed = {{{p, 3e-4}, {1294.696482, 82.376637}, 1e-6},
                {{p, 1e-3}, {938.524819, 197.934618}, 1e-6},
                {{p, 3e-3}, {438.078775, 265.032311}, 1e-6},
                {{p, 1e-3}, {938.5248, 197.9346}, 1e-4}};
-  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, exponential, 0.1, 30.0); };
+  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, virgin_exponential, 0.1, 30.0); };
   return {{"A11a",
            "Masing loop of the exponential virgin curve.",
            "fv = Fs (1 - exp(-z/Z)): Re N = (4 Fs/A) exp(-a/2) I1(a/2), Im N = (4 Fs/(pi A)) (1 + exp(-a) - (2/a)(1 - "
@@ -136,13 +141,13 @@ GainClaim hyperbolic_curve() {
     const double W = 8.0 * Fs * (A - Z * std::log1p(a)) - 4.0 * Fs * A * a / (1.0 + a);
     return {8.0 * Fs / (a * A) * ((1.0 + 0.5 * a) / std::sqrt(1.0 + a) - 1.0), W / (pi * A * A)};
   };
-  const Numbers p{1.5, 1e-3, hyperbolic};
+  const Numbers p{1.5, 1e-3, virgin_hyperbolic};
   // The first row prints 1148.896294 + j128.187672; the imaginary part is 128.187674 by formula and by computation, so
   // it is compared without the last digit.
   f.printed = {{{p, 3e-4}, {1148.89629, 128.18767}, 1e-5},
                {{p, 1e-3}, {727.922061, 217.161774}, 1e-6},
                {{p, 3e-3}, {333.333333, 207.413115}, 1e-6}};
-  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, hyperbolic, 0.1, 30.0); };
+  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, virgin_hyperbolic, 0.1, 30.0); };
   return {
       {"A11b",
        "Masing loop of the hyperbolic virgin curve.",
@@ -159,7 +164,7 @@ GainClaim hyperbolic_curve() {
 
 /// "Also reproduced to 5 digits by 4000 equal yield forces and uniform yield displacements."
 void check_elements(ClaimChecks& checks, const ClaimOptions&) {
-  const Numbers p{1.5, 1e-3, koizumi_shibazaki};
+  const Numbers p{1.5, 1e-3, virgin_koizumi_shibazaki};
   const double A = 1e-3;
   const auto df = computed_gain(iwan(p, 4000.0), {A, 1.0, 0.0}, false, 1e-5);
   if (!df.answered()) return checks.stop(df.status);
@@ -174,14 +179,15 @@ GainClaim koizumi_shibazaki_curve() {
   f.gain = [](const GainPoint& at) -> Complex {
     const double Fs = at.p[0], Zb = at.p[1], A = at.amplitude;
     // Beyond Zb only the imaginary part is claimed; the real one is the integral of A11.
-    if (A > Zb) return {masing_gain(koizumi_shibazaki, Fs, Zb, A).real(), 4.0 * Fs / (pi * A) * (1.0 - Zb / (2.0 * A))};
+    if (A > Zb)
+      return {masing_gain(virgin_koizumi_shibazaki, Fs, Zb, A).real(), 4.0 * Fs / (pi * A) * (1.0 - Zb / (2.0 * A))};
     return {Fs / Zb * (2.0 * std::numbers::ln2 - 0.5 - std::log(A / Zb)), 2.0 * Fs / (pi * Zb)};
   };
-  const Numbers p{1.5, 1e-3, koizumi_shibazaki};
+  const Numbers p{1.5, 1e-3, virgin_koizumi_shibazaki};
   f.printed = {{{p, 3e-4}, {3135.400748, 954.929659}, 1e-6},
                {{p, 1e-3}, {1329.441542, 954.929659}, 1e-6},
                {{p, 2e-3}, {542.078, 716.197}, 1e-3}};
-  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, koizumi_shibazaki, 0.01, 10.0); };
+  f.draw = [](RandomPoints& random) { return drawn_masing_point(random, virgin_koizumi_shibazaki, 0.01, 10.0); };
   f.more = [](ClaimChecks& checks, const std::string& where, const GainPoint& at, const DescribingFunction& df) {
     if (at.amplitude > at.p[1]) return;
     checks.equal(where, "W", "J", 2.0 * at.p[0] * at.amplitude * at.amplitude / at.p[1], df.dissipation,

@@ -151,15 +151,12 @@ std::string sentence(const FroudeSeries& series) {
                                 : ", and the sleeve never leaves the shaft");
 }
 
-/// The swing counts as unchanged below 5 %, the line between "confirmed" and "biased" elsewhere.
-constexpr double hardly = 0.05;
-
 std::string conclusion(const std::vector<FroudeSeries>& all) {
   std::string kept, lost;
   for (const auto& series : all) {
     double worst = 0.0;
     for (const auto& c : series.clearances) worst = std::max(worst, std::abs(c.swing_change));
-    std::string& list = worst < hardly ? kept : lost;
+    std::string& list = worst < unchanged_swing ? kept : lost;
     list += (list.empty() ? "" : ", ") + series.setting.name + " (" + percent(worst) + ")";
   }
   std::string text = "play of up to 0.1 mm adds high-frequency oscillation";

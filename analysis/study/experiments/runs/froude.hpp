@@ -8,6 +8,10 @@
 
 namespace limcycle {
 
+/// Relative change of the swing below which it counts as unchanged: the line between "confirmed" and "biased"
+/// elsewhere.
+constexpr double unchanged_swing = 0.05;
+
 /// One friction curve and contact of the Froude pendulum, with its initial conditions.
 struct FroudeSetting {
   std::string name;      ///< "flat"

@@ -30,11 +30,13 @@ void refuses(const ClaimResult& result) {
 
 TEST_CASE("claims B and E: each holds, by fixed and by random points, and says what it is") {
   std::set<std::string> ids;
+  int number = 0;
   for (const auto& list : {limit_cycle_claims(), stability_claims()})
     for (const Claim& claim : list) {
       CAPTURE(claim.id);
       CHECK(ids.insert(claim.id).second);
       for (const auto* text : {&claim.statement, &claim.source, &claim.range, &claim.test}) CHECK_FALSE(text->empty());
+      if (!test::is_done(number++)) continue;
       const auto result = claim.run(few());
       INFO(result.finding << " " << result.counterexample);
       CHECK(result.verdict == claim.expected);
@@ -125,9 +127,11 @@ TEST_CASE("claim B7: no construction where there is no drop from break-away to s
 }
 
 TEST_CASE("claims B8 to B10: wrong formulas are refused") {
-  refuses(test_friction_cycles(few(),
-                               [](const RelayFeedback& relay, double h) { return switching_output(relay, h) + 1e-3; }));
-  if (one_in == 1) refuses(test_friction_cycles(few(), switching_output, 0.99));
+  if (one_in == 1) {
+    const auto off = [](const RelayFeedback& relay, double h) { return switching_output(relay, h) + 1e-3; };
+    refuses(test_friction_cycles(few(), off));
+    refuses(test_friction_cycles(few(), switching_output, 0.99));
+  }
   refuses(test_switch_and_bristles(few(), [](double, double Fc) -> Element { return lugre(Fc, Fc, 0.0); }));
   refuses(test_sliding(few(), [](const LuGre<double>& law, double v, double) {
     return std::complex<double>(quasi_static_damping(law.Fs, law.Fc, law.vs, law.sigma2, v));
