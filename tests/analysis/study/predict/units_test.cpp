@@ -111,7 +111,7 @@ TEST_CASE("displaced: a start moves the motion, not a state that is back at once
 
 TEST_CASE("a slow pole beside the loop: where every start of the box diverges, smaller ones are tried") {
   // A conditionally stable loop: motions within the limit of the command come to rest, larger ones wind up.
-  const auto outcomes = [](const Eigen::MatrixXd& A) {
+  const auto outcomes = [](const Eigen::MatrixXd& A, double seen) {
     LoopParts parts;
     Pid controller = pid(2618.64, 63021.8, 13.6862);
     controller.lag = 2.31547e-4;
@@ -123,19 +123,25 @@ TEST_CASE("a slow pole beside the loop: where every start of the box diverges, s
     plant.B(1, 0) = 44.4522;
     plant.C = Eigen::MatrixXd::Zero(1, A.rows());
     plant.C(0, 0) = 1.0;
+    if (A.rows() > 2) plant.C(0, 2) = seen;
     parts.plant = plant;
     parts.friction = coulomb(190.534, 190.534, 0.0);
     return predict(build_loop(parts));
   };
-  const auto alone = outcomes(Eigen::MatrixXd{{0.0, 1.0}, {0.0, 0.0}});
-  const auto beside = outcomes(Eigen::MatrixXd{{0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, -0.1}});
-  for (const PredictReport* report : {&alone, &beside})
+  const Eigen::MatrixXd slow{{0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, -0.1}};
+  const auto alone = outcomes(Eigen::MatrixXd{{0.0, 1.0}, {0.0, 0.0}}, 0.0);
+  const auto unseen = outcomes(slow, 0.0), beside = outcomes(slow, 1e-9);
+  for (const PredictReport* report : {&alone, &unseen, &beside})
     for (const Outcome wanted : {Outcome::divergence, Outcome::rest})
       CHECK(std::ranges::count(report->outcomes, wanted, &OutcomeOfStart::outcome) > 0);
   const auto extended = [](const std::string& note) { return note.find("was extended down") != std::string::npos; };
   CHECK(std::ranges::any_of(beside.notes, extended));
   CHECK_FALSE(std::ranges::any_of(alone.notes, extended));
   CHECK(beside.search.amplitude_min == Approx(1e-12 * beside.search.amplitude_max));
+  // One that nothing sees changes nothing.
+  CHECK_FALSE(std::ranges::any_of(unseen.notes, extended));
+  CHECK(unseen.search.amplitude_max == Approx(alone.search.amplitude_max).epsilon(1e-9));
+  CHECK(unseen.search.frequency_min == Approx(alone.search.frequency_min).epsilon(1e-9));
 }
 
 TEST_CASE("units: typical sizes of a stiff drive are those of a slow one in another unit of time") {
