@@ -225,7 +225,8 @@ void LoopField::solve_held(const State& x) {
       add_output(i, w_[i]);
     }
     // The forces leave a rate of rounding size, on which a body at rest would creep. A curve that begins with infinite
-    // slope leaves rest in more than one way, from v = 0 exactly only late: there the rounding stays.
+    // slope leaves rest in more than one way, from v = 0 exactly only late: there the rounding stays, unless several
+    // bodies hold one another.
     for (const std::size_t i : holding_)
       if (const auto only = held_state(i); only && (m > 1 || loop_->elements[i].steep_exponent() >= 1.0))
         dX_[*only] = 0.0;

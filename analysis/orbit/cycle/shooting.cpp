@@ -394,7 +394,10 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
     if (is_rough() && !has_infinite_slope(loop)) judge(shooter, result, exact, tighter);
     // A derivative that does not even carry the motion along itself tells nothing of its neighbours.
     constexpr double lost = 0.5;
-    if (result.trivial_error > lost) cycle.multipliers.clear();
+    if (result.trivial_error > lost) {
+      cycle.multipliers.clear();
+      cycle.multiplier_error = std::max(cycle.multiplier_error, result.trivial_error);
+    }
   }
   result.status = Status::converged;
   result.maps = shooter.maps();

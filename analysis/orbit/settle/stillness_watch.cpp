@@ -21,8 +21,8 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
                                               const std::vector<Mode>& modes) {
   if (t < rest_.next()) return std::nullopt;
   const auto verdict = rest_.look(t, x, dx);
-  ++looks_;
-  if (verdict == RestWatch::Verdict::moving && (looks_ < patience || t < next_algebra_)) return std::nullopt;
+  const bool algebra = ++looks_ >= patience && t >= next_algebra_;
+  if (verdict == RestWatch::Verdict::moving && !algebra) return std::nullopt;
   LoopField field(loop_);
   field.modes() = modes;
   if (verdict == RestWatch::Verdict::at_rest) return at_rest(field, x, dx);
@@ -31,7 +31,7 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
   if (verdict == RestWatch::Verdict::steady && held_while_winding_up(field, x, dx, scale_))
     return Stillness{Outcome::rest, rest_.rate(dx) > drift ? "held at rest for ever, although the controller winds up"
                                                            : "came to rest, but for a drift within rounding"};
-  if (looks_ < patience || t < next_algebra_) return std::nullopt;
+  if (!algebra) return std::nullopt;
   next_algebra_ = 1.5 * t;
   const auto approach = approach_from(field, x, scale_);
   if (!approach) return std::nullopt;

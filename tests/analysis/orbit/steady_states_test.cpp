@@ -214,8 +214,9 @@ TEST_CASE("a body that slides on a belt with constant friction on an undamped sp
 }
 
 TEST_CASE("a body that creeps to rest at the edge of stiction rests, however long it waited before") {
-  // Viscous friction is stronger than the fall of the curve at low speed (delta = 2), and every pole of the sliding
-  // motion is real: with a start of y0, the integrator winds up for Fs/(ki y0), and then the body creeps to y = 0.
+  // Viscous friction is stronger than the fall of the curve at low speed (delta = 2), and the slowest pole of the
+  // sliding motion is real (-0.22 1/s, beside -0.54 +- 0.63j): with a start of y0, the integrator winds up for Fs/(ki
+  // y0), and then the body creeps to y = 0.
   auto law = stribeck(2.43802, 1.2087, 0.000126115);
   law.sigma2 = 6.54143;
   law.delta = 2.0;

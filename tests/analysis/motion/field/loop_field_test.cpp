@@ -138,7 +138,7 @@ TEST_CASE("an ideal relay before a first-order plant can be held at zero input, 
 }
 
 TEST_CASE("a body that sticks does not creep: the rate of its velocity is exactly zero, whatever holds it") {
-  // Forces of 1e3 N and of 1 N that balance leave 1e-13 N of rounding, which moves 1 kg by metres in 1e7 s.
+  // Forces of 1e3 N that balance leave 1e-13 N of rounding, which moves 1 kg by metres in 1e7 s.
   for (const auto& law : {Element(coulomb(1e4, 1e3)), Element(stribeck(1e4, 1e3, 1e-3))}) {
     LoopParts parts = servo_parts(law);
     parts.plant = Mass{0.37, 0.0, 0.0};
