@@ -20,6 +20,7 @@ using Eigen::VectorXd;
 
 constexpr double loosest = 1e-6;  ///< beyond, a cycle with stick may be lost
 constexpr double tightest = 1e-13;
+constexpr double lost = 0.5;  ///< a derivative that fails by more to carry the motion along itself tells nothing
 
 /// Newton on the return map.
 class Shooter {
@@ -57,12 +58,11 @@ class Shooter {
     while (r.norm() > tolerance) {
       if (maps_ > options_.max_maps || map_.steps() > options_.max_steps) return Status::max_iterations;
       if (jacobian_.size() == 0) {
-        const double loose = std::max(loose_tolerance(rtol, loosest), 1e-8);
-        if (const Status status = linearise(loose); status != Status::converged) return status;
+        if (const Status status = find_jacobian(rtol, r.size()); status != Status::converged) return status;
         fresh = true;
       }
       if (newton(image, r, fresh)) {
-        fresh = false;
+        fresh = no_derivative_;
         continue;
       }
       if (image.status == Status::interrupted) return image.status;
@@ -90,7 +90,8 @@ class Shooter {
   /// Relative difference in period and amplitude between the solution and that of a looser integration, which is so
   /// close that the derivative of the map leads to it.
   Status compare(double loose, double& difference) {
-    if (map_.options().returns > 1 || (!is_linear_at(loose) && linearise(loose) != Status::converged))
+    if (map_.options().returns > 1 || no_derivative_ ||
+        (!is_linear_at(loose) && linearise(loose) != Status::converged))
       return compare_anew(loose, difference);
     const VectorXd step = newton_step(chart_->coordinates(linear_.state.x, linear_at_.x));
     const VectorXd moved = chart_->scale.cwiseProduct(chart_->basis * step);
@@ -161,6 +162,20 @@ class Shooter {
   long steps() const { return map_.steps(); }
 
  private:
+  /// A derivative by which to begin. Where a switch is grazed, or a curve of infinite slope is passed, there is none:
+  /// plain maps then, which Broyden's updates improve.
+  Status find_jacobian(double rtol, Eigen::Index size) {
+    if (!no_derivative_) {
+      const Status status = linearise(std::max(loose_tolerance(rtol, loosest), 1e-8));
+      if (status == Status::converged && linear_.flow_defect <= lost) return status;
+      if (status != Status::converged && status != Status::stalled) return status;
+      no_derivative_ = true;
+    }
+    jacobian_ = MatrixXd::Zero(size, size);
+    kept_.resize(0, 0);
+    return Status::converged;
+  }
+
   /// One damped Newton step from state_ with residual r; moves there and returns true if the residual falls enough: to
   /// a third with an old Jacobian, at all with a fresh one (which is worth shorter steps).
   bool newton(ReturnMap::Result& image, VectorXd& r, bool fresh) {
@@ -252,6 +267,7 @@ class Shooter {
   MatrixXd jacobian_;
   double residual_ = infinite, time_ = 0.0, amplitude_ = 0.0;
   int maps_ = 0, stuck_ = 0;
+  bool no_derivative_ = false;  ///< see find_jacobian
 };
 
 ShootingResult failed(Status status, const Shooter& shooter, std::string why) {
@@ -392,8 +408,6 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
     if (!exact && options.derivative_rtol > tight && (!cycle.stable || is_rough()))
       judge(shooter, result, exact, tight);
     if (is_rough() && !has_infinite_slope(loop)) judge(shooter, result, exact, tighter);
-    // A derivative that does not even carry the motion along itself tells nothing of its neighbours.
-    constexpr double lost = 0.5;
     if (result.trivial_error > lost) {
       cycle.multipliers.clear();
       cycle.multiplier_error = std::max(cycle.multiplier_error, result.trivial_error);

@@ -28,11 +28,14 @@ bool grows_like_a_power(const TurningPoints& turning) {
 bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long most_steps,
                      const std::function<bool()>& stop) {
   constexpr double farther = 30.0;
-  constexpr std::size_t turns = 14, apart = 10;  // an even number, so that swings of one direction are compared
+  constexpr std::size_t turns = 10, apart = 6;  // an even number, so that swings of one direction are compared
   const LoopState far = scaled(loop, here, farther);
   LoopField field(loop);
   field.modes() = far.modes;
-  March march(field, StepperKind::automatic, loop_weights(loop, rtol));
+  // So far out, swings are so slow that fast poles limit the steps of an explicit method.
+  const auto usual = choose_stepper(loop, rtol);
+  const auto kind = usual == StepperKind::exact || has_infinite_slope(loop) ? usual : StepperKind::rodas5p;
+  March march(field, kind, loop_weights(loop, rtol));
   march.begin(far.x, 0.0);
   TurningPoints turning;
   constexpr double end = 1e15;  // s, of a motion that hardly moves

@@ -131,9 +131,8 @@ class Settling {
   }
 
   void look_for_growth() {
-    const long affordable = options_.max_steps / 8;
     if (grows_like_a_power(turning_) &&
-        grows_from_afar(loop_, {march_.x(), field_.modes()}, options_.rtol, affordable, options_.stop))
+        grows_from_afar(loop_, {march_.x(), field_.modes()}, options_.rtol, options_.max_steps, options_.stop))
       decide(Outcome::divergence, "y grows without bound, like a power of time");
   }
 
