@@ -61,6 +61,10 @@ class Truth:
             bound = 1e6 * max(far, self.scale())
             method = smooth.settle if self.smooth else attractor.settle
             one = method(self.loop, X, bound)
+            if self.smooth and one.kind == "divergence":
+                # LSODA takes ever longer steps at rest until one of them leaves it.
+                tighter = smooth.SmoothLoop(self.model, 0.01 * self.rtol)
+                one = smooth.settle(tighter, X, bound)
             if one.kind == "cycle" and one.amplitude < 1e-7 * self.scale():
                 one = attractor.Attractor("unknown", why="a swing of the size of roundings")
             self.found[key] = one

@@ -90,8 +90,7 @@ class Shooter {
   /// Relative difference in period and amplitude between the solution and that of a looser integration, which is so
   /// close that the derivative of the map leads to it.
   Status compare(double loose, double& difference) {
-    if (map_.options().returns > 1 || no_derivative_ ||
-        (!is_linear_at(loose) && linearise(loose) != Status::converged))
+    if (map_.options().returns > 1 || no_derivative_ || (!is_linear_at(loose) && linearise(loose) != Status::converged))
       return compare_anew(loose, difference);
     const VectorXd step = newton_step(chart_->coordinates(linear_.state.x, linear_at_.x));
     const VectorXd moved = chart_->scale.cwiseProduct(chart_->basis * step);

@@ -393,6 +393,24 @@ TEST_CASE("divergence: growth is tried from afar, where a damped spring that bou
   CHECK_FALSE(grows(0.0, 1e-6));  // thirty times as far is still within the limit of the command and stuck
 }
 
+TEST_CASE("divergence: growth at a speed that viscous friction limits, in swings far slower than the poles") {
+  auto law = stribeck(372.201, 372.201, 11.7406);
+  law.delta = 1.0;
+  law.sigma2 = 0.0335198;
+  LoopParts parts = servo_parts(law);
+  parts.plant = Mass{0.00244064, 0.0, 0.0};
+  Pid controller = pid(661.923, 26289.9, 2.07175);
+  controller.saturation = 5229.07;
+  parts.controller = controller;
+  const Loop loop = build_loop(parts);
+  SettleOptions options;
+  options.amplitude_ceiling = 1e12;
+  const Settled settled = settle(loop, displaced(loop, 3011.0), options);
+  CHECK(settled.outcome == Outcome::divergence);
+  CHECK(settled.steps < options.max_steps);
+  CHECK(settle(loop, displaced(loop, 301.1), options).outcome == Outcome::rest);
+}
+
 TEST_CASE("divergence: swings that grow like a power of time have no bound") {
   TurningPoints power, fades, grows;
   for (int n = 0; n < 400; ++n) {

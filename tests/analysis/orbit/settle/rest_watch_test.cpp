@@ -116,6 +116,17 @@ TEST_CASE("rest watch: a motion that fades after a long wait is looked at on its
   CHECK(rested < 100.0);
 }
 
+TEST_CASE("rest watch: a cycle that switches once between two samples moves") {
+  RestWatch watch({1.0, 1.0}, 1.0, 1e-6);
+  const auto turning = [](int i) { return 2.0 * M_PI * (i % 11) / 11.0; };  // a period of 1.1 s, in steps of 0.1 s
+  for (int i = 0; i < 5000; ++i) {
+    const double t = 0.1 * i, angle = turning(i);
+    if (i % 11 == 0) watch.switched(t);
+    REQUIRE(watch.look(t, {std::cos(angle), std::sin(angle)}, {-std::sin(angle), std::cos(angle)}) ==
+            RestWatch::Verdict::moving);
+  }
+}
+
 TEST_CASE("a servo that trembles on its bristle has come to rest, alone and in lanes of every kind") {
   for (const Loop& loop : trembling()) {
     const auto settled = settle(loop, displaced(loop, 0.5), {});
