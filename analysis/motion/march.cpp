@@ -293,6 +293,33 @@ std::optional<double> March::passage_of_layer() {
   return found;
 }
 
+/// A few roundings of the time.
+double March::shortest_step() const { return 1e-15 * std::max(std::abs(t_), 1e-12 * weights_.time); }
+
+/// Ever shorter steps until the error allows one.
+Status March::accepted_step(double& dt) {
+  const double shortest = shortest_step();
+  while (!try_step(dt)) {
+    if (dt > shortest) continue;
+    if (!is_finite(step_.x1)) return Status::not_finite;
+    return step_at_floor(shortest, dt) ? Status::converged : Status::stalled;
+  }
+  at_floor_ = 0;
+  return step_.t1 == t_ ? Status::stalled : Status::converged;  // Odeint's explicit steppers accept a step of no length
+}
+
+/// A step near the rounding of time, whatever its error: on a curve of infinite slope a body that breaks away after a
+/// long wait changes its velocity by more than the tolerance within that rounding.
+bool March::step_at_floor(double shortest, double& dt) {
+  constexpr int most = 50;
+  if (!steep_ || kind_ == StepperKind::exact || ++at_floor_ > most) return false;
+  const double h = 4.0 * shortest;
+  repeat(h, step_.x1);
+  step_.t1 = t_ + h;
+  dt = 2.0 * h;
+  return is_finite(step_.x1);
+}
+
 Status March::step(double t_end) {
   if (t_ >= t_end) return Status::converged;
   if (fresh_)
@@ -314,6 +341,7 @@ Status March::step(double t_end) {
         },
         stepper_->any());
     dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
+    dt_ = std::max(dt_, 2.0 * shortest_step());  // two switches at one time leave no length
     fresh_ = false;
   }
   dt_ = std::min(dt_, longest_step * weights_.time);  // at rest steps grow without limit
@@ -322,12 +350,9 @@ Status March::step(double t_end) {
   truncated_ = dt == t_end - t_;
   double within_layer = infinite;
   for (halvings_ = 0;; ++halvings_, dt = 0.5 * (step_.t1 - step_.t0)) {
-    while (!try_step(dt)) {
-      shortened = false;
-      if (!(dt > 1e-15 * std::max(std::abs(t_), 1e-12 * weights_.time)))
-        return is_finite(step_.x1) ? Status::stalled : Status::not_finite;
-    }
-    if (step_.t1 == t_) return Status::stalled;  // Odeint's explicit steppers accept a step that does not move
+    const double tried = dt;
+    if (const Status status = accepted_step(dt); status != Status::converged) return status;
+    if (step_.t1 - t_ < tried) shortened = false;
     const double length = step_.t1 - step_.t0;
     field_.rate(step_.x1, step_.dx1, step_.t1);
     if (const auto passage = passage_of_layer()) {

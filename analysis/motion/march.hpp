@@ -103,6 +103,9 @@ class March {
 
   bool try_step(double& dt);
   bool try_exact(double& dt);
+  double shortest_step() const;
+  Status accepted_step(double& dt);
+  bool step_at_floor(double shortest, double& dt);
   Eigen::MatrixXd smooth_transition();
   bool is_linearised();
   std::optional<double> passage_of_layer();
@@ -134,6 +137,7 @@ class March {
   double t_ = 0.0, dt_ = 0.0, dt_max_ = infinite;
   bool fresh_ = true, tracks_ = false, truncated_ = false, steep_ = false;
   long steps_ = 0, events_ = 0;
+  int at_floor_ = 0;  ///< steps in a row, see step_at_floor
   int halvings_ = 0;  ///< of the present step, for a layer or its derivative
   std::vector<Layer> layers_;
   Step step_;

@@ -224,12 +224,9 @@ void LoopField::solve_held(const State& x) {
       w_[i] = outputs(k);
       add_output(i, w_[i]);
     }
-    // The forces leave a rate of rounding size, on which a body at rest would creep. A curve that begins with infinite
-    // slope leaves rest in more than one way, from v = 0 exactly only late: there the rounding stays, unless several
-    // bodies hold one another.
+    // The forces leave a rate of rounding size, on which a body at rest would creep.
     for (const std::size_t i : holding_)
-      if (const auto only = held_state(i); only && (m > 1 || loop_->elements[i].steep_exponent() >= 1.0))
-        dX_[*only] = 0.0;
+      if (const auto only = held_state(i)) dX_[*only] = 0.0;
   }
   for (const std::size_t i : holding_) inputs_[i].drive = w_[i];
 }

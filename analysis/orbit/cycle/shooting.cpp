@@ -55,7 +55,9 @@ class Shooter {
     if (image.status != Status::converged) return image.status;
     VectorXd r = residual(image);
     bool fresh = false;
-    while (r.norm() > tolerance) {
+    // Without a derivative nothing filters the noise of the integration.
+    const auto goal = [&] { return no_derivative_ ? std::max(tolerance, 10.0 * rtol) : tolerance; };
+    while (r.norm() > goal()) {
       if (maps_ > options_.max_maps || map_.steps() > options_.max_steps) return Status::max_iterations;
       if (jacobian_.size() == 0) {
         if (const Status status = find_jacobian(rtol, r.size()); status != Status::converged) return status;
@@ -66,7 +68,7 @@ class Shooter {
         continue;
       }
       if (image.status == Status::interrupted) return image.status;
-      if (r.norm() < 100.0 * tolerance) break;  // the floor of the integration itself
+      if (r.norm() < 100.0 * goal()) break;  // the floor of the integration itself
       if (!fresh) {
         jacobian_.resize(0, 0);  // the kept Jacobian is too old
         continue;
@@ -161,13 +163,13 @@ class Shooter {
   long steps() const { return map_.steps(); }
 
  private:
-  /// A derivative by which to begin. Where a switch is grazed, or a curve of infinite slope is passed, there is none:
-  /// plain maps then, which Broyden's updates improve.
+  /// A derivative by which to begin. Where a switch is grazed, or a curve of infinite slope is passed, there is none,
+  /// or the implicit steps that carry it fail: plain maps then, which Broyden's updates improve.
   Status find_jacobian(double rtol, Eigen::Index size) {
     if (!no_derivative_) {
       const Status status = linearise(std::max(loose_tolerance(rtol, loosest), 1e-8));
       if (status == Status::converged && linear_.flow_defect <= lost) return status;
-      if (status != Status::converged && status != Status::stalled) return status;
+      if (status == Status::interrupted || status == Status::max_iterations) return status;
       no_derivative_ = true;
     }
     jacobian_ = MatrixXd::Zero(size, size);
@@ -181,7 +183,8 @@ class Shooter {
     const VectorXd step = newton_step(r);
     LoopState trial = state_;
     double damping = 1.0;
-    for (int halvings = 0; halvings < (fresh ? 6 : 1); ++halvings, damping *= 0.5) {
+    const int most_halvings = fresh && !no_derivative_ ? 6 : 1;
+    for (int halvings = 0; halvings < most_halvings; ++halvings, damping *= 0.5) {
       trial.x = chart_->lift(state_.x, damping * step);
       const auto next = map(trial);
       if (next.status == Status::interrupted) {

@@ -9,18 +9,11 @@ namespace limcycle {
 
 RestWatch::Verdict RestWatch::look(double t, const State& x, const State& dx) {
   if (t < next_) return Verdict::moving;
-  ++samples_;
-  next_ = t + std::max(0.5 * (t - since_), interval());
+  next_ = t + std::max(0.5 * (t - since_), slow_);
   steady_ = rates_constant(dx) ? steady_ + 1 : 0;
   calm_ = rates_fade(t, dx) ? calm_ + 1 : 0;
   still_ = stays(t, x) ? still_ + 1 : 0;
   return calm_ >= 3 || still_ >= 3 ? Verdict::at_rest : steady_ >= 4 ? Verdict::steady : Verdict::moving;
-}
-
-double RestWatch::interval() const {
-  constexpr double golden = 0.6180339887498949;
-  const double turns = golden * static_cast<double>(samples_);
-  return slow_ * (1.0 + turns - std::floor(turns));
 }
 
 bool RestWatch::rates_constant(const State& dx) {

@@ -8,13 +8,12 @@
 namespace limcycle {
 
 /// Watches if a motion dies out, by samples at least the slowest time constant and a third of the time since the start,
-/// or since the last switch, apart, at uneven intervals: a cycle that switches once between two samples would otherwise
-/// be sampled at the same phase each time, and seem to stand still. Rest shows by either of two signs, three times in a
-/// row:
+/// or since the last switch, apart. Rest shows by either of two signs, three times in a row:
 /// - the displacement that the rates would cause in the same time again fades, compared with the size of the state.
 ///   Rates as small as the noise of the integration count as none.
-/// - on the mean since the last sample, no rate is more than that noise. A body at rest on a bristle may tremble, and
-///   even creep, for ever within the tolerances, with momentary rates that are those of the bristle.
+/// - on the mean since the last sample, no rate is more than that noise, and nothing has switched. A body at rest on a
+///   bristle may tremble, and even creep, for ever within the tolerances, with momentary rates that are those of the
+///   bristle. (A cycle with long stick has few steps, and samples of it may all fall on the same switch.)
 /// A body that sticks while an integrator winds up shows neither: in its slowest time constant, the integrator moves by
 /// a good part of its size.
 class RestWatch {
@@ -32,16 +31,14 @@ class RestWatch {
   /// is looked at on the scale of that motion, not of the wait.
   void switched(double t) {
     since_ = t;
-    next_ = std::min(next_, t + interval());
+    still_ = 0;
+    next_ = std::min(next_, t + slow_);
   }
   /// The largest of the rates, in sizes per slowest time constant.
   double rate(const State& dx) const;
   double noise() const { return noise_; }  ///< rates as small as that count as none
 
  private:
-  /// The shortest time to the next sample: one to two slowest time constants, by fractions that do not repeat.
-  double interval() const;
-
   State sizes_;
   double slow_, noise_, since_ = 0.0, next_ = 0.0, last_ = infinite;
   bool rates_constant(const State& dx);
@@ -51,7 +48,6 @@ class RestWatch {
   double looked_ = 0.0;
   State rates_before_, before_;
   int calm_ = 0, still_ = 0, steady_ = 0;
-  long samples_ = 0;
 };
 
 /// Speed above which a friction law counts as rubbing: a hundredth of its own scale, or for a law without one 1e-8 of

@@ -116,14 +116,16 @@ TEST_CASE("rest watch: a motion that fades after a long wait is looked at on its
   CHECK(rested < 100.0);
 }
 
-TEST_CASE("rest watch: a cycle that switches once between two samples moves") {
+TEST_CASE("rest watch: a cycle with long stick, sampled each time as it breaks away, moves") {
   RestWatch watch({1.0, 1.0}, 1.0, 1e-6);
-  const auto turning = [](int i) { return 2.0 * M_PI * (i % 11) / 11.0; };  // a period of 1.1 s, in steps of 0.1 s
-  for (int i = 0; i < 5000; ++i) {
-    const double t = 0.1 * i, angle = turning(i);
-    if (i % 11 == 0) watch.switched(t);
-    REQUIRE(watch.look(t, {std::cos(angle), std::sin(angle)}, {-std::sin(angle), std::cos(angle)}) ==
-            RestWatch::Verdict::moving);
+  const double period = 1.1, slip = 0.1;
+  for (int k = 0; k < 1000; ++k) {
+    const double sticks = period * k, breaks_away = period * (k + 1) - slip;
+    watch.switched(sticks);
+    // The integrator winds up from -0.5 to 0.5 in a single step.
+    watch.look(sticks, {0.3, -0.5}, {0.0, 1.0});
+    REQUIRE(watch.look(breaks_away, {0.3, 0.5}, {0.0, 1.0}) != RestWatch::Verdict::at_rest);
+    watch.switched(breaks_away);
   }
 }
 
