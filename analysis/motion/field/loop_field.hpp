@@ -94,7 +94,6 @@ class LoopField {
   Eigen::VectorXd held_and_drive(const State& x, const Eigen::VectorXd& unknowns);
   double drive_at_turn(std::size_t i) const;
   void arrest(State& x, std::size_t i);
-  bool is_past_guard(const State& x, std::size_t i) const;  ///< by the inputs found last
   bool arrests_at(std::size_t i, std::size_t guard) const;
   Eigen::VectorXd hold_residual() const;
   Eigen::VectorXd outputs_by_superposition(const State& x);

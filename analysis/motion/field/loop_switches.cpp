@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -65,12 +64,6 @@ void LoopField::arrest(State& x, std::size_t i) {
   Eigen::Map<Eigen::VectorXd>(x.data(), column.size()) -= column * (inputs_[i].v / (port.C_v * column).value());
 }
 
-bool LoopField::is_past_guard(const State& x, std::size_t i) const {
-  std::vector<double> values(static_cast<std::size_t>(loop_->elements[i].guards(modes_[i])));
-  loop_->elements[i].guard(inputs_[i], modes_[i], own_states(x, i), values);
-  return std::ranges::any_of(values, [](double value) { return value < 0.0; });
-}
-
 void LoopField::fire(State& x, double t, std::size_t guard) {
   const std::size_t i = owner(guard), k = first_guard_of(i, guard);
   evaluate(x, t);
@@ -81,15 +74,11 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
     find_inputs(x);
   }
   const Mode before = modes_[i];
-  const bool was_held = held(i) == Held::rate;
   const Element& element = loop_->elements[i];
   if (element.has_modes()) modes_[i] = element.next(inputs_[i], modes_[i], own_states(x, i), static_cast<int>(k));
   // The located v is zero to the accuracy of the location: remove the remainder. Otherwise a body that reaches v = 0
-  // and continues as before would already be past its guard, and switch for ever; so would one that breaks away with a
-  // rounding of the other sign.
-  if (held(i) == Held::rate || (before == modes_[i] && slides_through_zero(*loop_, i)) ||
-      (was_held && is_past_guard(x, i)))
-    arrest(x, i);
+  // and continues as before would already be past its guard, and switch for ever.
+  if (held(i) == Held::rate || (before == modes_[i] && slides_through_zero(*loop_, i))) arrest(x, i);
   if (held(i) == Held::rate)
     for (const std::size_t only : held_states()) x[only] = 0.0;
 }

@@ -29,7 +29,7 @@ void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& ba
   }
   if (options.stop && options.stop()) return;
   if (result.predictions.empty()) result.absence = absence(loop, box);
-  if (!options.nyquist) return;
+  if (!options.nyquist || found.status == Status::not_finite) return;  // no curve to draw
   std::vector<SearchPoint> roots;
   for (const Root& root : found.roots) roots.push_back({root.amplitude, root.frequency});
   result.nyquist = nyquist_picture(loop, balance, box, roots, options.stop);

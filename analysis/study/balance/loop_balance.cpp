@@ -350,7 +350,14 @@ Eigen::VectorXd LoopBalance::linear_state(double amplitude, double frequency, do
 }
 
 LoopState LoopBalance::state(double amplitude, double frequency, double scale) const {
-  return without_history(*loop_, linear_state(amplitude, frequency, 0.0, scale));
+  bool exact = false;
+  const Port& port = loop_->ports[main_];
+  const Eigen::VectorXd mean = mean_state(amplitude, frequency, 1e-9, exact);
+  // A loop with a bias and its mirror image start from mirrored states.
+  const double bias = (port.C_v * mean + port.c_v * loop_->external).value();
+  const double rounding =
+      1e-9 * (port.C_v.cwiseAbs() * mean.cwiseAbs() + port.c_v.cwiseAbs() * loop_->external.cwiseAbs()).value();
+  return without_history(*loop_, linear_state(amplitude, frequency, 0.0, bias > rounding ? -scale : scale));
 }
 
 }  // namespace limcycle
