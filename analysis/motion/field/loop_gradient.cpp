@@ -110,9 +110,14 @@ void LoopField::output_gradients(const State& x) {
 
 void LoopField::jacobian(const State& x, Eigen::MatrixXd& J, double t, State& dfdt) {
   evaluate(x, t);
+  const auto still = [&] {  // as in the rates
+    for (std::size_t i = 0; i < ne_; ++i)
+      if (const auto only = held_state(i)) J.row(static_cast<Index>(*only)).setZero();
+  };
   if (plain_ && !signals_) {
     dfdt.assign(size_, 0.0);
-    return plain_->jacobian(x, modes_, inputs_, slopes_, J);
+    plain_->jacobian(x, modes_, inputs_, slopes_, J);
+    return still();
   }
   output_gradients(x);
   const auto size = static_cast<Index>(size_), n = static_cast<Index>(n_);
@@ -123,6 +128,7 @@ void LoopField::jacobian(const State& x, Eigen::MatrixXd& J, double t, State& df
     for (const auto& [row, b] : ports_[i].B)
       J.row(static_cast<Index>(row)) += b * w_gradient_.row(static_cast<Index>(i)).head(size);
   J.bottomRows(size - n) = z_gradient_.leftCols(size);
+  still();
   dfdt.assign(size_, 0.0);
   if (!signals_) return;
   Eigen::Map<Eigen::VectorXd> time(dfdt.data(), size);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -60,6 +61,32 @@ TEST_CASE("a stuck body stays exactly where it is for a million seconds") {
   CHECK(march.x()[0] == Approx(0.3).epsilon(1e-15));
   CHECK(march.x()[1] == 0.0);
   CHECK(march.events() == 0);
+}
+
+TEST_CASE("a body on a curve of infinite slope breaks away after a long wait, and was exactly still until then") {
+  // In N, m, s. Within the rounding of t = 2000 s its velocity exceeds the tolerance.
+  auto law = stribeck(0.890051, 0.424566, 0.0259347);
+  law.delta = 0.5;
+  law.sigma2 = 0.0140579;
+  LoopParts parts = servo_parts(law);
+  parts.plant = Mass{0.000469045, 0.0, 0.0};
+  parts.controller = pid(28.8061, 479.098, 0.2426);
+  const Loop loop = build_loop(parts);
+  for (const double rtol : {1e-6, 1e-7, 1e-9, 3e-12}) {
+    LoopField field(loop);
+    March march(field, StepperKind::automatic, loop_weights(loop, rtol));
+    LoopState start = displaced(loop, 8.917e-7);
+    field.modes() = start.modes;
+    march.begin(start.x, 0.0);
+    int slips = 0;
+    while (slips < 6) {
+      REQUIRE(march.step(1e5) == Status::converged);
+      REQUIRE(march.t() < 1e5);
+      if (field.holds(0)) CHECK(march.x()[1] == 0.0);
+      if (march.last().switched && !field.holds(0)) ++slips;
+    }
+    CHECK(march.t() > 2000.0);
+  }
 }
 
 TEST_CASE("events are located to the accuracy of the stepper: order of the switching time") {

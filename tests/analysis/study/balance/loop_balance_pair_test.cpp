@@ -4,6 +4,7 @@
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/loop_balance.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/tests/analysis/predictions.hpp"
 #include "limcycle/tests/loops.hpp"
@@ -138,4 +139,17 @@ TEST_CASE("branches of an amplitude are the monotone pieces of what drives it") 
   CHECK(three[0].amplitude < crest);
   CHECK(three[1].amplitude > crest);
   CHECK(three[2].amplitude > crest + 2.0 * turn);
+}
+
+TEST_CASE("loop balance: a belt that runs the other way starts from the mirrored state") {
+  const auto at_speed = [](double speed) {
+    LoopParts parts;
+    parts.plant = Belt{1.0, 2.0, 0.1, speed};
+    parts.friction = stribeck(1.5, 1.0, 0.1);
+    return build_loop(parts);
+  };
+  const Loop one = at_speed(0.2), other = at_speed(-0.2);
+  const LoopState a = LoopBalance(one).state(0.3, 1.4), b = LoopBalance(other).state(0.3, 1.4);
+  REQUIRE(a.x.size() == b.x.size());
+  for (std::size_t i = 0; i < a.x.size(); ++i) CHECK(b.x[i] == Approx(-a.x[i]).epsilon(1e-9).margin(1e-12));
 }
