@@ -38,7 +38,7 @@ LoopState Surroundings::farther_out(double factor) const {
 
 bool Surroundings::attracts() {
   constexpr double aside = 0.01, left = 0.05;
-  constexpr int periods = 8;
+  constexpr int periods = 24;
   const State sizes = typical_sizes(loop_);
   const auto distance = [&](const State& x) {
     double largest = 0.0;
@@ -54,8 +54,9 @@ bool Surroundings::attracts() {
     const LoopState other = farther_out(side);
     const double before = distance(other.x);
     auto at = map.approach(other);
-    for (int k = 0; k < periods && at.status == Status::converged; ++k) at = map(at.state);
-    back = back && at.status == Status::converged && distance(at.state.x) < left * before;
+    const auto is_back = [&] { return distance(at.state.x) < left * before; };
+    for (int k = 0; k < periods && at.status == Status::converged && !is_back(); ++k) at = map(at.state);
+    back = back && at.status == Status::converged && is_back();
   }
   steps_ += map.steps();
   return back;

@@ -12,7 +12,7 @@ class Surroundings {
   Surroundings(const Loop& loop, const Cycle& cycle, const Section& section, const ShootingOptions& options,
                double rtol);
 
-  /// True if motions that begin 1 % farther out and 1 % nearer return to the cycle within a few periods. Decides where
+  /// True if motions that begin 1 % farther out and 1 % nearer return to the cycle within 24 periods. Decides where
   /// a multiplier does not exist, as for a Stribeck curve that begins with infinite slope.
   bool attracts();
   /// True if another periodic motion lies close: shooting from 2 % farther out, or nearer, finds it. `half`: by half

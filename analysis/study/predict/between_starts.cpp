@@ -80,6 +80,10 @@ void BetweenStarts::look_between(std::vector<Start> starts, const Ray& ray) {
   const auto calm = [&](const Start& start) {
     return outcome(start) == Outcome::rest || outcome(start) == Outcome::sliding;
   };
+  if (!starts.empty() && calm(starts.front()) && !over()) {
+    const double place = starts.front().place / apart;
+    probe(ray.state(place), ray.name(place));
+  }
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
     const Start &low = starts[i], &high = starts[i + 1];
     if (diverges(low) != diverges(high) && !knows_border(low, high)) bisect_divergence(low, high, ray);

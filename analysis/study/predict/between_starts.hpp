@@ -26,7 +26,9 @@ class BetweenStarts {
   /// Between neighbouring starts of which one diverges and the other does not, the border is bisected (in the logarithm
   /// of the position) and every motion on the way followed to its end, unless an unstable cycle is known there. Between
   /// neighbours that both come to rest or slide, motions begin at a ratio of about five and are followed until they
-  /// swing less than the lower neighbour: a stable cycle may lie between.
+  /// swing less than the lower neighbour: a stable cycle may lie between. One motion more begins at a fifth of the
+  /// lowest start if that came to rest: from smaller displacements a body does not slide to its set-point, but waits
+  /// for the integrator.
   void look_between(std::vector<Start> starts, const Ray& ray);
 
   /// Simulates from just inside and just outside every unstable cycle not treated before (1 % nearer to the rest point
