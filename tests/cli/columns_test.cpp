@@ -56,19 +56,16 @@ TEST_CASE("columns: predict on every case that has a cycle or none") {
 
 TEST_CASE("columns: every other question, on cases that are answered soon") {
   const Scratch scratch;
-  for (const auto& name : limcycle::test::some_of(
-           std::vector<std::string>{"relay-integrator.toml", "relay-third-order.toml", "backlash.toml"})) {
+  for (const auto& name : some_of(Names{"relay-integrator.toml", "relay-third-order.toml", "backlash.toml"})) {
     check_page({"margin", shipped(name)});
     check_page({"sensitivity", shipped(name), "--local"});
     check_page({"precision", shipped(name), "--no-stiffness"});
   }
   for (const auto& name : some_of(Names{"df-lugre.toml", "relay-third-order.toml", "pid-lugre.toml"}))
     check_page({"df", shipped(name)});
-  for (const auto& name : limcycle::test::some_of(
-           std::vector<std::string>{"pid-lugre.toml", "saturated-servo.toml", "two-mass-drive.toml"}))
+  for (const auto& name : some_of(Names{"pid-lugre.toml", "saturated-servo.toml", "two-mass-drive.toml"}))
     check_page({"simulate", shipped(name)});
-  for (const auto& name : limcycle::test::some_of(
-           std::vector<std::string>{"pid-lugre.toml", "belt-coulomb.toml", "valve-stiction.toml", "backlash.toml"}))
+  for (const auto& name : some_of(Names{"pid-lugre.toml", "belt-coulomb.toml", "valve-stiction.toml", "backlash.toml"}))
     check_page({"dissipativity", shipped(name)});
   check_page({"adequate", shipped("belt-coulomb.toml"), "--spread", "0"});
   const std::string relay = shipped("relay-third-order.toml"), store = scratch.file("s.db");

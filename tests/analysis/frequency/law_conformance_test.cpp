@@ -1,10 +1,12 @@
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <vector>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 #include "limcycle/tests/law_march.hpp"
+#include "limcycle/tests/share.hpp"
 
 // Properties that the describing function of every friction law must have.
 using namespace limcycle;
@@ -46,7 +48,7 @@ TEST_CASE("friction laws: the describing function converges, is dissipative wher
   int slow = 0, answered = 0;
   for_laws([&](const auto& law, const Sample& sample) {
     for (const DfPoint& at : points_of(law)) {
-      for (const double bias : {0.0, 0.4, 1.5}) {
+      for (const double bias : some_of(std::vector<double>{0.0, 0.4, 1.5})) {
         if (bias > 0.0 && !sample.sustained) continue;
         if (bias > 1.0 && at.amplitude > 2.0 * length(law)) continue;  // steady sliding without end
         const DfPoint point{at.amplitude, at.frequency, bias * at.amplitude * at.frequency};

@@ -2,11 +2,13 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <vector>
 
 #include "limcycle/analysis/energy/passivity/adversary.hpp"
 #include "limcycle/analysis/energy/passivity/certificate.hpp"
 #include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
+#include "limcycle/tests/share.hpp"
 
 // Passivity of the laws: certificates, counter-examples, and neither.
 using namespace limcycle;
@@ -154,7 +156,7 @@ TEST_CASE("passivity: the cycle of the literature takes (Fs^2 - Fc^2)/k out of o
 }
 
 TEST_CASE("passivity: leuven's threshold is sigma2/sigma1 = (Fs/Fc)^n - 1") {
-  for (const double n : {1.0, 2.0}) {
+  for (const double n : some_of(std::vector<double>{1.0, 2.0})) {
     const double ratio = std::pow(1.5, n) - 1.0;
     INFO("n = " << n);
     CHECK(passivity(leuven(n, 50.0, 50.0 * ratio * (1.0 + 1e-6))).passive == Passive::yes);
