@@ -63,6 +63,23 @@ class Rows {
 
 constexpr double dependent = 1e-6;  ///< share below which a row is too dependent to become a state
 
+/// The modes of a matrix as real columns: of a complex pair of eigenvectors the real and the imaginary part. In them
+/// the matrix is as large as its eigenvalues, which a mixture of states may exceed by orders of magnitude. The unit
+/// matrix where eigenvectors are nearly dependent.
+MatrixXd modes_of(const MatrixXd& A) {
+  constexpr double nearly_dependent = 1e-6;
+  const Index n = A.rows();
+  const auto pairs = eigen_pairs(A);
+  MatrixXd V(n, n);
+  for (Index k = 0; k < n; ++k) {
+    const Eigen::VectorXcd vector = pairs.vectors.col(k);
+    V.col(k) = pairs.values(k).imag() < 0.0 ? VectorXd(vector.imag()) : VectorXd(vector.real());
+  }
+  const VectorXd values = singular_values(V).values;
+  if (!V.allFinite() || !(values.minCoeff() > nearly_dependent * values.maxCoeff())) return MatrixXd::Identity(n, n);
+  return V;
+}
+
 /// The matrix T; empty if displacement and velocity are not independent.
 MatrixXd states_that_rub(const PlantModel& plant) {
   const Index n = plant.A.rows();
@@ -74,6 +91,7 @@ MatrixXd states_that_rub(const PlantModel& plant) {
   if (rows.independent(plant.C_v) < dependent) return {};
   rows.add(plant.C_v);
   if (n > 2 && rows.independent(plant.C_y) > dependent) rows.add(plant.C_y);
+  const Index free = n - rows.rows().rows();
   while (rows.rows().rows() < n) {
     Index best = 0;
     for (Index i = 1; i < n; ++i)
@@ -82,6 +100,10 @@ MatrixXd states_that_rub(const PlantModel& plant) {
   }
   MatrixXd T = rows.rows();
   for (Index i = 2; i < n; ++i) T.row(i) -= (T.row(i) * plant.B_F).value() / reach * plant.C_v;
+  if (free == 0) return T;
+  const MatrixXd changed = T * plant.A * solve_columns(T, MatrixXd::Identity(n, n));
+  if (!changed.allFinite()) return T;
+  T.bottomRows(free) = solve_columns(modes_of(changed.bottomRightCorner(free, free)), MatrixXd(T.bottomRows(free)));
   return T;
 }
 

@@ -57,6 +57,30 @@ TEST_CASE("rubbing coordinates: friction acts on one state, and the responses ar
   }
 }
 
+TEST_CASE("rubbing coordinates: what is left over is written in its modes, however the case mixes it") {
+  // Two masses on a stiff spring, friction on the motor: the load on its spring, in N, m, s.
+  const double motor = 1.4e-6, load = 4.7e-6, k = 60.0, d = 1.5e-3;
+  Eigen::Matrix4d A, mix;
+  A << 0.0, 1.0, 0.0, 0.0, -k / motor, -d / motor, k / motor, d / motor,  //
+      0.0, 0.0, 0.0, 1.0, k / load, d / load, -k / load, -d / load;
+  mix << 0.3, -1.2, 0.7, 0.4, 1.1, 0.4, -0.2, -0.9, -0.5, 0.9, 1.3, 0.2, 0.6, -0.3, 0.5, 1.0;
+  const Eigen::Matrix4d back = mix.inverse();
+  StateSpacePlant plant;
+  plant.A = mix * A * back;
+  plant.B = mix * Eigen::Vector4d(0.0, 1.0 / motor, 0.0, 0.0);
+  plant.B_friction = plant.B;
+  plant.C = Eigen::RowVector4d(1.0, 0.0, 0.0, 0.0) * back;
+  plant.C_velocity = Eigen::RowVector4d(0.0, 1.0, 0.0, 0.0) * back;
+  const auto [changed, own] = rubbing_coordinates(plant.model());
+  const Eigen::Matrix2d left = changed.A.bottomRightCorner(2, 2);
+  const double frequency = std::sqrt(k / load), decay = 0.5 * d / load;
+  CHECK(left(0, 0) == Approx(-decay).epsilon(1e-5));
+  CHECK(left(1, 1) == Approx(-decay).epsilon(1e-5));
+  CHECK(std::abs(left(0, 1)) == Approx(std::sqrt(frequency * frequency - decay * decay)).epsilon(1e-6));
+  CHECK(left(1, 0) == Approx(-left(0, 1)).epsilon(1e-6));
+  CHECK((plant.A * own - own * changed.A).norm() < 1e-11 * plant.A.norm() * own.norm());
+}
+
 TEST_CASE("rubbing coordinates: plants that are of this form stay as they are") {
   CHECK(rubbing_coordinates(Mass{2.0, 0.1, 3.0}.model()).own_states.size() == 0);
   CHECK(rubbing_coordinates(TransferFunction{{1.0}, {2.0, 0.1, 3.0}, 0.0}.model()).own_states.size() == 0);
