@@ -106,6 +106,7 @@ class March {
   double shortest_step() const;
   Status accepted_step(double& dt);
   bool step_at_floor(double shortest, double& dt);
+  bool ends_within_error();
   Eigen::MatrixXd smooth_transition();
   bool is_linearised();
   std::optional<double> passage_of_layer();
@@ -133,7 +134,7 @@ class March {
   ErrorWeights weights_;
   std::optional<Section> section_;
   bool armed_ = false;
-  State x_, work_, unused_;
+  State x_, work_, repeat_error_;
   double t_ = 0.0, dt_ = 0.0, dt_max_ = infinite;
   bool fresh_ = true, tracks_ = false, truncated_ = false, steep_ = false;
   long steps_ = 0, events_ = 0;

@@ -20,6 +20,7 @@ namespace {
 /// Step limit of shooting before a motion is decided: this constant, plus a multiple of the motion's own steps.
 constexpr long steps_of_tries = 200'000, tries_per_step = 3;
 constexpr double settled_change = 1e-3;  ///< relative change of the swings of a motion that has all but settled
+constexpr int most_restarts = 3;         ///< with short steps, of a march that left the range of numbers
 constexpr long periods_of_a_try = 40;    ///< of return maps; most that converge take 5 to 20, up to 15 maps
 
 /// One run: simulation, and shooting whenever the swings look steady.
@@ -64,6 +65,8 @@ class Settling {
       return decided_ ? void() : look_for_irregular();
     }
     const Status status = march_.step(1e15);
+    // At rest steps grow until one of them leaves the range of numbers; a motion that grows passes the ceiling first.
+    if (status == Status::not_finite && restarts_++ < most_restarts) return march_.begin(march_.x(), march_.t());
     if (status == Status::not_finite) return decide(Outcome::divergence, "the state left the range of numbers");
     if (status == Status::chattering) {
       field_.rate(march_.x(), dx_, march_.t());
@@ -299,6 +302,7 @@ class Settling {
   double mismatch_ = 0.0;
   std::size_t next_try_ = 5, next_growth_ = 64;
   long tried_ = 0;  ///< steps of return maps
+  int restarts_ = 0;
   bool decided_ = false;
 };
 
