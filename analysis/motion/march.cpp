@@ -361,7 +361,7 @@ Status March::step(double t_end) {
   for (halvings_ = 0;; ++halvings_, dt = 0.5 * (step_.t1 - step_.t0)) {
     const double tried = dt;
     if (const Status status = accepted_step(dt); status != Status::converged) return status;
-    if (step_.t1 - t_ < tried) shortened = false;
+    if (step_.t1 != t_ + tried) shortened = false;  // a difference of times would be rounded
     const double length = step_.t1 - step_.t0;
     field_.rate(step_.x1, step_.dx1, step_.t1);
     if (const auto passage = passage_of_layer()) {
@@ -373,13 +373,8 @@ Status March::step(double t_end) {
     std::size_t guard = 0;
     const bool event = negative_within(guards_start_, from, to, guard);
     if (event) end_at(locate(guard, from, to));
-    if (event && !ends_within_error()) {
+    if ((event && !ends_within_error()) || (tracks_ && !is_linearised())) {
       shortened = truncated_ = false;
-      continue;
-    }
-    if (tracks_ && !is_linearised()) {
-      shortened = false;
-      truncated_ = false;
       continue;
     }
     dt_ = std::min(shortened ? std::max(dt, dt_) : dt, within_layer);

@@ -111,8 +111,7 @@ void LoopField::output_gradients(const State& x) {
 void LoopField::jacobian(const State& x, Eigen::MatrixXd& J, double t, State& dfdt) {
   evaluate(x, t);
   const auto still = [&] {  // as in the rates
-    for (std::size_t i = 0; i < ne_; ++i)
-      if (const auto only = held_state(i)) J.row(static_cast<Index>(*only)).setZero();
+    for (const std::size_t only : held_states()) J.row(static_cast<Index>(only)).setZero();
   };
   if (plain_ && !signals_) {
     dfdt.assign(size_, 0.0);

@@ -33,8 +33,8 @@ bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long 
   LoopField field(loop);
   field.modes() = far.modes;
   // So far out, swings are so slow that fast poles limit the steps of an explicit method.
-  const auto usual = choose_stepper(loop, rtol);
-  const auto kind = usual == StepperKind::exact || has_infinite_slope(loop) ? usual : StepperKind::rodas5p;
+  const bool usual = choose_stepper(loop, rtol) == StepperKind::exact || has_infinite_slope(loop);
+  const auto kind = usual ? StepperKind::automatic : StepperKind::rodas5p;
   March march(field, kind, loop_weights(loop, rtol));
   march.begin(far.x, 0.0);
   TurningPoints turning;
