@@ -112,6 +112,7 @@ class March {
   std::optional<double> passage_of_layer();
   void repeat(double h, State& out);
   double first_dt();
+  bool leaves_at_once(std::size_t guard, double fraction);
   bool negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard);
   double event_value(std::size_t guard, const State& x, double t);
   std::pair<double, double> crossing(std::size_t guard, double from, double to);

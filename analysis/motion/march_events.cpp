@@ -20,6 +20,15 @@ double March::event_value(std::size_t guard, const State& x, double t) {
   return guards_mid_[guard];
 }
 
+/// True if a guard that is zero at the start of the step is negative at that fraction of it: by a whole step of the
+/// method, since the interpolant of a body that slides off with ever growing force bends below zero, and would have it
+/// stop, break away and stop again at the same instant.
+bool March::leaves_at_once(std::size_t guard, double fraction) {
+  const double h = fraction * (step_.t1 - step_.t0);
+  repeat(h, work_);
+  return event_value(guard, work_, step_.t0 + h) < 0.0;
+}
+
 /// Searches quarters of the step for the first guard that has turned negative, and brackets it by fractions of the
 /// step.
 bool March::negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard) {
@@ -35,6 +44,8 @@ bool March::negative_within(const std::vector<double>& at_start, double& from, d
     candidates_.clear();
     for (std::size_t k = 0; k < at_start.size(); ++k)
       if (guards_end_[k] < 0.0) candidates_.push_back(k);
+    if (quarter == 1 && !candidates_.empty())
+      std::erase_if(candidates_, [&](std::size_t k) { return at_start[k] == 0.0 && !leaves_at_once(k, to); });
     if (watch_section && section_->value(work_) >= 0.0) candidates_.push_back(section_guard);
     if (!candidates_.empty()) {
       guard = first_of_candidates(at_start, from, to);

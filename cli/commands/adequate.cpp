@@ -72,6 +72,7 @@ AdequateReport compute(const Case& from, const LoopParts& parts, const AdequateF
   AdequateOptions options;
   options.tolerance = flags.tolerance;
   options.spread = flags.spread;
+  options.threads = flags.threads;
   options.predict = from.predict;
   options.predict.starts = std::min(options.predict.starts, starts_asked);
   options.predict.stop = interrupted;
@@ -111,6 +112,7 @@ int run(AdequateFlags flags) {
 
 void add_adequate(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<AdequateFlags>();
+  flags->threads = 0;  // laws are compared in parallel; the results do not depend on it
   CLI::App* command =
       add_command(program, action, "adequate", "The simplest law and the cheapest method that are adequate", true,
                   flags, [flags] { return run(*flags); });

@@ -37,6 +37,7 @@ PrecisionReport compute(const Case& from, const PrecisionFlags& flags) {
   options.cycle.predict = from.predict;
   options.cycle.predict.stop = options.work.stop = interrupted;
   options.stiffness = !flags.no_stiffness;
+  options.threads = flags.threads;
   options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
   catch_interrupts();
   return precision_of(from, options);
@@ -104,6 +105,7 @@ int run(PrecisionFlags flags) {
 
 void add_precision(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<PrecisionFlags>();
+  flags->threads = 0;  // methods run in parallel; only their CPU times depend on it
   CLI::App* command = add_command(program, action, "precision", "Accuracy and cost of every method", true, flags,
                                   [flags] { return run(*flags); });
   command->add_flag("--no-stiffness", flags->no_stiffness, "Leave out the runs over the stiffness of the bristles");

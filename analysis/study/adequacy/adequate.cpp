@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/adequacy/asked_scenes.hpp"
+#include "limcycle/analysis/sweep.hpp"
 
 namespace limcycle {
 namespace {
@@ -33,12 +35,8 @@ class LadderClimb {
 
   AdequateReport run() {
     if (!find_best()) return std::move(report_);
-    for (std::size_t i = 0; i < report_.laws.size() && !stopped(); ++i) {
-      tell(0.1 + 0.4 * static_cast<double>(i) / static_cast<double>(report_.laws.size()), report_.laws[i].name);
-      if (report_.laws[i].law) ask_methods(report_.laws[i]);
-    }
     find_best_over_spread();
-    find_least();
+    ask_laws();
     if (report_.least) find_cheapest();
     if (stopped()) report_.status = Status::interrupted;
     tell(1.0, "done");
@@ -63,6 +61,18 @@ class LadderClimb {
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
   void tell(double fraction, std::string_view what) const {
     if (options_.progress) options_.progress(fraction, what);
+  }
+
+  /// The same work for each of a number of laws or variations, on several threads.
+  void for_each(std::size_t count, double from, double to, std::string_view what,
+                const std::function<void(std::size_t)>& work) const {
+    SweepOptions each;
+    each.threads = options_.threads;
+    each.stop = options_.predict.stop;
+    each.progress = [&](std::size_t done, std::size_t total) {
+      tell(from + (to - from) * static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(total, 1)), what);
+    };
+    run_each(count, work, each);
   }
 
   const SceneAnswer& ask_at_own_values(const std::string& method, const Element& law) {
@@ -113,7 +123,26 @@ class LadderClimb {
     return by_shooting.seconds > patience && method != "simulation" && method != shooting;
   }
 
-  void ask_methods(const LawRung& rung) {
+  /// Each law by every method, and by shooting over the spread. Later laws of the ladder take longer and begin first.
+  void ask_laws() {
+    const std::size_t count = report_.laws.size();
+    std::vector<std::vector<AdequatePoint>> points(count);
+    std::vector<char> finished(count, false);
+    for_each(count, 0.3, 0.9, "laws", [&](std::size_t turn) {
+      const std::size_t i = count - 1 - turn;
+      if (report_.laws[i].law) ask_methods(report_.laws[i], points[i]);
+      for (AdequatePoint& point : points[i])
+        if (point.method == shooting && point.within) over_spread(point, i);
+      finished[i] = !stopped();
+    });
+    for (auto& of_law : points) std::ranges::move(of_law, std::back_inserter(report_.points));
+    for (std::size_t i = 0; i < count && finished[i] && !report_.least; ++i) {
+      const AdequatePoint* point = point_of(report_.laws[i].name, shooting);
+      if (point != nullptr && point->within) report_.least = i;
+    }
+  }
+
+  void ask_methods(const LawRung& rung, std::vector<AdequatePoint>& points) {
     const SceneAnswer by_shooting = ask_at_own_values(shooting, *rung.law);
     bool predicted = false;  // by a first-harmonic method, so that harmonic balance has a start
     for (const auto& method : scene_methods()) {
@@ -129,7 +158,7 @@ class LadderClimb {
       predicted = predicted || (point.answer.answered && point.answer.hunts());
       point.error = scene_error(method, point.answer, report_.best);
       judge(point, point.error, point.answer, report_.best, "");
-      report_.points.push_back(std::move(point));
+      points.push_back(std::move(point));
     }
   }
 
@@ -154,13 +183,13 @@ class LadderClimb {
   }
 
   void find_best_over_spread() {
-    for (std::size_t i = 0; i < variations_.size() && !stopped(); ++i) {
-      tell(0.5 + 0.2 * static_cast<double>(i) / static_cast<double>(variations_.size()), variations_[i].name);
-      best_.push_back(ask_at(i, shooting, *variations_[i].parts.friction));
-      if (!best_.back().answered && !stopped())
-        report_.notes.push_back(variations_[i].name + ": the case's own law gives no answer, omitted (" +
-                                best_.back().why + ")");
-    }
+    best_.assign(variations_.size(), unanswered("not asked"));
+    for_each(variations_.size(), 0.1, 0.3, "spread",
+             [&](std::size_t i) { best_[i] = ask_at(i, shooting, *variations_[i].parts.friction); });
+    for (std::size_t i = 0; i < variations_.size() && !stopped(); ++i)
+      if (!best_[i].answered)
+        report_.notes.push_back(variations_[i].name + ": the case's own law gives no answer, omitted (" + best_[i].why +
+                                ")");
   }
 
   /// The same rung made from a varied law.
@@ -185,16 +214,6 @@ class LadderClimb {
       point.worst = error;
       point.worst_at = variations_[i].name;
       judge(point, error, answer, best_[i], variations_[i].name);
-    }
-  }
-
-  void find_least() {
-    for (std::size_t i = 0; i < report_.laws.size() && !stopped(); ++i) {
-      tell(0.7 + 0.2 * static_cast<double>(i) / static_cast<double>(report_.laws.size()), report_.laws[i].name);
-      AdequatePoint* point = point_of(report_.laws[i].name, shooting);
-      if (point == nullptr || !point->within) continue;
-      over_spread(*point, i);
-      if (point->within && !stopped() && !report_.least) report_.least = i;
     }
   }
 

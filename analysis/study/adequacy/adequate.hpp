@@ -25,7 +25,8 @@ struct AdequateOptions {
   std::vector<SceneVariation> variations;  ///< unless empty, used instead of that spread
   std::string spread_rule;                 ///< how they were chosen, as text
   double patience = 2.0;                   ///< CPU seconds for one answer other than the reference
-  PredictOptions predict;                  ///< search box, starts, stop
+  int threads = 0;                         ///< 0: one per core
+  PredictOptions predict;                  ///< search box, starts; stop: called by several threads at once
   std::function<void(double, std::string_view)> progress;
 };
 

@@ -1,8 +1,10 @@
 #pragma once
 #include <deque>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "limcycle/analysis/study/adequacy/scene_answer.hpp"
 #include "limcycle/models/loop.hpp"
@@ -17,7 +19,8 @@ bool same_law(const Element& a, const Element& b);
 Loop scene_loop(const LoopParts& parts, const Element& law);
 
 /// The answers of methods for a case with other laws and other parameters, each computed once: a parameter that a law
-/// does not have can be varied without changing its answer.
+/// does not have can be varied without changing its answer. Calls from several threads are safe; those about the same
+/// law at the same place wait for each other.
 class AskedScenes {
  public:
   /// `patience`: CPU seconds for one answer.
@@ -31,17 +34,20 @@ class AskedScenes {
 
  private:
   struct Scene {
+    Scene(std::size_t place_, Element law_) : place(place_), law(std::move(law_)) {}
     std::size_t place;
     Element law;
     std::optional<SceneQuestions> questions;  ///< empty: the plant does not take this law
     std::string why;                          ///< the reason in that case
     std::map<std::string, SceneAnswer> answers;
+    std::mutex mutex;  ///< of the questions and answers
   };
   Scene& scene(std::size_t place, const LoopParts& parts, const Element& law);
 
   PredictOptions options_;
   double patience_;
   std::deque<Scene> scenes_;
+  std::mutex mutex_;  ///< of the list of scenes
 };
 
 }  // namespace limcycle

@@ -11,6 +11,7 @@
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 #include "limcycle/analysis/study/precision/work_point.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"
+#include "limcycle/analysis/study/predict/work_share.hpp"
 
 namespace limcycle {
 namespace {
@@ -53,6 +54,7 @@ Roots by_composite(const Loop& loop, const PredictOptions& options) {
   const SearchBox box = box_of(loop, options);
   search.frequency_min = box.frequency_min;
   search.frequency_max = box.frequency_max;
+  search.max_steps = work_share(0).composite_steps;
   search.stop = options.stop;
   const CompositeSearch found = CompositeBalance(loop).find(search);
   for (const auto& root : found.roots)

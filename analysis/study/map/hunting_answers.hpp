@@ -25,7 +25,7 @@ struct HuntingQuestion {
   std::vector<double> displacements;  ///< of y, one start each
   double amplitude_floor = 1e-9, amplitude_ceiling = 1e6;
   double accuracy = 1e-4;  ///< relative, of amplitude and period
-  double rtol = 1e-8;      ///< of the simulations
+  double rtol = 1e-7;      ///< of the simulations
   Isa isa = best_isa();
   std::function<bool()> stop;
 };

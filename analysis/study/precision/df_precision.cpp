@@ -76,7 +76,7 @@ class PrecisionOfDf {
   }
 
   void verify() {
-    const int samples = std::max(2 * options_.largest_fft, 1024);
+    const int samples = std::max(options_.largest_fft, 1024);
     result_.verified_by = "FFT of " + std::to_string(samples) + " uniform samples";
     for (std::size_t i = 0; i < references_.size(); ++i) {
       if (options_.work.stop && options_.work.stop()) return;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/sweep.hpp"
 #include "limcycle/models/delay.hpp"
 
 namespace limcycle {
@@ -22,44 +25,93 @@ TimeDomainLoop treat_in_time(const Loop& loop, std::vector<std::string>& notes) 
   return treated;
 }
 
+/// Tasks that do not depend on each other, each with results of its own, so that the report is in the same order for
+/// any number of threads.
 class PrecisionStudy {
  public:
-  PrecisionStudy(const PrecisionOptions& options) : options_(options) {}
+  explicit PrecisionStudy(const PrecisionOptions& options) : options_(options) {}
 
   void ask_cycle(const LoopParts& parts) {
-    const Loop loop = build_loop(parts);
-    const TimeDomainLoop time = treat_in_time(loop, report_.notes);
-    tell(0.0, "reference cycle");
-    WorkChart chart;
+    loop_.emplace(build_loop(parts));
+    time_.emplace(treat_in_time(*loop_, report_.notes));
+    if (options_.progress) options_.progress(0.0, "reference cycle");
+    WorkChart& chart = report_.cycle_chart.emplace();
     chart.question = "cycle";
-    report_.cycle = cycle_reference(time.loop, options_.cycle.predict, options_.cycle.check_steps, chart.why);
+    report_.cycle = cycle_reference(time_->loop, options_.cycle.predict, options_.cycle.check_steps, chart.why);
     if (stopped()) chart.why = "interrupted";
-    if (report_.cycle) {
-      const CycleReference& reference = *report_.cycle;
-      chart.answered = reference.verified();
-      chart.made_by = reference.made_by;
-      chart.verified_by = reference.verified_by;
-      chart.agreement = reference.agreement;
-      chart.floor = reference.error;
-    }
-    if (chart.answered) {
-      auto methods = stepper_methods(time.loop, *report_.cycle, options_.cycle);
-      methods.push_back(shooting_method(time.loop, *report_.cycle, options_.cycle));
-      methods.push_back(balance_method(loop, *report_.cycle, options_.cycle));
-      std::ranges::move(first_harmonic_methods(loop, *report_.cycle, options_.cycle), std::back_inserter(methods));
-      std::ranges::copy(options_.more, std::back_inserter(methods));
-      run_all(methods, chart, 0.05, 0.5);
-    }
-    conclude(chart);
-    report_.cycle_chart = std::move(chart);
+    if (!report_.cycle) return;
+    const CycleReference& reference = *report_.cycle;
+    chart.answered = reference.verified();
+    chart.made_by = reference.made_by;
+    chart.verified_by = reference.verified_by;
+    chart.agreement = reference.agreement;
+    chart.floor = reference.error;
+    if (!chart.answered) return;
+    methods_ = stepper_methods(time_->loop, reference, options_.cycle);
+    methods_.push_back(shooting_method(time_->loop, reference, options_.cycle));
+    methods_.push_back(balance_method(*loop_, reference, options_.cycle));
+    std::ranges::move(first_harmonic_methods(*loop_, reference, options_.cycle), std::back_inserter(methods_));
+    std::ranges::copy(options_.more, std::back_inserter(methods_));
+    results_.resize(methods_.size());
+    for (std::size_t i = 0; i < methods_.size(); ++i)
+      tasks_.emplace_back([this, i] { results_[i] = run_method(methods_[i], options_.work); });
   }
 
   void ask_describing_function(const Element& element, const std::vector<DfPoint>& points) {
-    tell(0.5, "describing functions");
-    DfPrecisionOptions own = options_.df;
-    own.work = options_.work;
-    auto found = df_precision(element, points, own);
-    WorkChart chart;
+    tasks_.emplace_back([this, &element, &points] {
+      DfPrecisionOptions own = options_.df;
+      own.work = options_.work;
+      df_ = df_precision(element, points, own);
+    });
+  }
+
+  void ask_stiffness(const LoopParts& parts) {
+    ladder_ = stiffness_ladder(parts);
+    if (ladder_.empty() || ladder_.front().loop.delay > 0.0) return;
+    stiffness_.resize(ladder_.size());
+    for (std::size_t i = 0; i < ladder_.size(); ++i) tasks_.emplace_back([this, i] { run_stiffness(i); });
+  }
+
+  PrecisionReport run() {
+    SweepOptions each;
+    each.threads = options_.threads;
+    each.stop = options_.work.stop;
+    if (options_.progress)
+      each.progress = [&](std::size_t done, std::size_t total) {
+        options_.progress(
+            0.05 + 0.95 * static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(total, 1)), "methods");
+      };
+    run_each(
+        tasks_.size(), [&](std::size_t i) { tasks_[i](); }, each);
+    if (report_.cycle_chart) {
+      for (auto& points : results_) std::ranges::move(points, std::back_inserter(report_.cycle_chart->points));
+      conclude(*report_.cycle_chart);
+    }
+    if (df_) chart_describing_function();
+    for (auto& one : stiffness_) {
+      std::ranges::move(one.points, std::back_inserter(report_.stiffness.points));
+      std::ranges::move(one.notes, std::back_inserter(report_.stiffness.notes));
+    }
+    if (stopped()) report_.status = Status::interrupted;
+    return std::move(report_);
+  }
+
+ private:
+  bool stopped() const { return options_.work.stop && options_.work.stop(); }
+
+  void run_stiffness(std::size_t rung) {
+    CycleMethodsOptions own = options_.cycle;
+    own.tolerances = options_.stiff_tolerances;
+    own.periods = options_.stiff_periods;
+    own.max_steps = options_.stiff_max_steps;
+    WorkOptions work = options_.work;
+    work.repeats = 1;
+    stiffness_[rung] = stiffness_study({ladder_[rung]}, own, work, report_.cycle);
+  }
+
+  void chart_describing_function() {
+    DfPrecision& found = *df_;
+    WorkChart& chart = report_.df_chart.emplace();
     chart.question = "describing-function";
     chart.answered = !found.points.empty() && found.verified();
     chart.made_by = found.made_by;
@@ -74,48 +126,17 @@ class PrecisionStudy {
     report_.notes.insert(report_.notes.end(), found.notes.begin(), found.notes.end());
     report_.df_points = std::move(found.points);
     conclude(chart);
-    report_.df_chart = std::move(chart);
-  }
-
-  void ask_stiffness(const LoopParts& parts) {
-    const auto ladder = stiffness_ladder(parts);
-    if (ladder.empty() || ladder.front().loop.delay > 0.0) return;
-    CycleMethodsOptions own = options_.cycle;
-    own.tolerances = options_.stiff_tolerances;
-    own.periods = options_.stiff_periods;
-    own.max_steps = options_.stiff_max_steps;
-    WorkOptions work = options_.work;
-    work.repeats = 1;
-    for (std::size_t i = 0; i < ladder.size() && !stopped(); ++i) {
-      tell(0.6 + 0.4 * static_cast<double>(i) / static_cast<double>(ladder.size()), "stiffness");
-      StiffnessStudy one = stiffness_study({ladder[i]}, own, work, report_.cycle);
-      std::ranges::move(one.points, std::back_inserter(report_.stiffness.points));
-      std::ranges::move(one.notes, std::back_inserter(report_.stiffness.notes));
-    }
-  }
-
-  bool stopped() const { return options_.work.stop && options_.work.stop(); }
-
-  PrecisionReport take() {
-    if (stopped()) report_.status = Status::interrupted;
-    tell(1.0, "done");
-    return std::move(report_);
-  }
-
- private:
-  void tell(double fraction, std::string_view what) const {
-    if (options_.progress) options_.progress(fraction, what);
-  }
-
-  void run_all(const std::vector<WorkMethod>& methods, WorkChart& chart, double from, double to) {
-    for (std::size_t i = 0; i < methods.size() && !stopped(); ++i) {
-      tell(from + (to - from) * static_cast<double>(i) / static_cast<double>(methods.size()), methods[i].name);
-      auto more = run_method(methods[i], options_.work);
-      std::ranges::move(more, std::back_inserter(chart.points));
-    }
   }
 
   const PrecisionOptions& options_;
+  std::optional<Loop> loop_;  // these two outlive the methods
+  std::optional<TimeDomainLoop> time_;
+  std::vector<WorkMethod> methods_;              ///< for the cycle
+  std::vector<std::vector<WorkPoint>> results_;  ///< of each of them
+  std::optional<DfPrecision> df_;
+  std::vector<StiffLoop> ladder_;
+  std::vector<StiffnessStudy> stiffness_;  ///< of each of its rungs
+  std::vector<std::function<void()>> tasks_;
   PrecisionReport report_;
 };
 
@@ -136,9 +157,9 @@ PrecisionReport precision(const LoopParts* parts, const Element* element, const 
                           const PrecisionOptions& options) {
   PrecisionStudy study(options);
   if (parts != nullptr) study.ask_cycle(*parts);
-  if (element != nullptr && !study.stopped()) study.ask_describing_function(*element, points);
-  if (parts != nullptr && options.stiffness && !study.stopped()) study.ask_stiffness(*parts);
-  return study.take();
+  if (element != nullptr) study.ask_describing_function(*element, points);
+  if (parts != nullptr && options.stiffness) study.ask_stiffness(*parts);
+  return study.run();
 }
 
 }  // namespace limcycle

@@ -19,8 +19,9 @@ struct PrecisionOptions {
   int stiff_periods = 4;
   long stiff_max_steps = 400000;
   bool stiffness = true;
-  WorkOptions work;                                        ///< stop is used throughout
-  std::vector<WorkMethod> more{};                          ///< further methods for the cycle, rated like the others
+  int threads = 1;                 ///< 0: one per core. More disturb each other's times a little
+  WorkOptions work;                ///< stop is used throughout, by all threads
+  std::vector<WorkMethod> more{};  ///< further methods for the cycle, rated like the others
   std::function<void(double, std::string_view)> progress;  ///< fraction done (0..1), current activity
 };
 

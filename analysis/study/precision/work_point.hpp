@@ -65,7 +65,7 @@ struct WorkOptions {
   std::function<void()> done;  ///< called after every setting
 };
 
-/// CPU time of this process, s.
+/// CPU time of the calling thread, s: answers that other threads compute meanwhile do not count.
 double cpu_seconds();
 
 /// Every setting of the method, timed. Ends early when `stop` returns true; results until then are kept.

@@ -1,5 +1,6 @@
 #include "limcycle/analysis/study/adequacy/adequate.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -228,11 +229,29 @@ TEST_CASE("adequate: without friction there is nothing to ask") {
   CHECK_THROWS_AS(adequate(parts, quick()), std::invalid_argument);
 }
 
+TEST_CASE("adequate: the answers are the same on any number of threads") {
+  AdequateOptions alone = quick(), together = quick();
+  alone.threads = 1;
+  together.threads = 4;
+  alone.spread = together.spread = 0.1;
+  const LoopParts parts = servo_parts(coulomb(1.5, 1.0, 0.4));
+  const auto one = adequate(parts, alone), all = adequate(parts, together);
+  CHECK(one.least == all.least);
+  REQUIRE(one.points.size() == all.points.size());
+  for (std::size_t i = 0; i < one.points.size(); ++i) {
+    const auto &p = one.points[i], &q = all.points[i];
+    INFO(p.law << " " << p.method);
+    CHECK((p.law == q.law && p.method == q.method && p.why == q.why && p.worst_at == q.worst_at));
+    CHECK((p.error == q.error || (std::isnan(p.error) && std::isnan(q.error))));
+    CHECK((p.worst == q.worst || (std::isnan(p.worst) && std::isnan(q.worst))));
+  }
+}
+
 TEST_CASE("adequate: work that is stopped says so and keeps what it has") {
   AdequateOptions options = quick();
-  int asked = 0;
-  options.progress = [&](double, std::string_view) { ++asked; };
-  options.predict.stop = [&] { return asked > 3; };
+  std::atomic<bool> some_laws_done = false;
+  options.progress = [&](double done, std::string_view) { some_laws_done = done > 0.4; };
+  options.predict.stop = [&] { return some_laws_done.load(); };
   const auto report = adequate(servo_parts(stribeck(1.5, 1.0, 1e-6)), options);
   CHECK(report.status == Status::interrupted);
   CHECK_FALSE(report.points.empty());

@@ -93,12 +93,16 @@ TEST_CASE("precision: a relay loop whose exact period is known is the reference 
   CHECK(find(chart, "describing-function", "one harmonic")->quality == Quality::biased);
 }
 
-TEST_CASE("precision: errors and counts are the same in every run") {
+TEST_CASE("precision: errors and counts are the same in every run, on any number of threads") {
   const LoopParts parts = relay_parts();
-  const auto a = precision(&parts, nullptr, {}, quick()), b = precision(&parts, nullptr, {}, quick());
+  PrecisionOptions together = quick();
+  together.threads = 4;
+  const auto a = precision(&parts, nullptr, {}, quick()), b = precision(&parts, nullptr, {}, together);
   REQUIRE(a.cycle_chart->points.size() == b.cycle_chart->points.size());
   for (std::size_t i = 0; i < a.cycle_chart->points.size(); ++i) {
     const auto &p = a.cycle_chart->points[i], &q = b.cycle_chart->points[i];
+    CHECK(p.method == q.method);
+    CHECK(p.setting == q.setting);
     CHECK(p.evaluations == q.evaluations);
     CHECK((p.error == q.error || (std::isnan(p.error) && std::isnan(q.error))));
     CHECK(p.quality == q.quality);
