@@ -46,6 +46,7 @@ class QuadratureRoute {
     for (std::size_t level = first_level(); level < quadrature_meshes.size(); ++level) {
       DescribingFunction now = on_mesh(quadrature_meshes[level]);
       now.evaluations += best.evaluations;
+      if (now.status == Status::not_finite) return now;
       if (now.status != Status::converged) {
         if (have) best.status = Status::incomplete;
         return have ? best : now;
@@ -111,6 +112,10 @@ class QuadratureRoute {
     // A first harmonic of rounding size is none: a constant output has gain 0, not 1e-17.
     if (std::abs(result.harmonics[0]) <= 64.0 * epsilon * size) result.harmonics[0] = 0.0;
     result.gain = result.harmonics[0] / A;
+    if (!std::isfinite(std::abs(result.gain))) {  // finer meshes would not be either
+      result.status = Status::not_finite;
+      return result;
+    }
     result.mean = sums_.mean(half);
     result.dissipation = sums_.work(half, motion_.frequency());
     result.symmetric = half || (try_symmetric_ && odd_output(result));
