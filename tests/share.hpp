@@ -2,18 +2,19 @@
 #include <algorithm>
 #include <vector>
 
-/// How much of a repeated test is done. Where everything is watched (LIMCYCLE_SANITIZE) a repetition takes three to ten
-/// times as long and finds hardly more than the first: one in LIMCYCLE_TEST_SHARE is done there, set by
-/// tests/CMakeLists.txt, and all of them elsewhere. No test is left out.
+#include "limcycle/tests/setting.hpp"
+
+/// How much of a repeated test is done. In a sanitizer run a repetition takes three to ten times as long and finds
+/// hardly more than the first: one in six is done there, and all of them elsewhere. No test is left out.
 namespace limcycle::test {
 
-inline constexpr int one_in = LIMCYCLE_TEST_SHARE;
+inline const int one_in = sanitized_program != nullptr ? 6 : 1;
 
 /// This many of `all` random samples, at least one.
-constexpr int samples(int all) { return std::max(1, all / one_in); }
+inline int samples(int all) { return std::max(1, all / one_in); }
 
 /// True for the repetitions that are done: of number 0, 1, 2, ...
-constexpr bool is_done(int number) { return number % one_in == 0; }
+inline bool is_done(int number) { return number % one_in == 0; }
 
 /// Those of a list that are done.
 template <class List>

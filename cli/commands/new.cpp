@@ -5,6 +5,7 @@
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
+#include "limcycle/models/linear/plants.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/reports/case_files/new_case.hpp"
 
@@ -17,13 +18,14 @@ struct NewFlags : CommonFlags {
 };
 
 /// The requested case: without friction and element the servo with LuGre friction; an element alone replaces the
-/// friction, in front of three equal lags.
+/// friction, in front of three equal lags. A process of first order, which takes no friction, has a relay.
 NewCase wanted_case(const NewFlags& flags) {
   const auto given = [](const std::string& kind) { return kind == "none" ? std::string() : kind; };
   NewCase wanted;
   wanted.all = flags.all;
   wanted.element = given(flags.element);
   wanted.error = given(flags.error);
+  if (flags.plant == FirstOrder::kind && flags.element.empty() && flags.friction.empty()) wanted.element = "relay";
   const bool alone = flags.friction.empty() && !wanted.element.empty();
   wanted.friction = alone ? "" : flags.friction.empty() ? wanted.friction : given(flags.friction);
   wanted.plant = !flags.plant.empty() ? flags.plant : alone ? "transfer-function" : wanted.plant;

@@ -41,6 +41,11 @@ Eigen::MatrixXd both_forces(const Eigen::MatrixXd& B, const Eigen::MatrixXd& B_f
   return forces;
 }
 
+std::optional<BrokenRule> not_zero(const std::string& key, double value) {
+  if (value == 0.0) return BrokenRule{key, "must not be zero"};
+  return std::nullopt;
+}
+
 std::optional<BrokenRule> strictly_proper(const std::string& key, const auto& realisation) {
   try {
     const StateSpace g = realisation();
@@ -96,6 +101,17 @@ PlantModel TwoMass::model() const {
   return plant;
 }
 
+std::optional<BrokenRule> FirstOrder::validate() const { return not_zero("gain", gain); }
+
+PlantModel FirstOrder::model() const { return TransferFunction{{gain}, {time_constant, 1.0}, delay}.model(); }
+
+std::optional<BrokenRule> SecondOrder::validate() const { return not_zero("gain", gain); }
+
+PlantModel SecondOrder::model() const {
+  const double T = time_constant;
+  return TransferFunction{{gain}, {T * T, 2.0 * damping_ratio * T, 1.0}, delay}.model();
+}
+
 std::optional<BrokenRule> TransferFunction::validate() const {
   if (std::ranges::all_of(denominator, [](double c) { return c == 0.0; }))
     return BrokenRule{"denominator", "must not be empty or zero"};
@@ -108,7 +124,7 @@ PlantModel TransferFunction::model() const { return from_input_output(realise(nu
 
 std::optional<BrokenRule> ZeroPoleGain::validate() const {
   if (poles.empty()) return BrokenRule{"poles", "must not be empty"};
-  if (gain == 0.0) return BrokenRule{"gain", "must not be zero"};
+  if (auto broken = not_zero("gain", gain)) return broken;
   // Poles without a partner are an error of the poles, not of the zeros.
   try {
     realise_zpk({}, poles, gain);

@@ -103,6 +103,39 @@ struct FroudePendulum {
   PlantModel model() const;
 };
 
+/// A lag with dead time, the usual model of a process: y = gain/(time_constant s + 1) exp(-delay s) u. No friction: a
+/// force would move y at once.
+struct FirstOrder {
+  double gain{}, time_constant{}, delay{0.0};
+  static constexpr std::string_view kind = "first-order";
+  static constexpr std::string_view equation = "time_constant dy/dt + y = gain u(t - delay)";
+  static std::vector<Parameter<FirstOrder, double>> parameters() {
+    return {{"gain", "1", "y at rest for u = 1", &FirstOrder::gain},
+            {"time_constant", "s", "time to 63 % of a step", &FirstOrder::time_constant, positive},
+            {"delay", "s", "dead time", &FirstOrder::delay, not_negative, false}};
+  }
+  std::optional<BrokenRule> validate() const;
+  PlantModel model() const;
+};
+
+/// Second order with dead time, two lags in series or a resonance, friction acting as a negative u:
+///   y = gain/(T^2 s^2 + 2 damping_ratio T s + 1) exp(-delay s) (u - F), T = time_constant.
+/// Lags of T1 and T2 are T = sqrt(T1 T2), damping_ratio = (T1 + T2)/(2 T).
+struct SecondOrder {
+  double gain{}, time_constant{}, damping_ratio{}, delay{0.0};
+  static constexpr std::string_view kind = "second-order";
+  static constexpr std::string_view equation =
+      "time_constant^2 d2y/dt2 + 2 damping_ratio time_constant dy/dt + y = gain (u(t - delay) - F)";
+  static std::vector<Parameter<SecondOrder, double>> parameters() {
+    return {{"gain", "1", "y at rest for u = 1", &SecondOrder::gain},
+            {"time_constant", "s", "inverse of the natural frequency", &SecondOrder::time_constant, positive},
+            {"damping_ratio", "1", "1: two equal lags; below: a resonance", &SecondOrder::damping_ratio, any_number},
+            {"delay", "s", "dead time", &SecondOrder::delay, not_negative, false}};
+  }
+  std::optional<BrokenRule> validate() const;
+  PlantModel model() const;
+};
+
 /// y = numerator(s)/denominator(s) exp(-delay s) u, friction acting as a negative u. Friction needs relative degree 2.
 struct TransferFunction {
   std::vector<double> numerator, denominator;
@@ -159,7 +192,8 @@ struct StateSpacePlant {
   PlantModel model() const;
 };
 
-using Plant = std::variant<Mass, TwoMass, Belt, FroudePendulum, TransferFunction, ZeroPoleGain, StateSpacePlant>;
+using Plant = std::variant<Mass, TwoMass, Belt, FroudePendulum, FirstOrder, SecondOrder, TransferFunction, ZeroPoleGain,
+                           StateSpacePlant>;
 
 inline PlantModel model_of(const Plant& plant) {
   return std::visit([](const auto& p) { return p.model(); }, plant);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limcycle/models/linear/plants.hpp"
 #include "limcycle/reports/case_files/case_format.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/reports/case_files/laws.hpp"
@@ -119,8 +120,9 @@ struct NewPart {
 };
 
 std::vector<NewPart> parts_of(const NewCase& wanted, const std::vector<CatalogueEntry>& all) {
-  // An element before or after a controller may need the rate of its input, which must then exist.
-  const bool guarded = !wanted.element.empty() || !wanted.error.empty();
+  // An element before or after a controller may need the rate of its input, which must then exist, as must that of a
+  // plant of first order for a derivative.
+  const bool guarded = !wanted.element.empty() || !wanted.error.empty() || wanted.plant == FirstOrder::kind;
   std::vector<NewPart> parts{
       {"loop.plant", wanted.friction.empty() ? "lone plant" : "plant", &entry_of(all, {"plant"}, wanted.plant)},
       {"loop.controller", guarded ? "guarded controller" : "controller",

@@ -243,6 +243,10 @@ TEST_CASE("improper and non-causal plants") {
         "a.toml:5: loop.plant.delay = -0.1: must be >= 0 s");
   CHECK(plant("kind = \"transfer-function\"\nnumerator = [1]\ndenominator = []") ==
         "a.toml:4: loop.plant.denominator = []: must not be empty or zero");
+  CHECK(plant("kind = \"first-order\"\ngain = 0\ntime_constant = 2") ==
+        "a.toml:3: loop.plant.gain = 0: must not be zero");
+  CHECK(plant("kind = \"second-order\"\ngain = 1\ntime_constant = 0\ndamping_ratio = 1") ==
+        "a.toml:4: loop.plant.time_constant = 0: must be > 0 s");
   CHECK(plant("kind = \"zpk\"\nzeros = [1, 2]\npoles = [-1]\ngain = 1")
             .starts_with("a.toml:3: loop.plant.zeros = [1, 2]: "));
   CHECK_THAT(plant("kind = \"zpk\"\nzeros = []\npoles = [[-1, 2], -3]\ngain = 1"),

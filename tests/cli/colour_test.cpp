@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/setting.hpp"
 
 using limcycle::test::quoted;
 using limcycle::test::run;
@@ -17,7 +18,8 @@ constexpr auto* yellow = "\x1b[33m";
 /// Output of the program on a terminal; `before` ("NO_COLOR=1") precedes the command.
 std::string on_terminal(const std::string& arguments, const std::string& before = "TERM=xterm") {
   const Scratch scratch;
-  const std::string inner = "env -u NO_COLOR " + before + " " + quoted(LIMCYCLE_PROGRAM) + " " + arguments;
+  const std::string inner =
+      "env -u NO_COLOR " + before + " " + quoted(limcycle::test::tested_program) + " " + arguments;
   const std::string command = "script -qec " + quoted(inner) + " " + quoted(scratch.file("typescript")) + " > " +
                               quoted(scratch.file("out")) + " < /dev/null";
   CHECK(std::system(command.c_str()) != -1);

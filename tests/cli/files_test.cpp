@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/setting.hpp"
 
 // Flags for files and numbers: no input is overwritten, no result is lost, no value is guessed.
 
@@ -129,15 +130,9 @@ TEST_CASE("files: a title that a spreadsheet would compute is kept a text in CSV
   CHECK_THAT(run({"check", shipped("pid-lugre.toml"), "--set", "title='-2'", "--csv", "-"}).out, Contains("\n-2,mass"));
 }
 
-// AddressSanitizer itself takes more address space than this machine of 2 GB has.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define LIMCYCLE_ADDRESS_SANITIZER
-#endif
-#endif
-#ifndef LIMCYCLE_ADDRESS_SANITIZER
 TEST_CASE("memory: what does not fit is refused with the number, before anything is computed") {
-  // As on a machine with 2 GB of memory.
+  // As on a machine with 2 GB of memory, of which AddressSanitizer itself takes more.
+  if (limcycle::test::sanitized_program != nullptr) return;
   const auto refused = [](std::vector<std::string> words, const std::string& part) {
     std::string line = "ulimit -v 2000000; exec";
     for (const auto& word : words) line += " " + limcycle::test::quoted(word);
@@ -148,7 +143,7 @@ TEST_CASE("memory: what does not fit is refused with the number, before anything
     CHECK(WEXITSTATUS(status) == 2);
     CHECK_THAT(scratch.get("err"), Contains(part) && Contains(" GB of memory; 2.05 GB are there; fewer "));
   };
-  const std::string program = LIMCYCLE_PROGRAM, servo = shipped("pid-lugre.toml");
+  const std::string program = limcycle::test::tested_program, servo = shipped("pid-lugre.toml");
   refused({program, "df", shipped("df-lugre.toml"), "--set", "df.amplitude={from = 1e-6, to = 1.0, points = 1000000}",
            "--set", "df.frequency=[1.0, 2.0, 3.0]", "--set", "df.bias=[0.0]", "--set", "df.harmonics=1000"},
           "df: needs ");
@@ -159,7 +154,6 @@ TEST_CASE("memory: what does not fit is refused with the number, before anything
            "simulate.duration=40.0", "--json", "-"},
           "simulate.sample: needs ");
 }
-#endif
 
 TEST_CASE("terminal: nothing that a case or a file name holds is obeyed by it") {
   const Scratch scratch;

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/tests/cli/started.hpp"
+#include "limcycle/tests/setting.hpp"
 
 using namespace limcycle::test;
 
@@ -14,7 +15,7 @@ TEST_CASE("interrupt: signals at once are one wish to stop, a later one ends eve
   const int reader = open(pipe.c_str(), O_RDWR | O_CLOEXEC);
   REQUIRE(reader >= 0);
   // A table that is computed at once and exceeds the capacity of a pipe.
-  Started program(scratch, {"sh", "-c", "exec \"$@\" > " + quoted(pipe), "sh", LIMCYCLE_PROGRAM, "df",
+  Started program(scratch, {"sh", "-c", "exec \"$@\" > " + quoted(pipe), "sh", tested_program, "df",
                             shipped("relay-third-order.toml"), "--csv", "-", "--set",
                             "df.amplitude={from=0.1, to=10.0, points=100}", "--set",
                             "df.frequency={from=0.1, to=10.0, points=100}"});

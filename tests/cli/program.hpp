@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/tests/setting.hpp"
+
 namespace limcycle::test {
 
 /// A temporary folder for one test, removed at the end.
@@ -55,7 +57,7 @@ inline std::string quoted(const std::string& argument) {
 /// Runs the real program. `redirect`: replaces the capture of stdout, such as "> /dev/full".
 inline Ran run(const std::vector<std::string>& arguments, const std::string& redirect = {}) {
   const Scratch scratch;
-  std::string command = quoted(LIMCYCLE_PROGRAM);
+  std::string command = quoted(tested_program);
   for (const auto& argument : arguments) command += ' ' + quoted(argument);
   command +=
       (redirect.empty() ? " > " + quoted(scratch.file("out")) : ' ' + redirect) + " 2> " + quoted(scratch.file("err"));

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/setting.hpp"
 
 namespace limcycle::test {
 
@@ -84,7 +85,7 @@ class Started {
 /// Sends Ctrl-C to the program after `seconds` of computing; twice at once, as `timeout` and `mpirun` do.
 inline Ran run_interrupted(const std::vector<std::string>& arguments, double seconds) {
   const Scratch scratch;
-  std::vector<std::string> words{LIMCYCLE_PROGRAM};
+  std::vector<std::string> words{tested_program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   Started program(scratch, words);
   if (program.works_and_catches(SIGINT, seconds)) {

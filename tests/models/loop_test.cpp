@@ -1,5 +1,6 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "limcycle/tests/loops.hpp"
 
@@ -46,6 +47,26 @@ TEST_CASE("zeros, poles and gain: pairs, real ones, and a pair of zeros over rea
     }
   }
   CHECK_THROWS_AS(realise_zpk({{-1.0, 5.0}}, poles, 1.0), std::invalid_argument);
+}
+
+TEST_CASE("process plants: a lag and a second order with dead time have the response of their formula") {
+  const FirstOrder lag{3.0, 2.5, 0.4};
+  const double T1 = 0.5, T2 = 8.0, T = std::sqrt(T1 * T2);
+  const SecondOrder lags{-2.0, T, (T1 + T2) / (2.0 * T), 1.5}, resonance{4.0, 0.1, 0.05};
+  for (const double w : {0.01, 1.0, 20.0}) {
+    const Complex s(0.0, w);
+    const auto response = [&](const PlantModel& plant) {
+      return at(StateSpace{plant.A, plant.B_u, plant.C_y, Eigen::MatrixXd::Zero(1, 1)}, s);
+    };
+    const auto near = [](Complex found, Complex expected) { return std::abs(found / expected - 1.0) < 1e-13; };
+    CHECK(near(response(lag.model()), 3.0 / (2.5 * s + 1.0)));
+    CHECK(near(response(lags.model()), -2.0 / ((T1 * s + 1.0) * (T2 * s + 1.0))));
+    CHECK(near(response(resonance.model()), 4.0 / (0.01 * s * s + 0.01 * s + 1.0)));
+  }
+  CHECK(lag.model().delay == 0.4);
+  CHECK(lags.model().delay == 1.5);
+  CHECK(resonance.model().delay == 0.0);
+  CHECK(lag.model().state_names.size() == 1);
 }
 
 TEST_CASE("servo: response from friction to position is s/(s^3 + 6 s^2 + 3 s + 4) with the sign of the Lur'e form") {

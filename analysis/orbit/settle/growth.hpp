@@ -14,7 +14,7 @@ bool grows_like_a_power(const TurningPoints& turning);
 
 /// True if the motion from this state, moved thirty times as far from rest, grows too: its later swings are larger
 /// than its first ones. Where friction and other limited forces stand against a growth they are weaker there still;
-/// what bounds a growth, such as damping, is stronger. Cost: a dozen swings, or `most_steps` of the march without an
+/// what bounds a growth, such as damping, is stronger. Cost: ten swings, or `most_steps` of the march without an
 /// answer.
 bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long most_steps,
                      const std::function<bool()>& stop);

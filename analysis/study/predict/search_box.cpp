@@ -6,6 +6,7 @@
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -38,6 +39,14 @@ Loop with_gains(Loop loop, double (*gain_of)(const Element&)) {
     main.C += gain * main.D(column) * port.C;
   }
   return loop;
+}
+
+/// Largest modulus of the poles with a damping ratio below 0.5; 0: there are none.
+double fastest_resonance(const Loop& loop) {
+  double fastest = 0.0;
+  for (const auto& pole : eigenvalues(loop.tangent()))
+    if (std::abs(pole.real()) < 0.5 * std::abs(pole)) fastest = std::max(fastest, std::abs(pole));
+  return fastest;
 }
 
 /// Largest response of the main element's input to `level` at its output, from w = from to 10 fast, at
@@ -76,8 +85,10 @@ SearchBox default_search_box(const Loop& loop) {
   const auto moduli = pole_moduli(loop);
   const double slow = moduli.empty() ? 1.0 : moduli.front(), fast = moduli.empty() ? 1.0 : moduli.back();
   SearchBox box{0.0, 0.0, 0.01 * slow, 100.0 * fast};
-  // A delay gives infinitely many roots, one at every turn of its phase: only the first few turns can matter.
-  if (loop.delay > 0.0) box.frequency_max = std::min(box.frequency_max, std::max(10.0 * fast, 30.0 / loop.delay));
+  // A delay gives infinitely many roots, one at every turn of its phase: only the first few turns can matter, and those
+  // up to a resonance.
+  if (loop.delay > 0.0)
+    box.frequency_max = std::min(box.frequency_max, std::max(3.0 * fastest_resonance(loop), 30.0 / loop.delay));
   double largest = reach(loop, slow, fast);
   if (!(largest > 0.0)) largest = 1.0;
   box.amplitude_max = std::min(3.0 * largest, widest_swing(loop));

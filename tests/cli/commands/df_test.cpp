@@ -7,6 +7,7 @@
 
 #include "limcycle/tests/cli/golden.hpp"
 #include "limcycle/tests/cli/started.hpp"
+#include "limcycle/tests/setting.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -76,7 +77,7 @@ TEST_CASE("df: the same numbers for any number of threads, and from a store that
   REQUIRE(one.code == 0);
   CHECK(run(table({"--threads", "2"})).out == one.out);
   const std::string store = scratch.file("df.store");
-  std::string command = "timeout -s KILL 0.3 " + quoted(LIMCYCLE_PROGRAM);
+  std::string command = "timeout -s KILL 0.3 " + quoted(tested_program);
   for (const auto& word : table({"--store", store})) command += " " + quoted(word);
   // Usually it is killed in progress; a machine that is too fast for this tests the store of a finished run.
   static_cast<void>(std::system((command + " > " + quoted(scratch.file("cut"))).c_str()));

@@ -8,6 +8,7 @@
 
 #include "limcycle/tests/cli/golden.hpp"
 #include "limcycle/tests/cli/program.hpp"
+#include "limcycle/tests/setting.hpp"
 
 using namespace limcycle::test;
 using Catch::Matchers::Contains;
@@ -136,7 +137,7 @@ TEST_CASE("predict: a page that cannot be written costs neither the table nor an
   CHECK_THAT(full.err, Contains("cannot write to /dev/full"));
 
   const std::string old = scratch.put("old.html", "an older result");
-  const std::string command = "trap '' XFSZ; ulimit -f 100; " + quoted(LIMCYCLE_PROGRAM) + " predict " + quoted(relay) +
+  const std::string command = "trap '' XFSZ; ulimit -f 100; " + quoted(tested_program) + " predict " + quoted(relay) +
                               " --html " + quoted(old) + " > " + quoted(scratch.file("out")) + " 2> " +
                               quoted(scratch.file("err"));
   const int status = std::system(command.c_str());

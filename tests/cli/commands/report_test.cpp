@@ -9,6 +9,7 @@
 #include "limcycle/reports/page/case_in_page.hpp"
 #include "limcycle/tests/cli/started.hpp"
 #include "limcycle/tests/reports/markup.hpp"
+#include "limcycle/tests/setting.hpp"
 #include "limcycle/tests/share.hpp"
 
 using namespace limcycle::test;
@@ -224,7 +225,7 @@ TEST_CASE("report: where the page goes") {
   CHECK(run({"report", own, "-o", own}).code == 2);
   CHECK_THAT(scratch.get("own.toml"), StartsWith("[loop.plant]"));
   const std::string command = "cd " + quoted(std::filesystem::path(own).parent_path().string()) + " && " +
-                              quoted(LIMCYCLE_PROGRAM) + " report own.toml --quick > out";
+                              quoted(tested_program) + " report own.toml --quick > out";
   const int status = std::system(command.c_str());
   CHECK(WEXITSTATUS(status) == 0);
   CHECK_THAT(scratch.get("out"), Contains("report: own.html"));

@@ -7,6 +7,7 @@
 #include "limcycle/reports/table.hpp"
 #include "limcycle/tests/cli/program.hpp"
 #include "limcycle/tests/lines.hpp"
+#include "limcycle/tests/setting.hpp"
 #include "limcycle/tests/share.hpp"
 
 using limcycle::test::lines_of;
@@ -100,7 +101,7 @@ TEST_CASE("help: every example works") {
   const Scratch scratch;
   std::filesystem::create_directories(scratch.file("bin"));
   std::filesystem::create_directories(scratch.file("work"));
-  std::filesystem::create_symlink(LIMCYCLE_PROGRAM, scratch.file("bin/limcycle"));
+  std::filesystem::create_symlink(limcycle::test::tested_program, scratch.file("bin/limcycle"));
   std::filesystem::create_directory_symlink(std::string(LIMCYCLE_SOURCE_DIR) + "/cases", scratch.file("work/cases"));
   int examples = 0;
   // Where everything is watched, the long commands are left to tests of their own.

@@ -5,6 +5,7 @@
 
 #include "limcycle/reports/store/store.hpp"
 #include "limcycle/tests/cli/started.hpp"
+#include "limcycle/tests/setting.hpp"
 #include "limcycle/tests/share.hpp"
 
 // The program under mpirun. If there is none, or the program was built without MPI, it must refuse to be started as
@@ -40,7 +41,7 @@ class RankedJob : public Started {
   RankedJob(const Scratch& scratch, int ranks, const Words& arguments, const Words& before = {})
       : Started(scratch, Words{"env", "ASAN_OPTIONS=detect_leaks=0",  // Open MPI frees little at the end
                                "mpirun", "--allow-run-as-root", "--oversubscribe", "-n", std::to_string(ranks)} +
-                             before + Words{LIMCYCLE_PROGRAM} + arguments) {}
+                             before + Words{tested_program} + arguments) {}
 
   /// Process ids of the ranks.
   std::vector<pid_t> ranks() const {
@@ -105,7 +106,7 @@ TEST_CASE("ranks: processes that cannot find each other are refused, and one of 
     // A Slurm step whose processes do not know of each other.
     const Scratch scratch;
     const int status = std::system(("SLURM_STEP_NUM_TASKS=2 SLURM_PROCID=" + process + " ASAN_OPTIONS=detect_leaks=0 " +
-                                    quoted(LIMCYCLE_PROGRAM) + " laws > " + quoted(scratch.file("out")) + " 2> " +
+                                    quoted(tested_program) + " laws > " + quoted(scratch.file("out")) + " 2> " +
                                     quoted(scratch.file("err")))
                                        .c_str());
     return Ran{WEXITSTATUS(status), scratch.get("out"), scratch.get("err")};

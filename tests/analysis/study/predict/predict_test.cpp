@@ -190,6 +190,31 @@ TEST_CASE("a relay with dead time is exact in the time domain: claim B2") {
   CHECK_THAT(report.notes[0], Contains("exact") && Contains("in the time domain too"));
 }
 
+TEST_CASE("a relay experiment on a first-order process with dead time: its exact swing, in minutes") {
+  const double K = 0.8, T = 240.0, L = 60.0, d = 15.0;
+  LoopParts parts;
+  parts.plant = FirstOrder{K, T, L};
+  parts.element = relay(d);
+  const auto report = predict(build_loop(parts), {});
+  const auto slowest = std::ranges::max_element(report.cycles, {}, &Cycle::period);
+  REQUIRE(slowest != report.cycles.end());
+  CHECK(slowest->period == Approx(2.0 * T * std::log(2.0 * std::exp(L / T) - 1.0)).epsilon(1e-11));
+  CHECK(slowest->amplitude == Approx(K * d * (1.0 - std::exp(-L / T))).epsilon(1e-11));
+  CHECK(slowest->stable == true);
+}
+
+TEST_CASE("search box: of a dead time the first turns and those up to a resonance, however fast the actuator") {
+  const auto fastest = [](std::vector<double> denominator) {
+    LoopParts parts;
+    parts.plant = TransferFunction{{1.0}, std::move(denominator), 0.5};
+    parts.element = relay(1.0);
+    return default_search_box(build_loop(parts)).frequency_max;
+  };
+  CHECK(fastest({1.0, 1.0}) == Approx(60.0));
+  CHECK(fastest({0.005, 1.005, 1.0}) == Approx(60.0));
+  CHECK(fastest({1e-4, 1e-3, 1.0}) == Approx(300.0));
+}
+
 TEST_CASE("a saturation with dead time: the Pade approximation is owned up to, and the cycle is the true one") {
   auto options = df_only(SearchBox{0.1, 50.0, 0.5, 12.0});
   options.starts = 1;
