@@ -26,6 +26,9 @@ Kinds kinds_in(const std::string& group) {
   return kinds;
 }
 
+/// Without one there is no friction, and no cascade: the output of a plant of first order follows a force at once.
+bool has_velocity(const std::string& plant) { return plant != "first-order"; }
+
 /// Error of the reader for a case; empty if there is none.
 std::string complaint(const std::string& text) {
   try {
@@ -45,7 +48,7 @@ TEST_CASE("new: every plant with every controller and every friction law is a va
       for (const auto& friction : kinds_in("friction"))
         for (const bool all : {false, true}) {
           INFO(plant << ' ' << controller << ' ' << friction << ' ' << all);
-          if (plant == "first-order") {  // a force would move its output at once
+          if (!has_velocity(plant)) {
             CHECK(complaint(limcycle::new_case({plant, controller, friction})).find("relative degree 2") !=
                   std::string::npos);
             continue;
@@ -80,7 +83,7 @@ TEST_CASE("new: every element, alone and beside friction, before every plant and
     for (const auto& controller : some_of(kinds_in("controller")))
       for (const auto& friction : {"", "lugre", "coulomb"})
         for (const auto& element : kinds_in("element")) {
-          if (plant == "first-order" && !std::string(friction).empty()) continue;
+          if (!has_velocity(plant) && (controller == "cascade" || !std::string(friction).empty())) continue;
           INFO(plant << ' ' << controller << ' ' << friction << ' ' << element);
           CHECK(complaint(limcycle::new_case({plant, controller, friction, element, {}, true})) == "");
         }
@@ -99,12 +102,14 @@ TEST_CASE("new: the kinds that are told beside the chosen one are those that may
 TEST_CASE("new: every element on the error, and every friction law as an element, where the format has it") {
   for (const auto& plant : kinds_in("plant"))
     for (const auto& controller : some_of(kinds_in("controller"))) {
+      if (!has_velocity(plant) && controller == "cascade") continue;
       for (const auto& error : {"dead-zone", "saturation", "quantizer"}) {
         INFO(plant << ' ' << controller << ' ' << error);
-        const std::string friction = plant == "first-order" ? "" : "lugre";
-        const auto why = complaint(limcycle::new_case({plant, controller, friction, {}, error}));
-        // A controller that does not use the error cannot have an element on it.
-        CHECK((controller == "none" ? why.find("needs a controller") != std::string::npos : why.empty()));
+        const std::string friction = has_velocity(plant) ? "lugre" : "", element = friction.empty() ? "relay" : "";
+        const auto why = complaint(limcycle::new_case({plant, controller, friction, element, error}));
+        // Friction alone does not use the error, which then cannot have an element on it.
+        const bool unused = controller == "none" && element.empty();
+        CHECK((unused ? why.find("needs a controller") != std::string::npos : why.empty()));
       }
       for (const auto& law : kinds_in("friction")) {
         INFO(plant << ' ' << controller << ' ' << law);
@@ -135,7 +140,7 @@ TEST_CASE("new: every key that stands as a comment is valid without the #") {
   };
   for (const auto& friction : kinds_in("friction")) CHECK(tried({.friction = friction, .all = true}) > 15);
   for (const auto& plant : kinds_in("plant"))
-    CHECK(tried({.plant = plant, .friction = plant == "first-order" ? "" : "lugre", .all = true}) > 15);
+    if (has_velocity(plant)) CHECK(tried({.plant = plant, .all = true}) > 15);  // the other has no such key of its own
   for (const auto& controller : kinds_in("controller")) CHECK(tried({.controller = controller, .all = true}) > 15);
   for (const auto& element : kinds_in("element")) {
     CHECK(tried({.plant = "state-space", .element = element, .all = true}) > 15);
@@ -201,7 +206,9 @@ TEST_CASE("new: predict answers on new cases") {
     CHECK(ran.code == 0);
     CHECK(ran.out.find("This loop ") != std::string::npos);
   };
-  for (const auto& plant : some_of(kinds_in("plant"))) answers({"--plant", plant, "--friction", "coulomb"});
+  for (const auto& plant : some_of(kinds_in("plant")))
+    answers(has_velocity(plant) ? std::vector<std::string>{"--plant", plant, "--friction", "coulomb"}
+                                : std::vector<std::string>{"--plant", plant});
   for (const auto* controller : {"none", "state-space"})
     answers({"--controller", controller, "--friction", "stribeck"});
   for (const auto& element : some_of(kinds_in("element"))) answers({"--element", element});
