@@ -39,6 +39,20 @@ Loop heavy_axis() {
   return build_loop(parts);
 }
 
+/// A light servo in any writing of its mass and damping.
+Loop light_servo(const Plant& plant) {
+  auto law = stribeck(0.0508683, 0.0283739, 2.18192);
+  law.delta = 0.5;
+  law.sigma2 = 2.2323e-6;
+  LoopParts parts;
+  parts.plant = plant;
+  Pid controller = pid(0.00702758, 0.0832342, 9.9759e-5);
+  controller.saturation = 0.231044;
+  parts.controller = controller;
+  parts.friction = law;
+  return build_loop(parts);
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -65,5 +79,21 @@ TEST_CASE(
     const double periods = simulated.period / found.shot->cycle.period;
     CHECK(periods == Approx(std::round(periods)).epsilon(2e-4));
     CHECK(simulated.amplitude == Approx(found.shot->cycle.amplitude).epsilon(2e-4));
+  }
+}
+
+TEST_CASE("stribeck: a body that slides off ever faster is not stopped at the instant of break-away, in any writing") {
+  const double mass = 6.24834e-7, damping = 8.54125e-7;
+  for (const Plant& plant : {Plant(Mass{mass, damping, 0.0}),
+                             Plant(TransferFunction{{1600425.072899362}, {1.0, 1.3669630653901674, 0.0}, 0.0})}) {
+    const Loop loop = light_servo(plant);
+    const SettleOptions options = cycle_search(loop, default_search_box(loop), 1e-8);
+    for (const double start : {3.974, 397.4}) {
+      INFO(start);
+      const Settled found = settle(loop, displaced(loop, start), options);
+      REQUIRE(found.outcome == Outcome::cycle);
+      REQUIRE(found.shot);
+      CHECK(found.shot->cycle.period == Approx(1.2323262).epsilon(1e-6));
+    }
   }
 }
