@@ -5,6 +5,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "limcycle/analysis/on_threads.hpp"
 
@@ -95,6 +96,17 @@ std::span<const std::size_t> SweepBlocks::next(std::size_t blocks) {
   if (index >= this->blocks()) return {};
   const std::size_t first = index * block_;
   return {missing_.data() + first, std::min(blocks * block_, missing_.size() - first)};
+}
+
+SweepOptions part_of_work(int threads, std::function<bool()> stop, std::function<void(double, std::string_view)> report,
+                          double from, double to, std::string what) {
+  SweepOptions options{threads, std::move(stop), {}};
+  if (report)
+    options.progress = [=, report = std::move(report), what = std::move(what)](std::size_t done, std::size_t total) {
+      const double share = total == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(total);
+      report(from + (to - from) * share, what);
+    };
+  return options;
 }
 
 Status run_sweep(const SweepTask& task, const std::vector<bool>& known, const SweepSink& sink,

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "limcycle/analysis/status.hpp"
@@ -45,6 +47,11 @@ struct SweepOptions {
   /// each call of the sink, by one thread at a time.
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
+
+/// Options of a sweep that is a part of a longer work: its progress is reported as the fractions `from` to `to` of the
+/// whole, with `what` as the present activity. `report` may be empty.
+SweepOptions part_of_work(int threads, std::function<bool()> stop, std::function<void(double, std::string_view)> report,
+                          double from, double to, std::string what);
 
 /// The points that are not known yet, in increasing order, handed out in blocks. Safe from several threads.
 class SweepBlocks {

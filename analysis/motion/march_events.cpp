@@ -44,9 +44,10 @@ bool March::negative_within(const std::vector<double>& at_start, double& from, d
     candidates_.clear();
     for (std::size_t k = 0; k < at_start.size(); ++k)
       if (guards_end_[k] < 0.0) candidates_.push_back(k);
-    if (quarter == 1 && !candidates_.empty())
+    const bool crossed = watch_section && section_->value(work_) >= 0.0;
+    if (quarter == 1)
       std::erase_if(candidates_, [&](std::size_t k) { return at_start[k] == 0.0 && !leaves_at_once(k, to); });
-    if (watch_section && section_->value(work_) >= 0.0) candidates_.push_back(section_guard);
+    if (crossed) candidates_.push_back(section_guard);
     if (!candidates_.empty()) {
       guard = first_of_candidates(at_start, from, to);
       return true;

@@ -46,10 +46,10 @@ class QuadratureRoute {
     for (std::size_t level = first_level(); level < quadrature_meshes.size(); ++level) {
       DescribingFunction now = on_mesh(quadrature_meshes[level]);
       now.evaluations += best.evaluations;
-      if (now.status == Status::not_finite) return now;
       if (now.status != Status::converged) {
-        if (have) best.status = Status::incomplete;
-        return have ? best : now;
+        if (!have || now.status == Status::not_finite) return now;
+        best.status = Status::incomplete;
+        return best;
       }
       const double difference = have ? relative(std::abs(now.gain - best.gain), now.gain) : 1.0;
       const double floor = now.error;

@@ -66,13 +66,8 @@ class LadderClimb {
   /// The same work for each of a number of laws or variations, on several threads.
   void for_each(std::size_t count, double from, double to, std::string_view what,
                 const std::function<void(std::size_t)>& work) const {
-    SweepOptions each;
-    each.threads = options_.threads;
-    each.stop = options_.predict.stop;
-    each.progress = [&](std::size_t done, std::size_t total) {
-      tell(from + (to - from) * static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(total, 1)), what);
-    };
-    run_each(count, work, each);
+    run_each(count, work,
+             part_of_work(options_.threads, options_.predict.stop, options_.progress, from, to, std::string(what)));
   }
 
   const SceneAnswer& ask_at_own_values(const std::string& method, const Element& law) {

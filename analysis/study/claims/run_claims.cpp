@@ -33,15 +33,9 @@ ClaimResult tested(const Claim& claim, const ClaimOptions& options) {
 
 std::vector<TestedClaim> run_claims(const std::vector<Claim>& which, const ClaimRunOptions& options) {
   std::vector<std::optional<ClaimResult>> results(which.size());
-  SweepOptions each;
-  each.threads = options.threads;
-  each.stop = options.stop;
-  if (options.progress)
-    each.progress = [&](std::size_t done, std::size_t total) {
-      options.progress(static_cast<double>(done) / static_cast<double>(total), "claims");
-    };
   run_each(
-      which.size(), [&](std::size_t i) { results[i] = tested(which[i], options); }, each);
+      which.size(), [&](std::size_t i) { results[i] = tested(which[i], options); },
+      part_of_work(options.threads, options.stop, options.progress, 0.0, 1.0, "claims"));
   std::vector<TestedClaim> all;
   for (std::size_t i = 0; i < which.size(); ++i)
     if (results[i]) all.push_back({which[i], std::move(*results[i])});

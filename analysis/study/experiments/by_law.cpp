@@ -47,14 +47,8 @@ void run_by_law(Experiment& experiment, const ExperimentOptions& options,
     }
     ran[i] = 1;
   };
-  SweepOptions each;
-  each.threads = options.threads;
-  each.stop = options.stop;
-  if (options.progress)
-    each.progress = [&](std::size_t done, std::size_t total) {
-      options.progress(static_cast<double>(done) / static_cast<double>(total), experiment.name);
-    };
-  run_each(laws.size(), run_one, each);
+  run_each(laws.size(), run_one,
+           part_of_work(options.threads, options.stop, options.progress, 0.0, 1.0, experiment.name));
   for (std::size_t i = 0; i < laws.size(); ++i) {
     if (ran[i] == 0) {
       experiment.status = Status::interrupted;

@@ -73,16 +73,9 @@ class PrecisionStudy {
   }
 
   PrecisionReport run() {
-    SweepOptions each;
-    each.threads = options_.threads;
-    each.stop = options_.work.stop;
-    if (options_.progress)
-      each.progress = [&](std::size_t done, std::size_t total) {
-        options_.progress(
-            0.05 + 0.95 * static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(total, 1)), "methods");
-      };
     run_each(
-        tasks_.size(), [&](std::size_t i) { tasks_[i](); }, each);
+        tasks_.size(), [&](std::size_t i) { tasks_[i](); },
+        part_of_work(options_.threads, options_.work.stop, options_.progress, 0.05, 1.0, "methods"));
     if (report_.cycle_chart) {
       for (auto& points : results_) std::ranges::move(points, std::back_inserter(report_.cycle_chart->points));
       conclude(*report_.cycle_chart);

@@ -225,14 +225,7 @@ Truth truth_of(const AtlasLoop& loop, const AtlasOptions& options) {
 /// Work of several threads; each result is stored at the place of its task, so that the order is always the same.
 void share(std::size_t count, const AtlasOptions& options, double from, double to, std::string_view what,
            const std::function<void(std::size_t)>& work) {
-  SweepOptions each;
-  each.threads = options.threads;
-  each.stop = options.stop;
-  if (options.progress)
-    each.progress = [&](std::size_t done, std::size_t total) {
-      options.progress(from + (to - from) * static_cast<double>(done) / static_cast<double>(total), what);
-    };
-  run_each(count, work, each);
+  run_each(count, work, part_of_work(options.threads, options.stop, options.progress, from, to, std::string(what)));
 }
 
 }  // namespace
