@@ -230,6 +230,15 @@ class Settling {
     }
   }
 
+  /// Keeps an unstable cycle that the motion passes, once.
+  void pass(const Cycle& cycle) {
+    constexpr double same = 1e-4;
+    const bool known = std::ranges::any_of(result_.passed, [&](const Cycle& one) {
+      return std::abs(one.period / cycle.period - 1.0) < same && std::abs(one.amplitude / cycle.amplitude - 1.0) < same;
+    });
+    if (!known) result_.passed.push_back(cycle);
+  }
+
   /// `change`: see largest_change().
   bool try_cycle(std::size_t order, double change) {
     if (tried_ > steps_of_tries + tries_per_step * march_.steps()) return false;
@@ -262,8 +271,12 @@ class Settling {
     }
     if (shot.status == Status::converged) shorten(shot, section, half, shooting);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
-    if (shot.status != Status::converged || shot.cycle.stable == false) return false;
+    if (shot.status != Status::converged) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);
+    if (shot.cycle.stable == false) {
+      if (mismatch < 0.1) pass(shot.cycle);
+      return false;
+    }
     if (!shot.cycle.stable && mismatch < 0.01) {
       Surroundings around(loop_, shot.cycle, section, shooting, options_.rtol);
       if (around.attracts())

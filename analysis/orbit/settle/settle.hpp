@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "limcycle/analysis/orbit/cycle/shooting.hpp"
 
@@ -34,6 +35,7 @@ struct Settled {
   double mean_period = 0.0;            ///< of an irregular motion: mean time between returns to its middle, s; else 0
   std::optional<ShootingResult> shot;  ///< for a new cycle
   std::optional<std::size_t> known;    ///< index of the known cycle that was reached
+  std::vector<Cycle> passed;           ///< unstable cycles near which the motion was for a while
   Trace trace;
   double time = 0.0;  ///< simulated, s
   long steps = 0;     ///< of the simulation

@@ -32,6 +32,8 @@ OutcomeOfStart CycleHunt::simulate(const LoopState& start, std::string name) {
     maps_ += settled.shot->maps;
     outcome.cycle = merge(cycles_, settled.shot->cycle);
   }
+  for (const Cycle& cycle : settled.passed)
+    if (cycle.amplitude >= settle_.amplitude_floor) merge(cycles_, cycle);
   return outcome;
 }
 

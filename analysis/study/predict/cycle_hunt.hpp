@@ -12,7 +12,7 @@ class CycleHunt {
  public:
   CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box);
 
-  /// Simulates from a state until the outcome is decided; a cycle reached joins `cycles`.
+  /// Simulates from a state until the outcome is decided; a cycle reached or passed joins `cycles`.
   const OutcomeOfStart& settle_from(const LoopState& start, std::string name);
   /// The same from a state that no user would choose, to find outcomes between the starts: it joins `outcomes` only if
   /// it reaches a cycle or another kind of outcome that none of them has reached. A motion whose swings have become
