@@ -197,6 +197,7 @@ double pade_error(double w, double delay, int order) {
 }
 
 TimeDomainLoop in_time_domain(const Loop& loop, int pade_order) {
+  if (loop.sampled) return {*loop.sampled, 0, 0};
   if (!(loop.delay > 0.0)) return {loop, 0, 0};
   const MatrixXd rows = delayed_rows(loop);
   if (rows.isZero(0.0)) return {without_delay(loop), 0, 0};

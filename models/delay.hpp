@@ -15,6 +15,7 @@ struct TimeDomainLoop {
 inline constexpr int lowest_pade_order = 1, highest_pade_order = 60;
 
 /// Converts the loop to a form that the time domain can treat:
+///  - a loop with a sampled controller becomes Loop::sampled, which is exact;
 ///  - a loop without delay, or one that does not use its delayed signals, is unchanged;
 ///  - a loop whose plant is driven through a relay is converted exactly. A DelayedRelay delays the relay's output
 ///    instead of the plant's, so that the states of the plant, y included, are those of `delay` before; external forces

@@ -10,6 +10,7 @@
 #include "limcycle/models/element/output_rate.hpp"
 #include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/sampled.hpp"
 #include "limcycle/models/element/saturation.hpp"
 #include "limcycle/models/friction/bristle/bouc_wen.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
@@ -49,6 +50,6 @@ using FrictionLaws =
              ElastoPlastic, Leuven, Jenkins, MaxwellSlip, Iwan, Gms, Xiong, TwoState, NonDrift>;
 using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic>;
 using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
-using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity>;
+using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity, Sampled>;
 
 }  // namespace limcycle

@@ -7,6 +7,7 @@
 #include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/linear/dense.hpp"
+#include "limcycle/models/linear/discrete.hpp"
 
 namespace limcycle {
 namespace {
@@ -96,6 +97,22 @@ std::optional<BrokenRule> validate_error(const LoopParts& parts, double D_rate) 
                                               (jumps ? ", which jumps" : " on the error, whose rate is not known")};
 }
 
+std::optional<BrokenRule> validate_sampling(const LoopParts& parts, const PlantModel& plant) {
+  const Sampling& sampling = sampling_of(parts.controller);
+  if (auto broken = sampling.broken_together()) return BrokenRule{"loop.controller." + broken->key, broken->rule};
+  if (!sampling.is_on()) return std::nullopt;
+  const auto refuse = [](const char* rule) { return BrokenRule{"loop.controller.sample_time", rule}; };
+  if (!uses_error(parts)) return refuse("has nothing to sample: with friction alone the error is not used");
+  if (std::holds_alternative<Cascade>(parts.controller))
+    return refuse("is not for a cascade yet: it is for pid, transfer-function, state-space and none");
+  if (parts.reference_rate != 0.0) return refuse("cannot stand beside a ramp yet: the reference must be constant");
+  if (plant.delay > 0.0) return refuse("cannot stand beside a dead time of the plant yet");
+  const StateSpace discrete = backward_difference(model_of(parts.controller), sampling.sample_time);
+  if (!discrete.A.allFinite() || !discrete.C.allFinite())
+    return refuse("must not be the inverse of a pole of the controller");
+  return std::nullopt;
+}
+
 std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
   const PlantModel plant = model_of(parts.plant);
   const ControllerModel controller = model_of(parts.controller);
@@ -117,7 +134,7 @@ std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
     if (const auto broken = cascade->broken_together())
       return BrokenRule{"loop.controller." + broken->key, broken->rule};
   if (auto broken = validate_error(parts, controller.D_rate)) return broken;
-  return std::nullopt;
+  return validate_sampling(parts, plant);
 }
 
 std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +71,13 @@ struct Loop {
   double output_origin = 0.0;                   ///< y of the case is the sum of this, ramp_output_rate t and C_y X
   double ramp_output_rate = 0.0;
   std::vector<std::string> state_names;  ///< as written in the case; see own_states
+  /// Of a loop with a sampled controller: the same loop as it moves, its controller an element with a clock (see
+  /// Sampled). This one has the continuous controller that acts as it does on average, and the dead time of hold and
+  /// computation: it is right to first order in the sample time.
+  std::shared_ptr<const Loop> sampled;
+  /// Of that loop with an element in place of its controller: the loop with the continuous controller and without that
+  /// dead time, from which sizes and time scales are taken.
+  std::shared_ptr<const Loop> continuous;
   /// The states that state_names name = own_states (origin + X) (see rubbing_coordinates()); empty: origin + X.
   Eigen::MatrixXd own_states;
 

@@ -27,9 +27,17 @@ void scale(Interval& interval, double k) {
   interval.high *= k;
 }
 
-/// The displacement in the name of a start, "y(0) = 0.01" or "y(0) = rest + 0.01".
+}  // namespace
+
+bool names_displacement(const std::string& start) {
+  return start.starts_with("y(0) = ") || start.starts_with("held until it breaks away at y(0) = ");
+}
+
+namespace {
+
+/// The displacement at the end of the name of a start, "y(0) = 0.01" or "y(0) = rest + 0.01".
 void scale_displacement(std::string& start, double k) {
-  if (!start.starts_with("y(0) = ")) return;
+  if (!names_displacement(start)) return;
   const std::size_t at = start.find_last_of(' ') + 1;
   double value = 0.0;
   const auto [end, fault] = std::from_chars(start.data() + at, start.data() + start.size(), value);
@@ -75,7 +83,7 @@ PredictReport in_units(PredictReport report, const Units& units) {
   for (OutcomeOfStart& one : report.outcomes) {
     scale_displacement(one.start, k);
     scale(one.trace, k);
-    one.half_range *= k;
+    one.irregular.half_range *= k;
   }
   return report;
 }

@@ -9,6 +9,9 @@ namespace limcycle {
 /// Results with y in the unit that the case wants to see, for texts, pages and pictures: everything that has the unit
 /// of y, or of y over another one, is multiplied by units.y_per_si. Documents (JSON, CSV) are made of the results
 /// themselves. What is in the unit of the element's input stays.
+/// True if the name of a start ends with a displacement of y.
+bool names_displacement(const std::string& start);
+
 PredictReport in_units(PredictReport report, const Units& units);
 Simulation in_units(Simulation run, const Units& units);
 ContinueReport in_units(ContinueReport report, const Units& units);

@@ -168,8 +168,10 @@ Json outcome_json(const OutcomeOfStart& outcome) {
               {"why", outcome.why}};
   if (!outcome.by.empty()) out["by"] = outcome.by;
   if (outcome.outcome == Outcome::irregular) {
-    out["half_range"] = number(outcome.half_range);
-    out["mean_period"] = number(outcome.mean_period);
+    out["half_range"] = number(outcome.irregular.half_range);
+    out["mean_period"] = number(outcome.irregular.mean_period);
+    out["periods"] = {number(outcome.irregular.shortest_period), number(outcome.irregular.longest_period)};
+    out["observed"] = number(outcome.irregular.observed);
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "limcycle/reports/figures/multipliers.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/predict/answer.hpp"
 
@@ -49,7 +50,7 @@ std::string reasons(const PredictReport& report) {
 }  // namespace
 
 std::string start_in_words(const std::string& start, const Units& units) {
-  return start.starts_with("y(0) = ") ? Units::attach(start, units.y) : start;
+  return names_displacement(start) ? Units::attach(start, units.y) : start;
 }
 
 Table cycle_table(const PredictReport& report, const Units& units) {

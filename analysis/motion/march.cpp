@@ -144,7 +144,7 @@ void March::begin(State x, double t, std::optional<Section> section) {
   armed_ = false;
   fresh_ = true;
   step_.switched.reset();
-  step_.on_section = false;
+  step_.on_section = step_.by_clock = false;
   event_times_.clear();
 }
 
@@ -349,14 +349,21 @@ Status March::step(double t_end) {
           if constexpr (requires { s.reset(); }) s.reset();
         },
         stepper_->any());
-    dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
+    // A clock that switches changes a force a little, after a step that was accurate: the next may be as long.
+    if (!step_.by_clock || dt_ == 0.0) dt_ = dt_ > 0.0 ? std::min(dt_, first_dt()) : first_dt();
     dt_ = std::max(dt_, 2.0 * shortest_step());  // two switches at one time leave no length
     fresh_ = false;
   }
+  step_.by_clock = false;
   dt_ = std::min(dt_, longest_step * weights_.time);  // at rest steps grow without limit
-  double dt = std::min({dt_, dt_max_, t_end - t_});
+  constexpr double just_before = 1.0 - 1e-14;         // so that the guard of the clock has not turned negative
+  const double due = just_before * field_.due(x_);
+  if (due < 16.0 * shortest_step()) return land_by_clock(0.0);
+  const bool lasting = std::ranges::all_of(guards_start_, [](double guard) { return guard > 0.0; });
+  if (lasting && due <= t_end - t_ && field_.only_clocks_run(step_.dx0)) return wait_for_clock(due);
+  double dt = std::min({dt_, dt_max_, t_end - t_, due});
   bool shortened = dt < dt_;  // by the requested end, not by the error: the next step may be as long as before
-  truncated_ = dt == t_end - t_;
+  truncated_ = dt == t_end - t_ || dt == due;
   double within_layer = infinite;
   for (halvings_ = 0;; ++halvings_, dt = 0.5 * (step_.t1 - step_.t0)) {
     const double tried = dt;
@@ -380,6 +387,7 @@ Status March::step(double t_end) {
     dt_ = std::min(shortened ? std::max(dt, dt_) : dt, within_layer);
     ++steps_;
     if (event) return land(guard, length);
+    if (tried == due && step_.t1 == t_ + tried) return land_by_clock(length);
     break;
   }
   x_ = step_.x1;

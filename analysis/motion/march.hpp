@@ -49,6 +49,7 @@ struct Step {
   double t0 = 0.0, t1 = 0.0;
   State x0, x1, dx0, dx1;
   std::optional<std::size_t> switched;  ///< the element that switched at t1
+  bool by_clock = false;                ///< and that by its own clock
   bool on_section = false;              ///< t1 is a crossing of the section
   /// d(state after the step, and after the switch at its end)/dx0, if the march tracks it; empty if a switch was not
   /// crossed transversally.
@@ -121,6 +122,8 @@ class March {
   double just_beyond(std::size_t guard, double at, double last);
   void end_at(double h);
   Status land(std::size_t guard, double tried);
+  Status land_by_clock(double tried);
+  Status wait_for_clock(double due);
   bool release(SwitchSlopes& first);
 
   /// The range of rubbing velocities, |v| < edge, in which a friction law changes about rest.

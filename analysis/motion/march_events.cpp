@@ -181,12 +181,36 @@ Status March::land(std::size_t guard, double tried) {
     field_.fire(x_, t_, guard);
   }
   ++events_;
+  if (step_.by_clock) return Status::converged;
   event_times_.push_back(t_);
   if (event_times_.size() > 50) event_times_.pop_front();
   // In seconds, not relative to the motion: the slowest pole may be far slower, the fastest far faster, than any swing.
   const double short_time = 1e-10 * std::max(1.0, std::abs(t_));
   const bool accumulate = event_times_.size() == 50 && t_ - event_times_.front() < short_time;
   return accumulate ? Status::chattering : Status::converged;
+}
+
+/// The step to the next switch of a clock while nothing else moves: a body that waits for an integrator may do so for
+/// millions of samples.
+Status March::wait_for_clock(double due) {
+  step_.x1 = step_.x0;
+  for (std::size_t i = 0; i < x_.size(); ++i) step_.x1[i] += due * step_.dx0[i];
+  step_.t1 = t_ + due;
+  step_.dx1 = step_.dx0;
+  ++steps_;
+  if (tracks_) step_.transition = Eigen::MatrixXd::Identity(std::ssize(x_), std::ssize(x_));
+  return land_by_clock(due);
+}
+
+/// Completes a step of the length `tried`, at whose end the clock of an element has run down.
+Status March::land_by_clock(double tried) {
+  if (tried == 0.0) {
+    end_at(0.0);
+    ++steps_;
+  }
+  field_.guards(step_.x1, step_.t1, guards_mid_);
+  step_.by_clock = true;
+  return land(field_.clock_guard(guards_mid_), tried);
 }
 
 }  // namespace limcycle

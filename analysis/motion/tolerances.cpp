@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/models/element/cubic.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/transfer.hpp"
@@ -187,6 +188,7 @@ MatrixXd working_loop(const Loop& loop) {
 }
 
 std::vector<double> pole_moduli(const Loop& loop) {
+  if (loop.continuous) return pole_moduli(*loop.continuous);
   std::vector<double> found;
   if (loop.states() == 0) return found;
   const MatrixXd tangent = loop.tangent();
@@ -221,6 +223,7 @@ double output_level(const Loop& loop, std::size_t element) {
 }
 
 State typical_sizes(const Loop& loop) {
+  if (loop.continuous) return sampled_sizes(loop, LinearSizes(*loop.continuous).find());
   State result = LinearSizes(loop).find();
   for (const auto& element : loop.elements)
     for (int k = 0; k < element.states(); ++k) result.push_back(element.state_scale(k));

@@ -20,9 +20,14 @@ struct BrokenDiagram : std::invalid_argument {
 /// that differ.
 Loop assemble(const Diagram& diagram, double reference, double load);
 
+/// What stands for a sampled controller: itself, the continuous one that acts as it does on average behind the dead
+/// time of hold and computation, or the continuous one that it was made from.
+enum class Clock { sampled, averaged, continuous };
+
 /// The five slots of a loop as a diagram, and the same joined, without checking them: where validate() reports an
-/// error, the result is wrong or this throws.
-Diagram short_form(const LoopParts& parts);
+/// error, the result is wrong or this throws. Of a loop with a sampled controller the averaged form is returned, which
+/// holds the others: see Loop::sampled.
+Diagram short_form(const LoopParts& parts, Clock clock = Clock::continuous);
 Loop assemble(const LoopParts& parts);
 
 /// Element that computes the rate of the output of an element on the error; empty where that rate is not available.

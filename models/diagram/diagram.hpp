@@ -39,6 +39,7 @@ struct Block {
   Contact contact = Contact::none;
   std::string on = {}, against = {};
   std::vector<std::string> states = {};  ///< names of its states; empty: those of its kind
+  double late = 0.0;                     ///< all outputs of a plant are read that much later, s
 };
 
 /// A loop of any structure: blocks that are joined by the names of their signals.

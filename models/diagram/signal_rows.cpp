@@ -58,7 +58,7 @@ void SignalRows::add_part(const Block& block) {
     PlantCoordinates in{limcycle::model_of(*plant), {}};
     if (is_rubbed(block)) in = rubbing_coordinates(std::move(in.plant));
     part.linear.ss = {in.plant.A, in.plant.B_u, in.plant.C_y, Eigen::MatrixXd::Zero(1, 1)};
-    part.linear.delay = in.plant.delay;
+    part.linear.delay = in.plant.delay + block.late;
     part.linear.state_names = in.plant.state_names;
     if (in.plant.gravity) ++room_;
     part.own_states = in.own_states;

@@ -156,6 +156,13 @@ bool is_even_state(const E& element, int i) {
   return false;
 }
 
+/// Optional: an element with a clock of its own: `due(mode, z)` is the time, s, until the switch that comes next by
+/// that clock. All its guards are such times.
+template <class E>
+concept HasClock = requires(const E e, Mode mode, std::span<const double> z) {
+  { e.due(mode, z) } -> std::same_as<double>;
+};
+
 /// Optional: closed-form describing function N(A, w) for the input bias + A sin wt (friction: bias t + A sin wt);
 /// empty where the closed form does not hold.
 template <class E>

@@ -43,6 +43,7 @@ struct ElementFacts {
   bool rate_independent = false;       ///< see RateIndependent
   bool has_selection = false;          ///< see HasSelection
   bool has_closed_form = false;        ///< see HasExactDescribingFunction
+  bool has_clock = false;              ///< see HasClock
   bool keeps_return_points = false;    ///< so that the number of its states in use changes along a motion
   bool is_one_state = false;           ///< F and dz/dt are functions of one state and the velocity alone
   std::optional<Mode> stuck = {};      ///< the mode of a body at rest
@@ -66,6 +67,7 @@ struct ElementFace : Equations<double> {
   virtual bool drive_is_of_rate() const = 0;
   virtual double drive_band() const = 0;
   virtual bool arrests(Mode mode, int fired) const = 0;
+  virtual double due(Mode mode, std::span<const double> z) const = 0;
   virtual bool has_storage() const = 0;
   virtual bool follows_position() const = 0;
   virtual std::optional<std::complex<double>> exact_describing_function(double A, double w, double bias) const = 0;
@@ -160,6 +162,8 @@ class ElementOn {
   bool drive_is_of_rate() const { return face_->drive_is_of_rate(); }
   double drive_band() const { return face_->drive_band(); }
   bool arrests(Mode mode, int fired) const { return face_->arrests(mode, fired); }
+  /// Time until the next switch by the element's own clock, s; infinite without one.
+  double due(Mode mode, std::span<const double> z) const { return face_->due(mode, z); }
   /// Stored energy (J), if the element offers it; 0 if it does not or has no state.
   bool has_storage() const { return face_->has_storage(); }
   S storage(Mode mode, std::span<const S> z) const { return equations().storage(mode, z); }

@@ -87,6 +87,7 @@ constexpr ElementFacts facts_of(Author author) {
   facts.rate_independent = RateIndependent<Law>;
   facts.has_selection = HasSelection<Law, double>;
   facts.has_closed_form = HasExactDescribingFunction<Law>;
+  facts.has_clock = HasClock<Law>;
   facts.keeps_return_points = requires { requires Law::keeps_return_points; };
   facts.is_one_state = requires { requires Law::is_one_state; };
   if constexpr (requires { Law::stuck; }) facts.stuck = Law::stuck;
@@ -152,6 +153,10 @@ class FaceOf final : public EquationsOf<Law, double, ElementFace> {
   }
   bool drive_is_of_rate() const override { return limcycle::drive_is_of_rate(law_); }
   double drive_band() const override { return limcycle::drive_band(law_); }
+  double due(Mode mode, std::span<const double> z) const override {
+    if constexpr (HasClock<Law>) return law_.due(mode, z);
+    return infinite;
+  }
   bool arrests(Mode mode, int fired) const override { return limcycle::arrests(law_, mode, fired); }
   bool has_storage() const override {
     if constexpr (requires { law_.has_storage(); }) return law_.has_storage();

@@ -18,6 +18,18 @@ std::vector<std::string> numbered(Eigen::Index n) {
 
 }  // namespace
 
+std::optional<BrokenRule> Sampling::broken_together() const {
+  if (!is_on()) {
+    for (const auto& [key, value] : {std::pair("computation_delay", computation_delay),
+                                     {"encoder_quantum", encoder_quantum},
+                                     {"output_quantum", output_quantum}})
+      if (value > 0.0) return BrokenRule{key, "needs sample_time: a continuous controller has none"};
+    return std::nullopt;
+  }
+  if (computation_delay >= sample_time) return BrokenRule{"computation_delay", "must be less than sample_time"};
+  return std::nullopt;
+}
+
 ControllerModel NoController::model() const {
   ControllerModel controller{sized(0), 0.0, {}};
   controller.ss.D(0, 0) = 1.0;

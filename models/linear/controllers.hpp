@@ -30,8 +30,44 @@ struct Actuator {
   }
 };
 
+/// A controller on a computer: it reads y every `sample_time`, its output is held in between and comes out
+/// `computation_delay` after the reading. sample_time 0: it is continuous, and the others are without effect. Its
+/// equations become differences by d/dt -> (1 - z^-1)/sample_time (backward Euler).
+struct Sampling {
+  double sample_time{0.0}, computation_delay{0.0};  ///< s
+  double encoder_quantum{0.0};                      ///< y is read in multiples of it
+  double output_quantum{0.0};                       ///< the command comes in multiples of it
+
+  bool is_on() const { return sample_time > 0.0; }
+  /// The dead time that hold and computation amount to on average, s.
+  double mean_delay() const { return 0.5 * sample_time + computation_delay; }
+  /// The rule that these numbers break together.
+  std::optional<BrokenRule> broken_together() const;
+
+  template <class Owner>
+  static void append_table(std::vector<Parameter<Owner, double>>& table) {
+    table.push_back({"sample_time", "s", "time between two readings of y; 0: continuous", &Owner::sample_time,
+                     not_negative, false});
+    table.push_back({"computation_delay", "s", "from a reading to its command, less than sample_time",
+                     &Owner::computation_delay, not_negative, false});
+    table.push_back({"encoder_quantum", "m", "y is read in multiples of it; 0: exactly", &Owner::encoder_quantum,
+                     not_negative, false});
+    table.push_back({"output_quantum", "N", "the command comes in multiples of it; 0: exactly", &Owner::output_quantum,
+                     not_negative, false});
+  }
+};
+
+/// What any controller may have besides its equation.
+struct ControllerParts : Sampling, Actuator {
+  template <class Owner>
+  static void append_table(std::vector<Parameter<Owner, double>>& table) {
+    Sampling::append_table(table);
+    Actuator::append_table(table);
+  }
+};
+
 /// No controller: u = 0 with friction; u = e before a forward element.
-struct NoController : Actuator {
+struct NoController : ControllerParts {
   static constexpr std::string_view kind = "none";
   static constexpr std::string_view equation = "u = 0 with friction alone; u = e before an element";
   static std::vector<Parameter<NoController, double>> parameters() {
@@ -44,7 +80,7 @@ struct NoController : Actuator {
 };
 
 /// u = kp e + ki int(e) + kd de/dt, the derivative filtered by 1/(tf s + 1) when tf > 0.
-struct Pid : Actuator {
+struct Pid : ControllerParts {
   double kp{}, ki{0.0}, kd{0.0}, tf{0.0};
   static constexpr std::string_view kind = "pid";
   static constexpr std::string_view equation =
@@ -63,7 +99,7 @@ struct Pid : Actuator {
 };
 
 /// u = numerator(s)/denominator(s) e, proper.
-struct TransferFunctionController : Actuator {
+struct TransferFunctionController : ControllerParts {
   std::vector<double> numerator, denominator;
   static constexpr std::string_view kind = "transfer-function";
   static constexpr std::string_view equation = "u = numerator(s)/denominator(s) e, highest power first";
@@ -80,7 +116,7 @@ struct TransferFunctionController : Actuator {
 };
 
 /// dx/dt = A x + B e, u = C x + D e.
-struct StateSpaceController : Actuator {
+struct StateSpaceController : ControllerParts {
   Eigen::MatrixXd A, B, C, D{Eigen::MatrixXd(0, 0)};
   static constexpr std::string_view kind = "state-space";
   static constexpr std::string_view equation = "dx/dt = A x + B e, u = C x + D e";
@@ -105,7 +141,7 @@ struct StateSpaceController : Actuator {
 ///   velocity_kp/velocity_ki.
 /// acceleration_feedforward multiplies d2r/dt2, which is zero for a constant reference and for a ramp.
 /// Back-calculation: Astrom and Hagglund (1995), PID Controllers, ch. 3.5.
-struct Cascade : Actuator {
+struct Cascade : ControllerParts {
   double position_kp{}, position_ki{0.0}, velocity_kp{}, velocity_ki{0.0}, velocity_feedforward{0.0},
       acceleration_feedforward{0.0}, limit{infinite};
   Choice anti_windup{};
@@ -144,8 +180,10 @@ using Controller = std::variant<NoController, Pid, TransferFunctionController, S
 inline ControllerModel model_of(const Controller& controller) {
   return std::visit([](const auto& c) { return c.model(); }, controller);
 }
-inline const Actuator& actuator_of(const Controller& controller) {
-  return std::visit([](const auto& c) -> const Actuator& { return c; }, controller);
+inline const ControllerParts& parts_of(const Controller& controller) {
+  return std::visit([](const auto& c) -> const ControllerParts& { return c; }, controller);
 }
+inline const Actuator& actuator_of(const Controller& controller) { return parts_of(controller); }
+inline const Sampling& sampling_of(const Controller& controller) { return parts_of(controller); }
 
 }  // namespace limcycle

@@ -97,7 +97,7 @@ std::string continue_answer(const ContinueReport& report, const Units&) {
   if (found.status == Status::interrupted) out = "Interrupted; partial result: ";
   if (!found.refused.empty())
     return out + "Not answered: " + found.refused + " over " + report.path +
-           ". `limcycle map` answers over a plane of parameters, with the dead time approximated.";
+           ". `limcycle map` answers over a plane of parameters.";
   if (found.branches.empty()) return out + (out.empty() ? "No" : "no") + " limit cycle was found for " + range + ".";
   const Span span = stable_span(report);
   if (span.any())

@@ -99,8 +99,7 @@ Table margin_table(const MarginReport& report, bool friction) {
 std::string margin_answer(const MarginReport& report, const Units& units) {
   std::string out = report.status == Status::interrupted ? "Interrupted; partial result: " : "";
   if (!report.refused.empty()) {
-    out += "Not answered: " + report.refused +
-           " over a parameter. `limcycle map` answers over a plane of parameters, with the dead time approximated.";
+    out += "Not answered: " + report.refused + " over a parameter. `limcycle map` answers over a plane of parameters.";
     return out + of_balance(report);
   }
   if (report.hunts) {

@@ -71,9 +71,13 @@ std::string map_answer(const MapReport& report) {
   if (known == 0) return "Nothing was computed.";
   const auto hunting = static_cast<std::size_t>(
       std::ranges::count_if(report.map.points, [](const auto& point) { return point && point->has(Outcome::cycle); }));
-  std::string answer = hunting == 0       ? "The loop hunts nowhere on this map."
-                       : hunting == known ? "The loop can hunt everywhere on this map."
-                                          : "The loop can hunt on " + share(hunting, known) + " of this map.";
+  const auto uneven = static_cast<std::size_t>(std::ranges::count_if(
+      report.map.points, [](const auto& point) { return point && point->has(Outcome::irregular); }));
+  std::string answer =
+      hunting == 0 ? uneven > 0 ? "The loop has no limit cycle on this map." : "The loop hunts nowhere on this map."
+      : hunting == known ? "The loop can hunt everywhere on this map."
+                         : "The loop can hunt on " + share(hunting, known) + " of this map.";
+  if (uneven > 0) answer += " It moves for ever without a period on " + share(uneven, known) + " of it.";
   for (std::size_t m = 0; m < report.map.methods.size(); ++m) {
     const std::size_t missed = count(report.map, m, Worth::missed), wrong = count(report.map, m, Worth::wrong),
                       biased = count(report.map, m, Worth::biased);

@@ -71,15 +71,22 @@ std::string fates(const PredictReport& report) {
 
 /// "between -0.88 m and 0.88 m", for the largest irregular motion.
 std::string irregular_size(const PredictReport& report, const Units& units) {
-  const auto largest = std::ranges::max_element(report.outcomes, {}, &OutcomeOfStart::half_range);
-  return fmt::format(" It never comes to rest: half-range {}, mean period {} s.",
-                     Units::attach(with_digits(largest->half_range, 3), units.y), with_digits(largest->mean_period, 3));
+  const auto largest =
+      std::ranges::max_element(report.outcomes, {}, [](const OutcomeOfStart& one) { return one.irregular.half_range; });
+  const IrregularMotion& motion = largest->irregular;
+  return fmt::format(" It never comes to rest: half-range {}, mean period {} s, single ones from {} to {} s over {} s.",
+                     Units::attach(with_digits(motion.half_range, 3), units.y), with_digits(motion.mean_period, 3),
+                     with_digits(motion.shortest_period, 4), with_digits(motion.longest_period, 4),
+                     with_digits(motion.observed, 2));
 }
 
 std::string without_cycle(const PredictReport& report, const Units& units) {
   if (report.outcomes.empty()) return "Not verified in the time domain.";
   if (count(report, Outcome::undecided) > 0)
     return "Whether this loop has a limit cycle is undecided: " + fates(report) + ".";
+  if (count(report, Outcome::irregular) > 0 && report.sample_time > 0.0)
+    return "This loop hunts, without a period that is locked to its samples: " + fates(report) + "." +
+           irregular_size(report, units);
   if (count(report, Outcome::irregular) > 0)
     return "This loop moves irregularly, without a period: " + fates(report) + "." + irregular_size(report, units);
   if (count(report, Outcome::family) > 0) return "This loop oscillates without a limit cycle: " + fates(report) + ".";

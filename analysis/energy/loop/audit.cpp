@@ -207,6 +207,8 @@ void EnergyAudit::step(LoopField& field, March& march, const std::vector<Mode>& 
 
 const EnergyBalance& EnergyAudit::balance() const { return count_->balance(); }
 
-bool has_energy(const LoopParts& parts) { return !parts.diagram && (parts.friction || energy_of(parts.plant)); }
+bool has_energy(const LoopParts& parts) {
+  return !parts.diagram && !sampling_of(parts.controller).is_on() && (parts.friction || energy_of(parts.plant));
+}
 
 }  // namespace limcycle

@@ -48,7 +48,14 @@ AffineFlow::InMode& AffineFlow::present() {
   return modes_.emplace(std::move(key), std::move(fresh)).first->second;
 }
 
-MatrixXd AffineFlow::over(double h) { return exponential(present().generator * h); }
+MatrixXd AffineFlow::over(double h) {
+  constexpr std::size_t most = 4;
+  InMode& mode = present();
+  const auto known = std::ranges::find(mode.last, h, &std::pair<double, MatrixXd>::first);
+  if (known != mode.last.end()) return known->second;
+  if (mode.last.size() == most) mode.last.erase(mode.last.begin());
+  return mode.last.emplace_back(h, exponential(mode.generator * h)).second;
+}
 
 const MatrixXd& AffineFlow::over_power(int k) {
   InMode& mode = present();

@@ -17,7 +17,8 @@ class AffineFlow {
   /// True if every element of the loop is piecewise affine, so that this flow is its motion.
   static bool applies(const Loop& loop);
 
-  /// exp(M h) in the field's present modes, (n+1) x (n+1). Cost O(n^3).
+  /// exp(M h) in the field's present modes, (n+1) x (n+1), kept for the last few h: a clock asks for the same ones.
+  /// Cost O(n^3).
   Eigen::MatrixXd over(double h);
   /// exp(M 2^k s), cached.
   const Eigen::MatrixXd& over_power(int k);
@@ -31,6 +32,7 @@ class AffineFlow {
   struct InMode {
     Eigen::MatrixXd generator;
     std::map<int, Eigen::MatrixXd> powers;
+    std::vector<std::pair<double, Eigen::MatrixXd>> last;
   };
   InMode& present();
 

@@ -39,6 +39,7 @@ LoopField::LoopField(const Loop& loop)
     ports_.push_back({Sparse(port.C), Sparse(port.D), Sparse(port.C_v), Sparse(port.D_v), Sparse(port.c),
                       Sparse(port.c_v), Sparse(loop.B.col(static_cast<Index>(i)).transpose()).entries});
     if (port.selection_of) has_follower_[*port.selection_of] = true;
+    if (loop.elements[i].facts().has_clock) clocks_.push_back(i);
   }
   for (std::size_t i = 0; i < ne_; ++i) {
     if (!loop.elements[i].needs_drive()) continue;

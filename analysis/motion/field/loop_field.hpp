@@ -71,6 +71,12 @@ class LoopField {
   bool fire(State& x, double t, std::size_t guard, SwitchSlopes& slopes);
   /// The element whose guard this is.
   std::size_t owner(std::size_t guard) const;
+  /// Time until the next switch by an element's own clock, s; infinite without one.
+  double due(const State& x) const;
+  /// True if nothing changes at these rates but the states of elements with a clock.
+  bool only_clocks_run(const State& dx) const;
+  /// Of guards with these values, the one of the clock that runs down first.
+  std::size_t clock_guard(const std::vector<double>& g) const;
   /// True if element i holds its body now, as one that sticks does.
   bool holds(std::size_t i) const { return held(i) != Held::nothing; }
   /// Modes of elements without history at this state, whose own states are set too.
@@ -131,6 +137,7 @@ class LoopField {
   std::vector<std::size_t> first_state_;
   std::vector<ElementSlopes> slopes_;
   std::vector<bool> has_follower_;
+  std::vector<std::size_t> clocks_;  ///< elements with a clock
   std::vector<Mode> modes_;
   ExternalSignals signals_;
 

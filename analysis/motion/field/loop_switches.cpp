@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -44,6 +45,37 @@ std::size_t LoopField::owner(std::size_t guard) const {
     if (guard < at) return i;
   }
   return modes_.size();
+}
+
+double LoopField::due(const State& x) const {
+  double first = infinite;
+  for (const std::size_t i : clocks_) first = std::min(first, loop_->elements[i].due(modes_[i], own_states(x, i)));
+  return first;
+}
+
+bool LoopField::only_clocks_run(const State& dx) const {
+  const auto still = [&](std::size_t from, std::size_t to) {
+    return std::all_of(dx.begin() + static_cast<std::ptrdiff_t>(from), dx.begin() + static_cast<std::ptrdiff_t>(to),
+                       [](double rate) { return rate == 0.0; });
+  };
+  if (clocks_.empty() || !still(0, n_)) return false;
+  for (std::size_t i = 0; i < ne_; ++i) {
+    const std::size_t end = i + 1 < ne_ ? first_state_[i + 1] : size_;
+    if (!loop_->elements[i].facts().has_clock && !still(first_state_[i], end)) return false;
+  }
+  return true;
+}
+
+std::size_t LoopField::clock_guard(const std::vector<double>& g) const {
+  std::size_t at = 0, first = g.size();
+  for (std::size_t i = 0; i < ne_; ++i) {
+    if (!has_own_guards(i)) continue;
+    const std::size_t end = at + static_cast<std::size_t>(loop_->elements[i].guards(modes_[i]));
+    const bool has_clock = loop_->elements[i].facts().has_clock;
+    for (; at < end; ++at)
+      if (has_clock && (first == g.size() || g[at] < g[first])) first = at;
+  }
+  return first;
 }
 
 /// Number of a guard among those of its own element.

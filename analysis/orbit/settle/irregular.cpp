@@ -52,6 +52,11 @@ bool goes_one_way(const std::array<Part, part_count>& all) {
 struct Returns {
   std::vector<double> times, peaks;
   double mean() const { return (times.back() - times.front()) / static_cast<double>(times.size() - 1); }
+  std::vector<double> periods() const {
+    std::vector<double> all;
+    for (std::size_t i = 1; i < times.size(); ++i) all.push_back(times[i] - times[i - 1]);
+    return all;
+  }
 };
 
 Returns returns_to(double level, const Trace& trace, std::size_t from) {
@@ -89,7 +94,7 @@ bool repeats(const Returns& returns, double range) {
 
 }  // namespace
 
-std::optional<IrregularMotion> permanent_motion(const Trace& trace) {
+std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat) {
   if (trace.t.size() < 1000) return std::nullopt;
   const double end = trace.t.back(), begin = trace.t.front() + (end - trace.t.front()) / 3.0;
   std::array<Part, part_count> all;
@@ -114,8 +119,10 @@ std::optional<IrregularMotion> permanent_motion(const Trace& trace) {
   if (scatter(all, range) > range_scatter || scatter(all, &Part::spread) > spread_scatter ||
       scatter(all, count) > returns_scatter)
     return std::nullopt;
-  if (goes_one_way(all) || repeats(returns, high - low)) return std::nullopt;
-  return IrregularMotion{0.5 * (high - low), returns.mean()};
+  if (goes_one_way(all) || (!may_repeat && repeats(returns, high - low))) return std::nullopt;
+  const auto [shortest, longest] = std::ranges::minmax(returns.periods());
+  return IrregularMotion{0.5 * (high - low), returns.mean(), shortest, longest,
+                         returns.times.back() - returns.times.front()};
 }
 
 bool agree(const IrregularMotion& one, const IrregularMotion& other) {

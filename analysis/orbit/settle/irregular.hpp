@@ -9,13 +9,16 @@ namespace limcycle {
 struct IrregularMotion {
   double half_range = 0.0;   ///< half of the difference of largest and least y
   double mean_period = 0.0;  ///< mean time between upward crossings of the middle of that range, s
+  double shortest_period = 0.0, longest_period = 0.0;  ///< of the times between two such crossings, s
+  double observed = 0.0;                               ///< time of all of them, s
 };
 
 /// The numbers of a recorded motion without its first third, if it looks permanent: over four equal parts of the rest
 /// its range, its spread and its returns stay the same within the scatter of such numbers, its spread neither falls nor
-/// rises from each part to the next (a slow decay, a slow approach), and the returns do not repeat themselves. agree()
+/// rises from each part to the next (a slow decay, a slow approach), and the returns do not repeat themselves, unless
+/// they may: those of a sampled loop differ by less than the resolution of a run if its samples are short. agree()
 /// decides if the numbers belong to the loop or to the tolerance.
-std::optional<IrregularMotion> permanent_motion(const Trace& trace);
+std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat = false);
 
 /// True if two runs at different tolerances give the same numbers. Chaotic motions part after a while.
 bool agree(const IrregularMotion& one, const IrregularMotion& other);

@@ -72,6 +72,10 @@ void OutcomeWatch::look(double t, const State& x, const State& dx, const std::ve
 
 void OutcomeWatch::switched(const LoopField& field, const State& x, double t, std::size_t i) {
   if (decided()) return;
+  if (loop_.elements[i].facts().has_clock) {
+    if (const auto still = stillness_.read(t, x, field)) decide(still->outcome);
+    return;
+  }
   stillness_.restart(t);
   const auto still = switching_.switched(field, x, t, i);
   if (!still) return;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/orbit/settle/displaced.hpp"
@@ -20,8 +21,9 @@ namespace {
 /// Step limit of shooting before a motion is decided: this constant, plus a multiple of the motion's own steps.
 constexpr long steps_of_tries = 200'000, tries_per_step = 3;
 constexpr double settled_change = 1e-3;  ///< relative change of the swings of a motion that has all but settled
-constexpr int most_restarts = 3;         ///< with short steps, of a march that left the range of numbers
-constexpr long periods_of_a_try = 40;    ///< of return maps; most that converge take 5 to 20, up to 15 maps
+constexpr long most_readings = 5'000'000;
+constexpr int most_restarts = 3;       ///< with short steps, of a march that left the range of numbers
+constexpr long periods_of_a_try = 40;  ///< of return maps; most that converge take 5 to 20, up to 15 maps
 
 /// One run: simulation, and shooting whenever the swings look steady.
 class Settling {
@@ -54,13 +56,18 @@ class Settling {
   }
 
   void note() {
-    append(result_.trace, field_, march_);
+    const bool by_clock = march_.last().by_clock;
+    if (!by_clock) append(result_.trace, field_, march_);
     field_.rate(march_.x(), dx_, march_.t());
+    if (by_clock && !waits()) append(result_.trace, field_, march_.x(), dx_, march_.t());
   }
+
+  /// True if nothing moved since the last reading of a sampled controller: a trace of every sample is long.
+  bool waits() const { return field_.y(march_.x()) == result_.trace.y.back() && field_.y_rate(dx_) == 0.0; }
 
   void step() {
     if (options_.stop && options_.stop()) return decide(Outcome::undecided, "interrupted");
-    if (march_.steps() > options_.max_steps && march_.steps() > horizon()) {
+    if (own_steps() > options_.max_steps && own_steps() > horizon()) {
       look_for_growth();
       return decided_ ? void() : look_for_irregular();
     }
@@ -82,9 +89,24 @@ class Settling {
     if (decided_) return;
     if (auto still = stillness_.look(march_.t(), march_.x(), dx_, field_.modes())) come_to(*still);
     if (decided_ || !march_.last().switched) return;
+    if (march_.last().by_clock) return read();
     if (auto still = stillness_.switched(march_.t(), dx_)) return come_to(*still);
     if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
   }
+
+  /// After the clock of a sampled controller has switched.
+  void read() {
+    ++readings_;
+    if (auto still = stillness_.read(march_.t(), march_.x(), field_)) return come_to(*still);
+    if (readings_ > most_readings)
+      decide(Outcome::undecided, "undecided after " + std::to_string(most_readings) + " samples");
+  }
+
+  /// Readings of a sampled controller in that time.
+  long samples_in(double time) const { return loop_.continuous ? std::lround(time / sample_time(loop_)) : 0; }
+
+  /// Steps that the motion itself took: a clock cuts even a long wait into many.
+  long own_steps() const { return march_.steps() - readings_; }
 
   /// The step limit, or more for a motion that has not turned often enough, or not lasted long enough for a known
   /// cycle, to be judged: bristles that ring while the body sticks may take 30,000 steps between two of its turns.
@@ -99,14 +121,19 @@ class Settling {
   /// For neither rest nor a cycle within the step limit: permanent nevertheless, if two tolerances give the same
   /// numbers.
   void look_for_irregular() {
-    const auto motion = permanent_motion(result_.trace);
-    const auto again = motion ? permanent_motion(repeated(march_.t())) : std::nullopt;
+    const bool sampled = loop_.continuous != nullptr;
+    // A wait before the first swing, of an integrator that has to wind up, is no part of the motion.
+    const std::size_t turns = turning_.points().size();
+    const auto motion = permanent_motion(sampled && turns > 4 ? recent(turns - 2) : result_.trace, sampled);
+    // An exact march has no tolerance that could be another.
+    const bool exact = march_.kind() == StepperKind::exact;
+    const auto again = motion && !exact ? permanent_motion(repeated(march_.t()), sampled) : motion;
     if (!motion || !again || !agree(*motion, *again))
       return decide(Outcome::undecided, motion ? "bounded, but its range differs between two tolerances"
                                                : "step limit reached before rest or a cycle was recognised");
-    result_.half_range = again->half_range;
-    result_.mean_period = again->mean_period;
-    decide(Outcome::irregular, "bounded without a period; a second tolerance gives the same range");
+    result_.irregular = *again;
+    decide(Outcome::irregular,
+           exact ? "bounded without a period" : "bounded without a period; a second tolerance gives the same range");
   }
 
   /// The same run with a tolerance a hundred times tighter.
@@ -118,7 +145,7 @@ class Settling {
     March march(field, march_.kind(), loop_weights(loop_, std::max(tightest, tighter * options_.rtol)));
     march.begin(start_.x, 0.0);
     Trace trace;
-    while (march.t() < until && march.steps() < longer * options_.max_steps) {
+    while (march.t() < until && march.steps() < longer * options_.max_steps + readings_) {
       if (options_.stop && options_.stop()) break;
       if (march.step(until) != Status::converged) break;
       trace.t.push_back(march.t());
@@ -142,6 +169,12 @@ class Settling {
   void look_at_swings() {
     const auto& points = turning_.points();
     if (points.size() < 5) return;
+    if (loop_.continuous && points.size() >= next_irregular_) {
+      next_irregular_ *= 2;
+      look_for_irregular();
+      if (result_.outcome == Outcome::irregular) return;
+      decided_ = false;
+    }
     if (points.size() >= next_growth_) {
       next_growth_ *= 2;
       look_for_growth();
@@ -191,7 +224,7 @@ class Settling {
   std::optional<std::size_t> recognised(const LoopState& here, double swing) {
     for (std::size_t i = 0; i < options_.known.size(); ++i) {
       const Cycle& cycle = options_.known[i];
-      if (std::abs(2.0 * cycle.amplitude / swing - 1.0) > 0.02) continue;
+      if (cycle.stable == false || std::abs(2.0 * cycle.amplitude / swing - 1.0) > 0.02) continue;
       const Section section = choose_section(loop_, cycle.trace);
       ReturnMap map(loop_, section, std::nullopt,
                     {options_.rtol, options_.shooting.max_steps_per_map, options_.stop, false, infinite,
@@ -233,6 +266,7 @@ class Settling {
   /// Keeps an unstable cycle that the motion passes, once.
   void pass(const Cycle& cycle) {
     constexpr double same = 1e-4;
+    if (loop_.continuous) return;  // the samples make many of them, in a narrow band
     const bool known = std::ranges::any_of(result_.passed, [&](const Cycle& one) {
       return std::abs(one.period / cycle.period - 1.0) < same && std::abs(one.amplitude / cycle.amplitude - 1.0) < same;
     });
@@ -241,7 +275,8 @@ class Settling {
 
   /// `change`: see largest_change().
   bool try_cycle(std::size_t order, double change) {
-    if (tried_ > steps_of_tries + tries_per_step * march_.steps()) return false;
+    if (tried_ > (loop_.continuous ? march_.steps() / 2 : steps_of_tries + tries_per_step * march_.steps()))
+      return false;
     next_try_ = turning_.points().size() + turning_.points().size() / 2 + 1;
     const Trace period = recent(order);
     const auto [low, high] = extremes(period);
@@ -257,7 +292,7 @@ class Settling {
     bool half = reflection && order % 4 == 2 && std::abs(0.5 * (low + high) - middle) < 0.02 * swing;
     ShootingOptions shooting = options_.shooting;
     shooting.max_maps = std::min(shooting.max_maps, 40);
-    shooting.max_steps = periods_of_a_try * std::ssize(period.t);
+    shooting.max_steps = periods_of_a_try * (std::ssize(period.t) + samples_in(period.t.back() - period.t.front()));
     shooting.longest_map = 10.0 * (period.t.back() - period.t.front());
     const Section section = choose_section(loop_, period);
     shooting.returns = returns_of(section, period);
@@ -314,7 +349,9 @@ class Settling {
   std::optional<Cycle> candidate_;
   double mismatch_ = 0.0;
   std::size_t next_try_ = 5, next_growth_ = 64;
-  long tried_ = 0;  ///< steps of return maps
+  std::size_t next_irregular_ = 128;  ///< of a sampled loop, whose cycles need not lock to the samples
+  long tried_ = 0;                    ///< steps of return maps
+  long readings_ = 0;
   int restarts_ = 0;
   bool decided_ = false;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limcycle/analysis/orbit/cycle/shooting.hpp"
+#include "limcycle/analysis/orbit/settle/irregular.hpp"
 
 namespace limcycle {
 
@@ -31,8 +32,7 @@ struct Settled {
   Outcome outcome = Outcome::undecided;
   std::string why;                     ///< one sentence
   std::string by;                      ///< "switching": rest reached through ever faster switching; else empty
-  double half_range = 0.0;             ///< of an irregular motion: half the range of y; else 0
-  double mean_period = 0.0;            ///< of an irregular motion: mean time between returns to its middle, s; else 0
+  IrregularMotion irregular;           ///< the numbers of an irregular motion
   std::optional<ShootingResult> shot;  ///< for a new cycle
   std::optional<std::size_t> known;    ///< index of the known cycle that was reached
   std::vector<Cycle> passed;           ///< unstable cycles near which the motion was for a while

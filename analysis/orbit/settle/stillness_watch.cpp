@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
@@ -11,6 +12,7 @@ namespace {
 /// Most motions at rest are recognised earlier; only then is the algebra of a slow decay worth its cost.
 constexpr int patience = 12;
 constexpr double drift = 1e-6;  ///< rates below this are rounding, in sizes per slowest time constant
+constexpr double fades = 1e-6;  ///< largest rate of a state of rest that no algebra confirms, likewise
 
 }  // namespace
 
@@ -19,7 +21,7 @@ StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, doubl
 
 std::optional<Stillness> StillnessWatch::look(double t, const State& x, const State& dx,
                                               const std::vector<Mode>& modes) {
-  if (t < rest_.next()) return std::nullopt;
+  if (t < rest_.next() || loop_.continuous) return std::nullopt;
   const auto verdict = rest_.look(t, x, dx);
   const bool algebra = ++looks_ >= patience && t >= next_algebra_;
   if (verdict == RestWatch::Verdict::moving && !algebra) return std::nullopt;
@@ -39,6 +41,23 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
                    "the motion decays linearly, at a rate of at least " + short_number(approach->decay, 3) + " 1/s"};
 }
 
+std::optional<Stillness> StillnessWatch::read(double t, const State& x, const LoopField& field) {
+  constexpr double nearly = 1.0 - 1e-9;
+  const double passed = t - read_at_;
+  if (!read_.empty() && passed < nearly * sample_time(loop_)) return std::nullopt;
+  State mean(x.size());
+  for (std::size_t i = 0; i < read_.size(); ++i) mean[i] = (x[i] - read_[i]) / passed;
+  const bool first = read_.empty();
+  read_ = x;
+  read_at_ = t;
+  if (first) return std::nullopt;
+  const auto verdict = rest_.look(t, x, mean);
+  const bool slides = rubs_at(field, x);
+  if (verdict == RestWatch::Verdict::steady && slides) return Stillness{Outcome::sliding, "slides at constant speed"};
+  if (verdict != RestWatch::Verdict::at_rest || !(rest_.rate(mean) <= fades)) return std::nullopt;
+  return slides ? Stillness{Outcome::sliding, "slides at constant speed"} : Stillness{Outcome::rest, "came to rest"};
+}
+
 std::optional<Stillness> StillnessWatch::switched(double t, const State& dx) {
   constexpr int many = 50;
   restart(t);
@@ -55,7 +74,7 @@ std::optional<Stillness> StillnessWatch::within_rounding(const State& dx) const 
 }
 
 std::optional<Stillness> StillnessWatch::at_rest(LoopField& field, const State& x, const State& dx) const {
-  constexpr double near = 0.01, fades = 1e-6;
+  constexpr double near = 0.01;
   const auto still = [](bool slides) {
     return slides ? Stillness{Outcome::sliding, "slides at constant speed"} : Stillness{Outcome::rest, "came to rest"};
   };

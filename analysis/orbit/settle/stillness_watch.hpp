@@ -28,6 +28,9 @@ class StillnessWatch {
   double next() const { return rest_.next(); }
   /// The state, its rates and the modes at a time not before next(), or after every step.
   std::optional<Stillness> look(double t, const State& x, const State& dx, const std::vector<Mode>& modes);
+  /// In place of look(), of a loop with a sampled controller: after the clock of an element has switched. Rates are the
+  /// changes of the state from one reading to the next; it rests once they fade, and slides once they are steady.
+  std::optional<Stillness> read(double t, const State& x, const LoopField& field);
   /// After a switch: see RestWatch::switched.
   void restart(double t) { rest_.switched(t); }
   /// The same, with a look at it: the time of a switch and the rates after it. A body that creeps to rest at the edge
@@ -45,6 +48,8 @@ class StillnessWatch {
   RestWatch rest_;
   int looks_ = 0, idle_ = 0;
   double next_algebra_ = 0.0;
+  State read_;  ///< the state at the last reading, and its time
+  double read_at_ = 0.0;
 };
 
 }  // namespace limcycle

@@ -242,6 +242,7 @@ State state_of(const Loop& loop, State values) {
 
 Simulation simulate(const Loop& loop, const SimulateOptions& options) {
   check(options);
+  if (loop.sampled) return simulate(*loop.sampled, options);
   if (loop.delay > 0.0) throw std::invalid_argument("loop.plant.delay: simulate does not treat a delay yet");
   return Running(loop, options)();
 }

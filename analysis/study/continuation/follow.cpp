@@ -48,7 +48,7 @@ class Following {
       return {};
     }
     if (!in_exact_time(*loop)) {
-      report_.refused = no_exact_time;
+      report_.refused = why_not_followed(*loop);
       report_.status = Status::incomplete;
       return {};
     }

@@ -22,7 +22,7 @@ class Margins {
 
   MarginReport run() {
     if (!in_exact_time(loop_)) {
-      report_.refused = no_exact_time;
+      report_.refused = why_not_followed(loop_);
       report_.status = Status::incomplete;
       measure_balance();
       return std::move(report_);

@@ -26,8 +26,7 @@ OutcomeOfStart CycleHunt::simulate(const LoopState& start, std::string name) {
   outcome.cycle = settled.known;
   steps_ += settled.work;
   outcome.by = std::move(settled.by);
-  outcome.half_range = settled.half_range;
-  outcome.mean_period = settled.mean_period;
+  outcome.irregular = settled.irregular;
   if (settled.shot) {
     maps_ += settled.shot->maps;
     outcome.cycle = merge(cycles_, settled.shot->cycle);

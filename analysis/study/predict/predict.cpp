@@ -5,7 +5,9 @@
 #include <future>
 
 #include "limcycle/analysis/derivative_notes.hpp"
+#include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/orbit/settle/load_step.hpp"
+#include "limcycle/analysis/orbit/settle/stop_map.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/balance/balance_predictions.hpp"
 #include "limcycle/analysis/study/balance/df_predictions.hpp"
@@ -47,6 +49,7 @@ class PredictionStudy {
     look_beside_unstable_cycles();
     balance_harmonics(share);
     look_beside_unstable_cycles();
+    if (time_.continuous) compare_with_continuous();
     finish();
     return std::move(report_);
   }
@@ -65,6 +68,7 @@ class PredictionStudy {
     time_ = std::move(made.treated.loop);
     pade_order_ = made.treated.pade_order;
     if (!made.note.empty()) note(std::move(made.note));
+    if (time_.continuous) report_.sample_time = sample_time(time_);
     hunt_.emplace(time_, options_, box_);
     if (hunt_->rtol() < SettleOptions{}.rtol)
       note("bristles of this stiffness need a tolerance of " + short_number(hunt_->rtol(), 2) +
@@ -124,6 +128,21 @@ class PredictionStudy {
     between_.emplace(time_, *hunt_, share.between_steps, options_.stop);
     between_->look_between(starts_, {[&](double displacement) { return displaced(time_, displacement); },
                                      [&](double displacement) { return start_name(displacement); }});
+    look_from_stops();
+  }
+
+  /// Looks for stable cycles whose range of attraction no start has met, by the map from one stop to the next.
+  void look_from_stops() {
+    constexpr double near = 1.3;
+    auto map = StopMap::of(time_, hunt_->rtol(), options_.stop);
+    if (!map || starts_.empty() || stopped()) return;
+    const double most = starts_.front().place;
+    for (const double p : map->growing(most * box_.amplitude_min / box_.amplitude_max, most)) {
+      const bool known = std::ranges::any_of(hunt_->cycles(), [&](const Cycle& cycle) {
+        return cycle.stable == true && cycle.amplitude > p / near && cycle.amplitude < p * near * near;
+      });
+      if (!known && !stopped()) hunt_->probe_from(map->held_at(p), "held until it breaks away at " + start_name(p));
+    }
   }
 
   void look_beside_unstable_cycles() {
@@ -175,6 +194,8 @@ class PredictionStudy {
 
   LoopState start_of(std::size_t index) {
     const Prediction& p = report_.predictions[index];
+    if (time_.continuous)
+      return sampled_state(time_, LoopBalance(*time_.continuous).linear_state(p.input_amplitude, p.frequency, 0.0));
     if (p.method == composite_name) return composite_->state(composite_roots_[index - first_composite_]);
     return LoopBalance(time_).state(p.input_amplitude, p.frequency);
   }
@@ -194,6 +215,7 @@ class PredictionStudy {
 
   void balance_harmonics(const WorkShare& share) {
     if (!options_.methods.harmonic_balance || stopped()) return;
+    if (time_.continuous) return note("harmonic balance does not treat a sampled controller");
     tell(0.95, "harmonic balance");
     BalancePredictions found = balance_predictions(
         {loop_, time_, balance_ ? &*balance_ : nullptr, report_.predictions, share.balance_evaluations, options_.stop},
@@ -207,6 +229,26 @@ class PredictionStudy {
     }
     report_.efforts.push_back(std::move(found.effort));
     used_.emplace_back(balance_name);
+  }
+
+  /// The same loop with the continuous controller that acts as the sampled one does on average.
+  void compare_with_continuous() {
+    if (stopped() || starts_.empty()) return;
+    Loop averaged = loop_;
+    averaged.sampled.reset();
+    constexpr int order = 2;  // of the approximation of a dead time that is short against any motion of interest
+    const Loop in_time = in_time_domain(averaged, order).loop;
+    CycleHunt hunt(in_time, options_, box_);
+    const OutcomeOfStart one =
+        hunt.settle_from(displaced(in_time, starts_.front().place), start_name(starts_.front().place));
+    std::string does = "ends in " + std::string(to_string(one.outcome));
+    if (one.cycle) {
+      const Cycle& cycle = hunt.cycles()[*one.cycle];
+      does = "comes to a limit cycle of period " + short_number(cycle.period, 5) + " s and amplitude " +
+             short_number(cycle.amplitude, 4);
+    }
+    note("with the continuous controller that acts on average as this one does, and that dead time, the loop " + does +
+         " from " + one.start);
   }
 
   void note_memory() {

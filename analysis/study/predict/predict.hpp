@@ -64,11 +64,11 @@ struct OutcomeOfStart {
   Outcome outcome = Outcome::undecided;
   std::string why;  ///< one sentence
   std::optional<std::size_t> cycle;
-  Trace trace;                                 ///< the run, for figures
-  double time = 0.0;                           ///< simulated, s
-  long steps = 0;                              ///< of the integrator
-  std::string by{};                            ///< as in Settled
-  double half_range = 0.0, mean_period = 0.0;  ///< of an irregular motion, as in Settled
+  Trace trace;                  ///< the run, for figures
+  double time = 0.0;            ///< simulated, s
+  long steps = 0;               ///< of the integrator
+  std::string by{};             ///< as in Settled
+  IrregularMotion irregular{};  ///< likewise
 };
 
 /// Work of a method, in the unit in which it is counted. Times are not given here: results do not depend on the time
@@ -107,6 +107,7 @@ struct PredictReport {
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: proof of absence, if any
   std::vector<std::string> notes;    ///< notes for the user: methods that do not apply, incomplete searches
   Status status = Status::converged;
+  double sample_time = 0.0;       ///< of a sampled controller, s; 0: it is continuous
   std::vector<Effort> efforts{};  ///< of the methods that ran, without those of the outcomes
 };
 

@@ -36,7 +36,7 @@ void PredictionCheck::check(Prediction& p, const LoopState& start, std::string n
     p.why = "unverified: step limit reached";
     return;
   }
-  if (p.method == df_name && p.stable != true && for_searches_ >= 0 && find_unstable(p)) return;
+  if (p.method == df_name && p.stable != true && for_searches_ >= 0 && !loop_.continuous && find_unstable(p)) return;
   const long before = hunt_.steps();
   const OutcomeOfStart& outcome = hunt_.settle_from(start, std::move(name));
   for_simulations_ -= hunt_.steps() - before;

@@ -253,8 +253,8 @@ TEST_CASE("a motion that never repeats itself has a range and a mean period, not
   for (const double start : {46.0, 0.005}) {
     const auto found = from(loop, start, 1e-4);
     CHECK(found.outcome == Outcome::irregular);
-    CHECK(found.half_range == Approx(0.88514).epsilon(1e-3));
-    CHECK(found.mean_period == Approx(1.352).epsilon(0.01));
+    CHECK(found.irregular.half_range == Approx(0.88514).epsilon(1e-3));
+    CHECK(found.irregular.mean_period == Approx(1.352).epsilon(0.01));
   }
 }
 

@@ -169,7 +169,8 @@ void check_choice(const Parameter<Owner, double>& parameter) {
 }
 
 /// Parameters that a loop rejects although they exist: tested with that rule.
-constexpr std::string_view elsewhere[] = {"clearance", "elements", "anti_windup"};
+constexpr std::string_view elsewhere[] = {"clearance",         "elements",        "anti_windup",   "sample_time",
+                                          "computation_delay", "encoder_quantum", "output_quantum"};
 
 template <class Owner>
 void check_owner() {

@@ -1,0 +1,124 @@
+#include "limcycle/analysis/orbit/settle/stop_map.hpp"
+
+#include <cmath>
+
+#include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/models/linear/dense.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr double between = 1.25;      ///< ratio of two displacements of a scan
+constexpr double nearly_grows = 0.6;  ///< least ratio of a maximum that is looked at more closely
+constexpr int refinements = 12;       ///< flights for one maximum
+constexpr long steps_of_a_flight = 3000;
+constexpr double for_ever = 1e15;  ///< s: a body that the controller does not push waits so long
+
+/// The smallest change of the states, in their typical sizes, that leaves y, the rubbing displacement and its velocity
+/// as they are and takes the force off the body that holds at the displaced state; empty if there is none.
+Eigen::VectorXd balance(const Loop& loop, const Eigen::VectorXd& displaced) {
+  const Port& port = loop.ports.back();
+  const State typical = typical_sizes(loop);
+  const Eigen::VectorXd sizes = Eigen::Map<const Eigen::VectorXd>(typical.data(), loop.states());
+  const Eigen::RowVectorXd force = port.C_v * working_loop(loop);
+  Eigen::MatrixXd rows(4, loop.states());
+  rows << loop.C_y, port.C, port.C_v, force;
+  Eigen::VectorXd wanted = Eigen::VectorXd::Zero(4);
+  wanted(3) = -force.dot(displaced.transpose());
+  rows = (rows * sizes.asDiagonal()).eval();
+  for (Eigen::Index i = 0; i < 4; ++i)
+    if (const double size = rows.row(i).norm(); size > 0.0) {
+      rows.row(i) /= size;
+      wanted(i) /= size;
+    }
+  const Eigen::VectorXd change = least_squares(rows, wanted);
+  if (!change.allFinite() || (rows * change - wanted).norm() > 1e-6 * wanted.norm()) return {};
+  return sizes.cwiseProduct(change);
+}
+
+}  // namespace
+
+std::optional<StopMap> StopMap::of(const Loop& loop, double rtol, std::function<bool()> stop) {
+  if (loop.continuous || loop.states() == 0 || !loop.elements.back().may_stick() || !loop.ports.back().rubs)
+    return std::nullopt;
+  if (!loop.elements.back().facts().stuck) return std::nullopt;
+  bool exact = false;
+  const Eigen::VectorXd rest = loop.rest_point(exact);
+  if (!exact) return std::nullopt;
+  StopMap map(loop, rtol, std::move(stop));
+  map.rest_ = loop.C_y.dot(rest.transpose());
+  const LoopState unit = displaced(loop, 1.0);
+  const Eigen::VectorXd moved = Eigen::Map<const Eigen::VectorXd>(unit.x.data(), loop.states()) - rest;
+  map.balancing_ = balance(loop, moved);
+  if (map.balancing_.size() == 0 || map.balancing_.isZero(0.0)) return std::nullopt;
+  return map;
+}
+
+LoopState StopMap::held_at(double p) const {
+  const LoopState at = displaced(*loop_, p);
+  const Eigen::VectorXd X = Eigen::Map<const Eigen::VectorXd>(at.x.data(), loop_->states()) + p * balancing_;
+  LoopState state = without_history(*loop_, X);
+  state.modes.back() = *loop_->elements.back().facts().stuck;
+  return state;
+}
+
+std::optional<double> StopMap::ratio(double p) {
+  const LoopState start = held_at(p);
+  LoopField field(*loop_);
+  field.modes() = start.modes;
+  March march(field, StepperKind::automatic, loop_weights(*loop_, rtol_));
+  march.begin(start.x, 0.0);
+  const std::size_t last = loop_->elements.size() - 1;
+  bool moved = false;
+  std::optional<double> found;
+  while (march.steps() < steps_of_a_flight && !found && !(stop_ && stop_())) {
+    if (march.step(for_ever) != Status::converged || march.t() >= for_ever) break;
+    const bool held = field.holds(last);
+    if (moved && held) found = std::abs(field.y(march.x()) - rest_) / p;
+    moved = moved || !held;
+  }
+  steps_ += march.steps();
+  return found;
+}
+
+/// The displacement of the largest ratio between two, by golden section in its logarithm.
+double StopMap::peak(double low, double high) {
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  double a = std::log(low), b = std::log(high), c = b - golden * (b - a), d = a + golden * (b - a);
+  double at_c = ratio(std::exp(c)).value_or(0.0), at_d = ratio(std::exp(d)).value_or(0.0);
+  for (int i = 0; i < refinements && std::max(at_c, at_d) <= 1.0; ++i) {
+    if (at_c > at_d) {
+      b = d;
+      d = c;
+      at_d = at_c;
+      c = b - golden * (b - a);
+      at_c = ratio(std::exp(c)).value_or(0.0);
+    } else {
+      a = c;
+      c = d;
+      at_c = at_d;
+      d = a + golden * (b - a);
+      at_d = ratio(std::exp(d)).value_or(0.0);
+    }
+  }
+  return std::exp(at_c > at_d ? c : d);
+}
+
+std::vector<double> StopMap::growing(double least, double most) {
+  std::vector<double> places, ratios, found;
+  for (double p = most; p >= least && !(stop_ && stop_()); p /= between) {
+    places.push_back(p);
+    ratios.push_back(ratio(p).value_or(0.0));
+  }
+  for (std::size_t i = 1; i < places.size(); ++i) {  // from the largest down
+    if (ratios[i] > 1.0 && ratios[i - 1] > 0.0 && ratios[i - 1] < 1.0) found.push_back(places[i]);
+    if (i + 1 == places.size() || ratios[i] > 1.0 || ratios[i] < nearly_grows) continue;
+    if (ratios[i] <= ratios[i - 1] || ratios[i] < ratios[i + 1]) continue;
+    if (const double p = peak(places[i + 1], places[i - 1]); ratio(p).value_or(0.0) > 1.0) found.push_back(p);
+  }
+  return found;
+}
+
+}  // namespace limcycle

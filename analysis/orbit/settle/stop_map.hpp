@@ -1,0 +1,44 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "limcycle/analysis/cycle.hpp"
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// The map from one position of rest to the next, of a loop whose last element holds a body at rest until a controller
+/// with integral action breaks it away: a limit cycle that sticks is a fixed point of it (Armstrong-Helouvry, Dupont
+/// and Canudas de Wit 1994, Automatica 30(7), section 5, of servos under PID). One flight takes some tens of steps, so
+/// that the map finds ranges of attraction that no few starts fall into.
+class StopMap {
+ public:
+  /// Empty if no body sticks, or if no state of the controller can balance its own command where the body is displaced.
+  static std::optional<StopMap> of(const Loop& loop, double rtol, std::function<bool()> stop);
+  static std::optional<StopMap> of(Loop&& temporary, double rtol, std::function<bool()> stop) = delete;
+
+  /// The loop with y displaced from its rest point by p, the body held and the controller's command balanced.
+  LoopState held_at(double p) const;
+  /// |p'|/p, p' the displacement at which the body that breaks away from p next sticks; empty if it does not within
+  /// some thousand steps. `p` > 0.
+  std::optional<double> ratio(double p);
+  /// Displacements between `least` and `most` from which the swings grow while they shrink from a larger one close by:
+  /// a stable cycle lies just above each. Cost: about ten flights a decade and ten for each maximum close to 1.
+  std::vector<double> growing(double least, double most);
+  long steps() const { return steps_; }
+
+ private:
+  StopMap(const Loop& loop, double rtol, std::function<bool()> stop)
+      : loop_(&loop), rtol_(rtol), stop_(std::move(stop)) {}
+  double peak(double low, double high);
+
+  const Loop* loop_;
+  double rtol_;
+  std::function<bool()> stop_;
+  double rest_ = 0.0;          ///< y of the rest point
+  Eigen::VectorXd balancing_;  ///< change of the linear states per unit of displacement
+  long steps_ = 0;
+};
+
+}  // namespace limcycle

@@ -1,0 +1,133 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <vector>
+
+#include "limcycle/models/element/concepts.hpp"
+
+namespace limcycle {
+
+/// A linear controller on a computer: its input is read every `sample_time`, its output held in between (zero-order
+/// hold) and put out `computation_delay` after each reading:
+///   e_k = input at k sample_time, rounded to a multiple of input_quantum;
+///   u_k = C X_k + D e_k, rounded to a multiple of output_quantum;   X_(k+1) = A X_k + B e_k.
+/// A, B, C: matrices of the order n in rows (n^2, n, n numbers); a quantum of 0 does not round.
+///
+/// State: time until the next reading (s), output in force, X (n); with a computation delay also the time until the
+/// computed output comes out, and that output. The clock is part of the state, so that a motion that repeats itself
+/// does so together with its samples. Guards: the times. Mode 1: an output is pending.
+template <class S>
+struct Sampled {
+  S sample_time{}, computation_delay{0.0}, input_quantum{0.0}, output_quantum{0.0}, D{};
+  std::vector<S> A, B, C;
+
+  static constexpr std::string_view kind = "sampled";
+  static constexpr int first_own = 2;  ///< position of X in the state
+  static constexpr bool piecewise_affine = true;
+  static constexpr std::string_view equation =
+      "u_k = C X_k + D e_k, X_(k+1) = A X_k + B e_k, e_k = input at k sample_time; u_k is held";
+  static constexpr std::string_view source =
+      "Astrom, Wittenmark (1997), Computer-Controlled Systems, 3rd ed., ch. 2 and 8";
+
+  static std::vector<Parameter<Sampled, S>> parameters() {
+    return {
+        {"sample_time", "s", "time between two readings", &Sampled::sample_time, positive},
+        {"computation_delay", "s", "from a reading to its output", &Sampled::computation_delay, not_negative, false},
+        {"input_quantum", "1", "the input is rounded to its multiples", &Sampled::input_quantum, not_negative, false},
+        {"output_quantum", "1", "the output is rounded to its multiples", &Sampled::output_quantum, not_negative,
+         false},
+        {"D", "1", "feed-through", &Sampled::D, any_number},
+        {"A", "1", "state matrix, row by row", &Sampled::A},
+        {"B", "1", "input matrix", &Sampled::B},
+        {"C", "1", "output matrix", &Sampled::C}};
+  }
+  std::optional<BrokenRule> validate() const {
+    if (B.size() != C.size() || A.size() != B.size() * B.size())
+      return BrokenRule{"A", "must be of the order of B and C"};
+    if (computation_delay >= sample_time) return BrokenRule{"computation_delay", "must be less than the sample time"};
+    return std::nullopt;
+  }
+
+  int order() const { return static_cast<int>(B.size()); }
+  bool delays() const { return computation_delay > 0.0; }
+  int states() const { return 2 + order() + (delays() ? 2 : 0); }
+
+  /// The clock runs down; the output waits for its time only while one is pending.
+  void rate(const Input<S>&, Mode mode, std::span<const S>, std::span<S> dz) const {
+    std::fill(dz.begin(), dz.begin() + states(), S(0.0));
+    dz[0] = S(-1.0);
+    if (mode.value == 1) dz[wait()] = S(-1.0);
+  }
+  S output(const Input<S>&, Mode, std::span<const S> z) const { return z[1]; }
+
+  int guards(Mode mode) const { return mode.value == 1 ? 2 : 1; }
+  /// The output comes before a reading at the same time.
+  void guard(const Input<S>&, Mode mode, std::span<const S> z, std::span<S> g) const {
+    if (mode.value == 1) g[0] = z[wait()];
+    g[mode.value == 1 ? 1 : 0] = z[0];
+  }
+  Mode next(const Input<S>& in, Mode mode, std::span<S> z, int fired) const {
+    if (mode.value == 1 && fired == 0) {
+      z[1] = z[wait() + 1];
+      z[wait()] = S(0.0);
+      return {0};
+    }
+    z[0] = sample_time;
+    return read(in.x, z);
+  }
+  /// The first reading is at the start.
+  Mode start(const Input<double>& in, std::span<double> z) const {
+    z[0] = value_of(sample_time);
+    return read(in.x, z);
+  }
+
+  double due(Mode mode, std::span<const double> z) const { return mode.value == 1 ? std::min(z[0], z[wait()]) : z[0]; }
+
+  bool odd() const { return true; }
+  Mode mirror(Mode mode) const { return mode; }
+  bool even_state(int i) const { return i == 0 || (delays() && static_cast<std::size_t>(i) == wait()); }
+  Scales scales() const { return {}; }
+  double state_scale(int i) const { return even_state(i) ? value_of(sample_time) : 1.0; }
+
+ private:
+  std::size_t wait() const { return 2 + B.size(); }
+  /// A parameter as the scalar of the states.
+  template <class T>
+  static T as(const S& value) {
+    if constexpr (std::same_as<T, S>)
+      return value;
+    else
+      return T(value_of(value));
+  }
+  template <class T>
+  static T rounded(const T& value, const S& quantum) {
+    if (!(quantum > 0.0)) return value;
+    const T step = as<T>(quantum);
+    return step * T(std::round(value_of(value / step)));
+  }
+  /// Reads the input, computes the output and the next state.
+  template <class T>
+  Mode read(const T& input, std::span<T> z) const {
+    const T e = rounded(input, input_quantum);
+    const std::size_t n = B.size();
+    T u = as<T>(D) * e;
+    std::vector<T> next(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      u += as<T>(C[i]) * z[2 + i];
+      next[i] = as<T>(B[i]) * e;
+      for (std::size_t j = 0; j < n; ++j) next[i] += as<T>(A[i * n + j]) * z[2 + j];
+    }
+    std::ranges::copy(next, z.begin() + 2);
+    u = rounded(u, output_quantum);
+    if (!delays()) {
+      z[1] = u;
+      return {0};
+    }
+    z[wait()] = as<T>(computation_delay);
+    z[wait() + 1] = u;
+    return {1};
+  }
+};
+
+}  // namespace limcycle

@@ -1,0 +1,72 @@
+#include "limcycle/analysis/orbit/settle/stop_map.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/friction/dry/karnopp.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using namespace limcycle::test;
+
+TEST_CASE("map of stops: its fixed point is the amplitude of the servo's cycle, and swings grow just below it") {
+  const double mass = GENERATE(1.0, 1e-6);  // the same servo in another unit of force
+  LoopParts parts;
+  parts.plant = Mass{mass, 0.0, 0.0};
+  parts.controller = pid(3.0 * mass, 4.0 * mass, 6.0 * mass);
+  parts.friction = coulomb(1.5 * mass, 1.0 * mass);
+  const Loop loop = build_loop(parts);
+  const Settled settled = settle(loop, displaced(loop, 0.5), SettleOptions{});
+  REQUIRE(settled.shot);
+  const double amplitude = settled.shot->cycle.amplitude;
+
+  auto map = StopMap::of(loop, 1e-10, {});
+  REQUIRE(map);
+  CHECK(map->ratio(amplitude).value() == Approx(1.0).epsilon(1e-7));
+  CHECK(map->ratio(0.8 * amplitude).value() > 1.0);
+  CHECK(map->ratio(1.2 * amplitude).value() < 1.0);
+  const auto growing = map->growing(1e-4, 10.0);
+  REQUIRE(growing.size() == 1);
+  CHECK(growing.front() < amplitude);
+  CHECK(growing.front() > amplitude / 1.3);
+  CHECK(map->steps() > 0);
+}
+
+TEST_CASE("map of stops: without stiction no swing grows, and a loop without integral action has no such map") {
+  const Loop loop = servo(coulomb(1.0, 1.0));
+  auto map = StopMap::of(loop, 1e-8, {});
+  REQUIRE(map);
+  CHECK(map->growing(1e-3, 10.0).empty());
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  parts.controller = pid(3.0, 0.0, 6.0);
+  LoopParts zoned = servo_parts(coulomb(1.5, 1.0));
+  DeadZone<double> zone;
+  zone.half_width = 0.1;
+  zoned.error = zone;
+  const Loop waits = build_loop(zoned);
+  auto within = StopMap::of(waits, 1e-8, {});
+  REQUIRE(within);
+  CHECK_FALSE(within->ratio(0.05));  // held for ever within the dead zone
+  const Loop unable = build_loop(parts);
+  CHECK_FALSE(StopMap::of(unable, 1e-8, {}));
+}
+
+TEST_CASE("predict: a hunting cycle into which no displaced start falls is found from where its body breaks away") {
+  Karnopp<double> law;
+  law.Fs = law.Fs_minus = 2117.405053850017;
+  law.Fc = law.Fc_minus = 1561.17;
+  law.vs = 72.2398;
+  law.dv = 0.879203;
+  LoopParts parts;
+  parts.plant = Mass{0.108679, 0.0, 0.0};
+  parts.controller = pid(29.8999, 46.2654, 2.20988);
+  parts.friction = law;
+  const PredictReport report = predict(build_loop(parts));
+  REQUIRE(report.cycles.size() == 1);
+  CHECK(report.cycles.front().stable == true);
+  CHECK(report.cycles.front().period == Approx(18.3754788).epsilon(1e-6));  // along a branch, from Fs where it hunts
+  CHECK(report.cycles.front().amplitude == Approx(9.228709).epsilon(1e-6));
+}

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/models/delay.hpp"
+#include "limcycle/models/element/relay.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using namespace limcycle::test;
+
+namespace {
+
+/// 1/(s + 1)^3 under a relay whose input is read every `h`, in closed form from sample to sample.
+struct SampledRelay {
+  double h, x1 = 0.0, x2 = 0.0, x3 = 0.0;
+
+  void move(double u, double time) {
+    const double fade = std::exp(-time), d1 = x1 - u, d2 = x2 - u, d3 = x3 - u;
+    x1 = u + fade * d1;
+    x2 = u + fade * (d2 + time * d1);
+    x3 = u + fade * (d3 + time * d2 + 0.5 * time * time * d1);
+  }
+  /// Samples of a period and half the swing, once the transient has died out.
+  std::pair<int, double> settled(double start) {
+    constexpr int parts = 50;
+    x1 = x2 = x3 = start;
+    double low = infinite, high = -infinite;
+    std::vector<int> rises;
+    for (int k = 0; k < 4000; ++k) {
+      const double u = x3 > 0.0 ? -1.0 : 1.0, before = x3;
+      for (int part = 0; part < parts; ++part) {
+        move(u, h / parts);
+        if (k < 3000) continue;
+        low = std::min(low, x3);
+        high = std::max(high, x3);
+      }
+      if (k >= 3000 && before <= 0.0 && x3 > 0.0) rises.push_back(k);
+    }
+    const int period = rises.at(1) - rises.at(0);
+    for (std::size_t i = 1; i < rises.size(); ++i) REQUIRE(rises[i] - rises[i - 1] == period);
+    return {period, 0.5 * (high - low)};
+  }
+};
+
+Loop relay_at(double sample_time) {
+  Relay<double> relay;
+  relay.level = 1.0;
+  LoopParts parts;
+  parts.plant = TransferFunction{{1.0}, {1.0, 3.0, 3.0, 1.0}, 0.0};
+  NoController controller;
+  controller.sample_time = sample_time;
+  parts.controller = controller;
+  parts.element = relay;
+  return build_loop(parts);
+}
+
+LoopParts servo_at(double sample_time, double ki = 4.0) {
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  Pid& controller = std::get<Pid>(parts.controller);
+  controller.ki = ki;
+  controller.sample_time = sample_time;
+  return parts;
+}
+
+Settled settled(const Loop& in_time, double displacement) {
+  return settle(in_time, displaced(in_time, displacement), SettleOptions{});
+}
+
+}  // namespace
+
+TEST_CASE("sampled relay: every stable cycle is that of the recursion, a whole number of samples") {
+  const double h = GENERATE(0.05, 0.1, 0.237, 0.41);
+  INFO("sample time " << h);
+  const PredictReport report = predict(relay_at(h));
+  REQUIRE(!report.cycles.empty());
+  std::set<int> periods;
+  for (const Cycle& cycle : report.cycles) {
+    if (cycle.stable != true) continue;
+    const double samples = cycle.period / h;
+    CHECK(samples == Approx(std::round(samples)).epsilon(1e-9));
+    periods.insert(static_cast<int>(std::lround(samples)));
+  }
+  for (const double start : {10.0, 1.0, 0.01}) {
+    const auto [period, amplitude] = SampledRelay{h}.settled(start);
+    INFO("start " << start << ", " << period << " samples");
+    const auto found = std::ranges::find_if(
+        report.cycles, [&](const Cycle& cycle) { return std::lround(cycle.period / h) == period; });
+    REQUIRE(found != report.cycles.end());
+    CHECK(found->amplitude == Approx(amplitude).epsilon(1e-3));
+    CHECK(periods.contains(period));
+  }
+}
+
+TEST_CASE("sampled servo: its mean period tends to that of the continuous one, and its first-order change is known") {
+  const auto continuous = settled(build_loop(servo_at(0.0)), 0.5);
+  REQUIRE(continuous.shot);
+  const double T0 = continuous.shot->cycle.period;
+  for (const double h : {0.08, 0.04, 0.02}) {
+    INFO("sample time " << h);
+    const Loop loop = build_loop(servo_at(h));
+    const auto sampled = settled(in_time_domain(loop, 1).loop, 0.5);
+    REQUIRE(sampled.outcome == Outcome::irregular);
+    Loop averaged = loop;
+    averaged.sampled.reset();
+    const auto mean = settled(in_time_domain(averaged, 2).loop, 0.5);
+    REQUIRE(mean.shot);
+    const double T = sampled.irregular.mean_period, average = mean.shot->cycle.period;
+    CAPTURE(T0, T, average, sampled.irregular.shortest_period, sampled.irregular.longest_period);
+    CHECK(average - T0 == Approx(18.9 * h).epsilon(0.02));  // of first order
+    CHECK(std::abs(T - average) < 0.25 * std::abs(average - T0));
+    CHECK(std::abs(T - average) < 60.0 * h * h);
+    CHECK(sampled.irregular.shortest_period <= T);
+    CHECK(sampled.irregular.longest_period >= T);
+    CHECK(sampled.irregular.longest_period - sampled.irregular.shortest_period < 40.0 * h);
+  }
+}
+
+TEST_CASE("sampled servo: without integral action it comes to rest, and within a count of its encoder too") {
+  const PredictReport report = predict(build_loop(servo_at(0.02, 0.0)));
+  CHECK(report.cycles.empty());
+  for (const OutcomeOfStart& one : report.outcomes) CHECK(one.outcome == Outcome::rest);
+
+  LoopParts parts = servo_at(0.02);
+  std::get<Pid>(parts.controller).encoder_quantum = 0.1;
+  const Loop loop = in_time_domain(build_loop(parts), 1).loop;
+  const Settled within = settled(loop, 0.04), outside = settled(loop, 0.06);
+  CHECK(within.outcome == Outcome::rest);
+  CHECK(within.trace.y.back() == 0.04);
+  CHECK(outside.outcome == Outcome::rest);
+  CHECK(std::abs(outside.trace.y.back()) < 0.05);
+}
+
+TEST_CASE("sampled servo: a moved set-point moves the motion and nothing else") {
+  LoopParts parts = servo_at(0.04);
+  const auto here = settled(in_time_domain(build_loop(parts), 1).loop, 0.5);
+  parts.reference = 7.25;
+  const auto there = settled(in_time_domain(build_loop(parts), 1).loop, 0.5);
+  CHECK(there.outcome == here.outcome);
+  CHECK(there.irregular.mean_period == Approx(here.irregular.mean_period).epsilon(0.01));
+  CHECK(there.irregular.half_range == Approx(here.irregular.half_range).epsilon(0.03));
+}
+
+TEST_CASE("sampled controller: what does not go together is refused with a reason") {
+  LoopParts parts = servo_at(0.01);
+  Pid& controller = std::get<Pid>(parts.controller);
+  controller.computation_delay = 0.01;
+  CHECK(validate(parts)->key == "loop.controller.computation_delay");
+  controller = Pid{};
+  controller.encoder_quantum = 1.0;
+  CHECK(validate(parts)->key == "loop.controller.encoder_quantum");
+  Cascade cascade;
+  cascade.position_kp = cascade.velocity_kp = 1.0;
+  cascade.sample_time = 0.01;
+  parts.controller = cascade;
+  CHECK(validate(parts)->key == "loop.controller.sample_time");
+  NoController none;
+  none.sample_time = 0.01;
+  parts.controller = none;
+  CHECK(validate(parts)->rule.find("nothing to sample") != std::string::npos);
+}
