@@ -75,7 +75,7 @@ std::string irregular_size(const PredictReport& report, const Units& units) {
       std::ranges::max_element(report.outcomes, {}, [](const OutcomeOfStart& one) { return one.irregular.half_range; });
   const IrregularMotion& motion = largest->irregular;
   return fmt::format(" It never comes to rest: half-range {}, mean period {} s, single ones from {} to {} s over {} s.",
-                     Units::attach(with_digits(motion.half_range, 3), units.y), with_digits(motion.mean_period, 3),
+                     Units::attach(with_digits(motion.half_range, 3), units.y), with_digits(motion.mean_period, 4),
                      with_digits(motion.shortest_period, 4), with_digits(motion.longest_period, 4),
                      with_digits(motion.observed, 2));
 }

@@ -21,7 +21,7 @@ namespace {
 /// Step limit of shooting before a motion is decided: this constant, plus a multiple of the motion's own steps.
 constexpr long steps_of_tries = 200'000, tries_per_step = 3;
 constexpr double settled_change = 1e-3;  ///< relative change of the swings of a motion that has all but settled
-constexpr long most_readings = 5'000'000;
+constexpr long most_readings = 5'000'000, most_sampled_steps = 4'000'000;
 constexpr int most_restarts = 3;       ///< with short steps, of a march that left the range of numbers
 constexpr long periods_of_a_try = 40;  ///< of return maps; most that converge take 5 to 20, up to 15 maps
 
@@ -114,6 +114,7 @@ class Settling {
     constexpr long longer = 4;
     constexpr double periods = 6.0;
     const auto may_be = [&](const Cycle& cycle) { return march_.t() < periods * cycle.period; };
+    if (loop_.continuous) return most_sampled_steps;  // a stiff bristle takes many after every sample
     const bool early = turning_.points().size() < options_.fewest_turns || std::ranges::any_of(options_.known, may_be);
     return early && options_.fewest_turns > 0 ? longer * options_.max_steps : options_.max_steps;
   }
@@ -136,16 +137,18 @@ class Settling {
            exact ? "bounded without a period" : "bounded without a period; a second tolerance gives the same range");
   }
 
-  /// The same run with a tolerance a hundred times tighter.
+  /// The same run with a tighter tolerance.
   Trace repeated(double until) const {
-    constexpr double tighter = 0.01, tightest = 1e-12;
+    // The samples that the second run has to follow are as many; ten times as tight shows what depends on it.
+    const double tighter = loop_.continuous ? 0.1 : 0.01;
+    constexpr double tightest = 1e-12;
     constexpr long longer = 10;  // limit of the steps, relative to those of the first run
     LoopField field(loop_);
     field.modes() = start_.modes;
     March march(field, march_.kind(), loop_weights(loop_, std::max(tightest, tighter * options_.rtol)));
     march.begin(start_.x, 0.0);
     Trace trace;
-    while (march.t() < until && march.steps() < longer * options_.max_steps + readings_) {
+    while (march.t() < until && march.steps() < longer * std::max(options_.max_steps, march_.steps())) {
       if (options_.stop && options_.stop()) break;
       if (march.step(until) != Status::converged) break;
       trace.t.push_back(march.t());

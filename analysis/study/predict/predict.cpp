@@ -239,8 +239,13 @@ class PredictionStudy {
     constexpr int order = 2;  // of the approximation of a dead time that is short against any motion of interest
     const Loop in_time = in_time_domain(averaged, order).loop;
     CycleHunt hunt(in_time, options_, box_);
-    const OutcomeOfStart one =
-        hunt.settle_from(displaced(in_time, starts_.front().place), start_name(starts_.front().place));
+    const auto moves_on = [&](const BetweenStarts::Start& start) {
+      const Outcome outcome = hunt_->outcomes()[start.outcome].outcome;
+      return outcome == Outcome::irregular || outcome == Outcome::cycle;
+    };
+    const auto from = std::ranges::find_if(starts_, moves_on);
+    const double place = (from == starts_.end() ? starts_.front() : *from).place;
+    const OutcomeOfStart one = hunt.settle_from(displaced(in_time, place), start_name(place));
     std::string does = "ends in " + std::string(to_string(one.outcome));
     if (one.cycle) {
       const Cycle& cycle = hunt.cycles()[*one.cycle];
