@@ -11,6 +11,7 @@
 #include "limcycle/analysis/orbit/settle/displaced.hpp"
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
+#include "limcycle/analysis/orbit/settle/known_cycle.hpp"
 #include "limcycle/analysis/orbit/settle/surroundings.hpp"
 #include "limcycle/analysis/orbit/settle/switching_watch.hpp"
 #include "limcycle/analysis/orbit/settle/turning_points.hpp"
@@ -223,49 +224,6 @@ class Settling {
     return part;
   }
 
-  /// The known cycle of this swing with whose period the motion from here returns, if any.
-  std::optional<std::size_t> recognised(const LoopState& here, double swing) {
-    for (std::size_t i = 0; i < options_.known.size(); ++i) {
-      const Cycle& cycle = options_.known[i];
-      if (cycle.stable == false || std::abs(2.0 * cycle.amplitude / swing - 1.0) > 0.02) continue;
-      const Section section = choose_section(loop_, cycle.trace);
-      ReturnMap map(loop_, section, std::nullopt,
-                    {options_.rtol, options_.shooting.max_steps_per_map, options_.stop, false, infinite,
-                     returns_of(section, cycle.trace)});
-      auto at = map.approach(here);
-      for (int k = 0; k < 4 && at.status == Status::converged; ++k) {
-        at = map(at.state);
-        if (at.status != Status::converged || std::abs(at.time / cycle.period - 1.0) > 1e-4) continue;
-        Trace again;
-        if (record(loop_, at.state, cycle.period, options_.rtol, 200, again) != Status::converged) break;
-        const auto [low, high] = extremes(again);
-        if (std::abs((high - low) / (2.0 * cycle.amplitude) - 1.0) < 1e-4) {
-          tried_ += map.steps();
-          return i;
-        }
-      }
-      tried_ += map.steps();
-    }
-    return std::nullopt;
-  }
-
-  /// Swings that are still uneven may show several periods as one: finds the shortest period of the orbit.
-  void shorten(ShootingResult& shot, const Section& section, bool half, const ShootingOptions& options) {
-    for (int fewer = 1; fewer < options.returns; ++fewer) {
-      if (options.returns % fewer != 0) continue;
-      ShootingOptions shorter = options;
-      shorter.returns = fewer;
-      shorter.warm_maps = 0;
-      auto found = shoot(loop_, shot.cycle.start, section, half, shorter);
-      tried_ += found.steps;
-      const double times = static_cast<double>(options.returns) / fewer;
-      if (found.status != Status::converged || std::abs(times * found.cycle.period / shot.cycle.period - 1.0) > 1e-6)
-        continue;
-      shot = std::move(found);
-      return;
-    }
-  }
-
   /// Keeps an unstable cycle that the motion passes, once.
   void pass(const Cycle& cycle) {
     constexpr double same = 1e-4;
@@ -285,7 +243,7 @@ class Settling {
     const auto [low, high] = extremes(period);
     const double swing = high - low;
     const LoopState here{march_.x(), field_.modes()};
-    result_.known = recognised(here, swing);
+    result_.known = known_cycle(loop_, here, swing, options_, tried_);
     if (result_.known) {
       decide(Outcome::cycle, "converges to cycle " + std::to_string(*result_.known));
       return true;
@@ -307,7 +265,7 @@ class Settling {
       shot = shoot(loop_, here, section, half, shooting);
       tried_ += shot.steps;
     }
-    if (shot.status == Status::converged) shorten(shot, section, half, shooting);
+    if (shot.status == Status::converged) shorten(loop_, shot, section, half, shooting, tried_);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
     if (shot.status != Status::converged) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);
