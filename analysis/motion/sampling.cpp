@@ -77,16 +77,23 @@ LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X) {
   LoopState state = without_history(loop, Eigen::Map<const Eigen::VectorXd>(plant.data(), std::ssize(plant)));
   LoopField field(loop);
   field.modes() = state.modes;
+  bool commanded = false;  // elements behind the controller begin at its command
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
+    const Element& element = loop.elements[k];
     const auto* sampled = controller_at(loop, k);
-    if (!sampled) continue;
+    if (!sampled && !commanded) continue;
     State rates;
     field.rate(state.x, rates, 0.0);
-    const std::span<double> z(state.x.data() + field.first_state(k), static_cast<std::size_t>(sampled->states()));
+    const std::span<double> z(state.x.data() + field.first_state(k), static_cast<std::size_t>(element.states()));
+    if (!sampled) {
+      if (element.has_modes()) field.modes()[k] = state.modes[k] = element.start(field.input(k), z);
+      continue;
+    }
+    commanded = true;
     const auto own = z.subspan(Sampled<double>::first_own, static_cast<std::size_t>(sampled->order()));
     std::ranges::fill(own, field.input(k).x);  // the last input, for a derivative
     std::ranges::copy(controller, own.begin());
-    state.modes[k] = sampled->next(field.input(k), {}, z, 0);
+    field.modes()[k] = state.modes[k] = sampled->next(field.input(k), {}, z, 0);
   }
   return state;
 }

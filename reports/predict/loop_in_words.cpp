@@ -34,18 +34,6 @@ std::string load_words(const LoopParts& parts, const Units& units) {
 
 namespace {
 
-/// ", computed every 0.001 s, ..."; empty for a continuous controller.
-std::string sampling_words(const Sampling& sampling, const Units& units) {
-  if (!sampling.is_on()) return "";
-  std::string words = ", computed every " + diagram_number(sampling.sample_time) + " s";
-  if (sampling.encoder_quantum > 0.0)
-    words += " from y in steps of " + Units::attach(diagram_number(sampling.encoder_quantum * units.y_per_si), units.y);
-  if (sampling.computation_delay > 0.0) words += ", put out " + diagram_number(sampling.computation_delay) + " s later";
-  if (sampling.output_quantum > 0.0)
-    words += " in steps of " + Units::attach(diagram_number(sampling.output_quantum), units.force);
-  return words + ",";
-}
-
 /// "the error of r = 0 m goes through ..., ... to the plant".
 std::string command_in_words(const LoopParts& parts, const Units& units) {
   const Actuator& actuator = actuator_of(parts.controller);
@@ -54,7 +42,7 @@ std::string command_in_words(const LoopParts& parts, const Units& units) {
   if (uses_error(parts)) {
     if (parts.error) stages.push_back(element_words("", *parts.error, units).whole + " on the error");
     if (const auto controller = controller_words(parts.controller, units))
-      stages.push_back("the controller " + controller->whole + sampling_words(sampling_of(parts.controller), units));
+      stages.push_back("the controller " + controller->whole);
   }
   if (actuator.friction_compensation > 0.0)
     stages.push_back(compensation_words(actuator.friction_compensation, units).whole + ", added");

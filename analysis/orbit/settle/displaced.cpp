@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/models/linear/dense.hpp"
@@ -52,6 +53,10 @@ LoopState scaled(const Loop& loop, const LoopState& state, double factor) {
 }
 
 LoopState displaced(const Loop& loop, double displacement) {
+  if (loop.continuous) {
+    const LoopState of_continuous = displaced(*loop.continuous, displacement);
+    return sampled_state(loop, Eigen::Map<const Eigen::VectorXd>(of_continuous.x.data(), loop.continuous->states()));
+  }
   bool exact = false;
   const Eigen::VectorXd rest = loop.rest_point(exact);
   const State typical = typical_sizes(loop);
