@@ -137,6 +137,31 @@ MarginSide SideSearch::beyond(const Lost& lost, std::optional<Cycle>& other, dou
               "; whether the loop hunts beyond it was not determined"};
 }
 
+/// True unless a simulation from this state at the limit is known to end elsewhere than in a cycle.
+bool SideSearch::stays(const LoopState& state) const {
+  const auto loop = parameter_.family(limit_);
+  if (!loop) return true;
+  const Outcome outcome =
+      settle(*loop, state, cycle_search(*loop, default_search_box(*loop), options_.accuracy, options_.predict.stop))
+          .outcome;
+  return outcome != Outcome::rest && outcome != Outcome::sliding && outcome != Outcome::divergence;
+}
+
+/// Where simulations cease to come to a cycle, between p, where they do, and the limit. For a branch that a step left
+/// across its end, as where a relay just fails to switch.
+MarginSide SideSearch::by_bisection(double hunts) {
+  constexpr double narrow = 1e-3;
+  double ends = limit_;
+  while (std::abs(std::log(ends / hunts)) > narrow && !stopped()) {
+    const double middle = hunts * std::sqrt(ends / hunts);
+    (reached_at(middle, starts_).cycle ? hunts : ends) = middle;
+  }
+  if (stopped()) return {};
+  return {MarginSide::What::ends, ends,
+          std::abs(ends - hunts), "by bisection of the outcome: simulations no longer come to a cycle",
+          std::nullopt,           std::nullopt};
+}
+
 MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
   using What = MarginSide::What;
   starts_.clear();
@@ -146,6 +171,7 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
   double p = parameter_.value;
   for (int i = 0; i <= successors; ++i) {
     const Lost lost = follow(cycle, p, limit_);
+    if (lost.kind == Lost::Kind::border && !stopped() && !stays(lost.last)) return by_bisection(p);
     if (lost.kind == Lost::Kind::border)
       return {What::none, 0.0, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
     if (lost.kind == Lost::Kind::failed) return {What::unknown, 0.0, unknown, lost.why};

@@ -43,6 +43,8 @@ class SideSearch {
   std::optional<Cycle> before(const Lost& lost, double& at, bool& decided);
   /// Follows a cycle found at p, and its successors, back to the beginning of hunting.
   MarginSide back_from(Cycle cycle, double p);
+  bool stays(const LoopState& state) const;
+  MarginSide by_bisection(double hunts);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
 
   const MarginParameter& parameter_;

@@ -118,6 +118,24 @@ TEST_CASE("margin: where a cycle lasts to the end of the range, hunting does not
   CHECK_FALSE(up.diverges);
 }
 
+TEST_CASE("margin: the end of a branch that its steps pass over, where a relay just fails to switch on") {
+  // The pulse of the relay no longer carries y to its threshold, dead zone + hysteresis.
+  constexpr double hysteresis = 2.70658e-5, dead_zone = 3.70288e-5, own = 5.33597;
+  const auto loop = [](double level) {
+    const double w2 = 28.518 * 28.518 + 37.3638 * 37.3638;
+    return forward(relay(level, hysteresis, dead_zone), {0.815557}, {1.0, 2.0 * 28.518, w2});
+  };
+  const auto report =
+      margin(loop(own),
+             {{"loop.element.level", "1", own, false, [&](double p) -> std::optional<Loop> { return loop(p); }}}, {});
+  const MarginSide& down = named(report, "loop.element.level").down;
+  REQUIRE(down.what == MarginSide::What::ends);
+  const auto hunts_at = [&](double level) { return !predict(loop(level)).cycles.empty(); };
+  CHECK(hunts_at(1.004 * down.value));
+  CHECK_FALSE(hunts_at(0.996 * down.value));
+  CHECK(down.error < 2e-3);
+}
+
 TEST_CASE("margin: distance of -1/N from the Nyquist curve against a scan of the closed form") {
   // N of a relay with dead zone is real, at most 2 M/(pi d); G = 1/(1 + jw)^3: |1 + 1/(N G)| = |1 + (1 + jw)^3/N|.
   const double smallest = 0.5 * std::numbers::pi * 0.1;  // of 1/N
