@@ -359,8 +359,9 @@ Status March::step(double t_end) {
   constexpr double just_before = 1.0 - 1e-14;         // so that the guard of the clock has not turned negative
   const double due = just_before * field_.due(x_);
   if (due < 16.0 * shortest_step()) return land_by_clock(0.0);
-  const bool lasting = std::ranges::all_of(guards_start_, [](double guard) { return guard > 0.0; });
-  if (lasting && due <= t_end - t_ && field_.only_clocks_run(step_.dx0)) return wait_for_clock(due);
+  const auto lasts = [](double guard) { return guard > 0.0; };
+  if (due <= t_end - t_ && field_.only_clocks_run(step_.dx0) && std::ranges::all_of(guards_start_, lasts))
+    return wait_for_clock(due);
   double dt = std::min({dt_, dt_max_, t_end - t_, due});
   bool shortened = dt < dt_;  // by the requested end, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_ || dt == due;

@@ -50,6 +50,10 @@ class Truth:
         """Whether starts may have been left out."""
         return time.process_time() > self.deadline
 
+    def decided(self):
+        """Whether no start was left out, and each came to something that is known."""
+        return not self.out_of_time() and all(one.kind != "unknown" for one in self.found.values())
+
     def settle(self, displacement=0.0, kick=0.0, windup=0.0):
         """The attractor from a start; kept."""
         key = (displacement, kick, windup)

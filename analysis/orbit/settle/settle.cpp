@@ -70,7 +70,9 @@ class Settling {
     if (options_.stop && options_.stop()) return decide(Outcome::undecided, "interrupted");
     if (own_steps() > options_.max_steps && own_steps() > horizon()) {
       look_for_growth();
-      return decided_ ? void() : look_for_irregular();
+      if (decided_) return;
+      if (const auto why_not = look_for_irregular(); !decided_) decide(Outcome::undecided, std::string(why_not));
+      return;
     }
     const Status status = march_.step(1e15);
     // At rest steps grow until one of them leaves the range of numbers; a motion that grows passes the ceiling first.
@@ -120,9 +122,8 @@ class Settling {
     return early && options_.fewest_turns > 0 ? longer * options_.max_steps : options_.max_steps;
   }
 
-  /// For neither rest nor a cycle within the step limit: permanent nevertheless, if two tolerances give the same
-  /// numbers.
-  void look_for_irregular() {
+  /// Decides for a permanent motion without a period, if two tolerances give the same numbers; else the reason why not.
+  std::string_view look_for_irregular() {
     const bool sampled = loop_.continuous != nullptr;
     // A wait before the first swing, of an integrator that has to wind up, is no part of the motion.
     const std::size_t turns = turning_.points().size();
@@ -131,11 +132,12 @@ class Settling {
     const bool exact = march_.kind() == StepperKind::exact;
     const auto again = motion && !exact ? permanent_motion(repeated(march_.t()), sampled) : motion;
     if (!motion || !again || !agree(*motion, *again))
-      return decide(Outcome::undecided, motion ? "bounded, but its range differs between two tolerances"
-                                               : "step limit reached before rest or a cycle was recognised");
+      return motion ? "bounded, but its range differs between two tolerances"
+                    : "step limit reached before rest or a cycle was recognised";
     result_.irregular = *again;
     decide(Outcome::irregular,
            exact ? "bounded without a period" : "bounded without a period; a second tolerance gives the same range");
+    return {};
   }
 
   /// The same run with a tighter tolerance.
@@ -176,8 +178,7 @@ class Settling {
     if (loop_.continuous && points.size() >= next_irregular_) {
       next_irregular_ *= 2;
       look_for_irregular();
-      if (result_.outcome == Outcome::irregular) return;
-      decided_ = false;
+      if (decided_) return;
     }
     if (points.size() >= next_growth_) {
       next_growth_ *= 2;

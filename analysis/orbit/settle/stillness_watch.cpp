@@ -52,10 +52,11 @@ std::optional<Stillness> StillnessWatch::read(double t, const State& x, const Lo
   read_at_ = t;
   if (first) return std::nullopt;
   const auto verdict = rest_.look(t, x, mean);
-  const bool slides = rubs_at(field, x);
-  if (verdict == RestWatch::Verdict::steady && slides) return Stillness{Outcome::sliding, "slides at constant speed"};
-  if (verdict != RestWatch::Verdict::at_rest || !(rest_.rate(mean) <= fades)) return std::nullopt;
-  return slides ? Stillness{Outcome::sliding, "slides at constant speed"} : Stillness{Outcome::rest, "came to rest"};
+  if (verdict == RestWatch::Verdict::moving) return std::nullopt;
+  const bool steady = verdict == RestWatch::Verdict::steady;
+  if (!steady && !(rest_.rate(mean) <= fades)) return std::nullopt;
+  if (rubs_at(field, x)) return Stillness{Outcome::sliding, "slides at constant speed"};
+  return steady ? std::nullopt : std::optional(Stillness{Outcome::rest, "came to rest"});
 }
 
 std::optional<Stillness> StillnessWatch::switched(double t, const State& dx) {

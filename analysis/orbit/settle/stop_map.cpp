@@ -40,26 +40,27 @@ Eigen::VectorXd balance(const Loop& loop, const Eigen::VectorXd& displaced) {
 
 }  // namespace
 
+StopMap::StopMap(const Loop& loop, double rtol, std::function<bool()> stop)
+    : loop_(&loop), weights_(loop_weights(loop, rtol)), stop_(std::move(stop)) {}
+
 std::optional<StopMap> StopMap::of(const Loop& loop, double rtol, std::function<bool()> stop) {
   if (loop.continuous || loop.states() == 0 || !loop.elements.back().may_stick() || !loop.ports.back().rubs)
     return std::nullopt;
   if (!loop.elements.back().facts().stuck) return std::nullopt;
   bool exact = false;
-  const Eigen::VectorXd rest = loop.rest_point(exact);
-  if (!exact) return std::nullopt;
   StopMap map(loop, rtol, std::move(stop));
-  map.rest_ = loop.C_y.dot(rest.transpose());
+  map.rest_ = loop.rest_point(exact);
+  if (!exact) return std::nullopt;
   const LoopState unit = displaced(loop, 1.0);
-  const Eigen::VectorXd moved = Eigen::Map<const Eigen::VectorXd>(unit.x.data(), loop.states()) - rest;
-  map.balancing_ = balance(loop, moved);
-  if (map.balancing_.size() == 0 || map.balancing_.isZero(0.0)) return std::nullopt;
+  const Eigen::VectorXd moved = Eigen::Map<const Eigen::VectorXd>(unit.x.data(), loop.states()) - map.rest_;
+  const Eigen::VectorXd balancing = balance(loop, moved);
+  if (balancing.size() == 0 || balancing.isZero(0.0)) return std::nullopt;
+  map.held_ = moved + balancing;
   return map;
 }
 
 LoopState StopMap::held_at(double p) const {
-  const LoopState at = displaced(*loop_, p);
-  const Eigen::VectorXd X = Eigen::Map<const Eigen::VectorXd>(at.x.data(), loop_->states()) + p * balancing_;
-  LoopState state = without_history(*loop_, X);
+  LoopState state = without_history(*loop_, rest_ + p * held_);
   state.modes.back() = *loop_->elements.back().facts().stuck;
   return state;
 }
@@ -68,7 +69,7 @@ std::optional<double> StopMap::ratio(double p) {
   const LoopState start = held_at(p);
   LoopField field(*loop_);
   field.modes() = start.modes;
-  March march(field, StepperKind::automatic, loop_weights(*loop_, rtol_));
+  March march(field, StepperKind::automatic, weights_);
   march.begin(start.x, 0.0);
   const std::size_t last = loop_->elements.size() - 1;
   bool moved = false;
@@ -76,15 +77,16 @@ std::optional<double> StopMap::ratio(double p) {
   while (march.steps() < steps_of_a_flight && !found && !(stop_ && stop_())) {
     if (march.step(for_ever) != Status::converged || march.t() >= for_ever) break;
     const bool held = field.holds(last);
-    if (moved && held) found = std::abs(field.y(march.x()) - rest_) / p;
+    if (moved && held) found = std::abs(field.y(march.x()) - loop_->C_y.dot(rest_.transpose())) / p;
     moved = moved || !held;
   }
   steps_ += march.steps();
   return found;
 }
 
-/// The displacement of the largest ratio between two, by golden section in its logarithm.
-double StopMap::peak(double low, double high) {
+/// A displacement between two from which the swings grow, if the largest ratio is more than 1: by golden section in the
+/// logarithm of the displacement.
+std::optional<double> StopMap::growing_between(double low, double high) {
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
   double a = std::log(low), b = std::log(high), c = b - golden * (b - a), d = a + golden * (b - a);
   double at_c = ratio(std::exp(c)).value_or(0.0), at_d = ratio(std::exp(d)).value_or(0.0);
@@ -103,6 +105,7 @@ double StopMap::peak(double low, double high) {
       at_d = ratio(std::exp(d)).value_or(0.0);
     }
   }
+  if (std::max(at_c, at_d) <= 1.0) return std::nullopt;
   return std::exp(at_c > at_d ? c : d);
 }
 
@@ -116,7 +119,7 @@ std::vector<double> StopMap::growing(double least, double most) {
     if (ratios[i] > 1.0 && ratios[i - 1] > 0.0 && ratios[i - 1] < 1.0) found.push_back(places[i]);
     if (i + 1 == places.size() || ratios[i] > 1.0 || ratios[i] < nearly_grows) continue;
     if (ratios[i] <= ratios[i - 1] || ratios[i] < ratios[i + 1]) continue;
-    if (const double p = peak(places[i + 1], places[i - 1]); ratio(p).value_or(0.0) > 1.0) found.push_back(p);
+    if (const auto p = growing_between(places[i + 1], places[i - 1])) found.push_back(*p);
   }
   return found;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "limcycle/analysis/cycle.hpp"
+#include "limcycle/analysis/motion/error_weights.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {
@@ -29,15 +30,13 @@ class StopMap {
   long steps() const { return steps_; }
 
  private:
-  StopMap(const Loop& loop, double rtol, std::function<bool()> stop)
-      : loop_(&loop), rtol_(rtol), stop_(std::move(stop)) {}
-  double peak(double low, double high);
+  StopMap(const Loop& loop, double rtol, std::function<bool()> stop);
+  std::optional<double> growing_between(double low, double high);
 
   const Loop* loop_;
-  double rtol_;
+  ErrorWeights weights_;
   std::function<bool()> stop_;
-  double rest_ = 0.0;          ///< y of the rest point
-  Eigen::VectorXd balancing_;  ///< change of the linear states per unit of displacement
+  Eigen::VectorXd rest_, held_;  ///< linear states of the rest point, and their change per unit of displacement
   long steps_ = 0;
 };
 
