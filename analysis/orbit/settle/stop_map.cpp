@@ -14,6 +14,7 @@ constexpr double between = 1.25;      ///< ratio of two displacements of a scan
 constexpr double nearly_grows = 0.6;  ///< least ratio of a maximum that is looked at more closely
 constexpr int refinements = 12;       ///< flights for one maximum
 constexpr long steps_of_a_flight = 3000;
+constexpr double broken = 20.0;    ///< in lengths over which a bristle yields: a body that moved so far has broken away
 constexpr double for_ever = 1e15;  ///< s: a body that the controller does not push waits so long
 
 /// The smallest change of the states, in their typical sizes, that leaves y, the rubbing displacement and its velocity
@@ -44,9 +45,10 @@ StopMap::StopMap(const Loop& loop, double rtol, std::function<bool()> stop)
     : loop_(&loop), weights_(loop_weights(loop, rtol)), stop_(std::move(stop)) {}
 
 std::optional<StopMap> StopMap::of(const Loop& loop, double rtol, std::function<bool()> stop) {
-  if (loop.continuous || loop.states() == 0 || !loop.elements.back().may_stick() || !loop.ports.back().rubs)
-    return std::nullopt;
-  if (!loop.elements.back().facts().stuck) return std::nullopt;
+  if (loop.continuous || loop.states() == 0 || loop.elements.empty() || !loop.ports.back().rubs) return std::nullopt;
+  const Element& law = loop.elements.back();
+  const bool holds = law.may_stick() && law.facts().stuck;
+  if (!holds && !(law.states() > 0 && std::isfinite(law.scales().displacement))) return std::nullopt;
   bool exact = false;
   StopMap map(loop, rtol, std::move(stop));
   map.rest_ = loop.rest_point(exact);
@@ -61,8 +63,22 @@ std::optional<StopMap> StopMap::of(const Loop& loop, double rtol, std::function<
 
 LoopState StopMap::held_at(double p) const {
   LoopState state = without_history(*loop_, rest_ + p * held_);
-  state.modes.back() = *loop_->elements.back().facts().stuck;
+  if (const auto stuck = loop_->elements.back().facts().stuck) state.modes.back() = *stuck;
   return state;
+}
+
+bool StopMap::stops(const LoopField& field, const State& x) {
+  const Eigen::Map<const Eigen::VectorXd> X(x.data(), loop_->states());
+  const Port& port = loop_->ports.back();
+  const double at = port.C.dot(X.transpose()), v = port.C_v.dot(X.transpose());
+  if (!flight_) flight_ = Flight{at, false, v};
+  const Element& law = loop_->elements.back();
+  const bool held = law.may_stick() ? field.holds(loop_->elements.size() - 1) : v * flight_->v <= 0.0;
+  const bool away = law.may_stick() ? !held : std::abs(at - flight_->from) > broken * law.scales().displacement;
+  const bool stopped = flight_->moved && held;
+  flight_->moved = flight_->moved || away;
+  flight_->v = v;
+  return stopped;
 }
 
 std::optional<double> StopMap::ratio(double p) {
@@ -71,14 +87,11 @@ std::optional<double> StopMap::ratio(double p) {
   field.modes() = start.modes;
   March march(field, StepperKind::automatic, weights_);
   march.begin(start.x, 0.0);
-  const std::size_t last = loop_->elements.size() - 1;
-  bool moved = false;
+  flight_.reset();
   std::optional<double> found;
   while (march.steps() < steps_of_a_flight && !found && !(stop_ && stop_())) {
     if (march.step(for_ever) != Status::converged || march.t() >= for_ever) break;
-    const bool held = field.holds(last);
-    if (moved && held) found = std::abs(field.y(march.x()) - loop_->C_y.dot(rest_.transpose())) / p;
-    moved = moved || !held;
+    if (stops(field, march.x())) found = std::abs(field.y(march.x()) - loop_->C_y.dot(rest_.transpose())) / p;
   }
   steps_ += march.steps();
   return found;

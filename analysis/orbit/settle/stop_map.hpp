@@ -5,14 +5,15 @@
 
 #include "limcycle/analysis/cycle.hpp"
 #include "limcycle/analysis/motion/error_weights.hpp"
+#include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {
 
-/// The map from one position of rest to the next, of a loop whose last element holds a body at rest until a controller
-/// with integral action breaks it away: a limit cycle that sticks is a fixed point of it (Armstrong-Helouvry, Dupont
-/// and Canudas de Wit 1994, Automatica 30(7), section 5, of servos under PID). One flight takes some tens of steps, so
-/// that the map finds ranges of attraction that no few starts fall into.
+/// The map from one position of rest to the next, of a loop whose last element holds a body at rest, truly or by
+/// bristles that yield a little, until a controller with integral action breaks it away: a limit cycle that sticks is a
+/// fixed point of it (Armstrong-Helouvry, Dupont and Canudas de Wit 1994, Automatica 30(7), section 5, of servos under
+/// PID). One flight takes some tens of steps, so that the map finds ranges of attraction that no few starts fall into.
 class StopMap {
  public:
   /// Empty if no body sticks, or if no state of the controller can balance its own command where the body is displaced.
@@ -32,11 +33,21 @@ class StopMap {
  private:
   StopMap(const Loop& loop, double rtol, std::function<bool()> stop);
   std::optional<double> growing_between(double low, double high);
+  /// True at the end of a step at which the body that has broken away is held again: a body on bristles where its
+  /// velocity changes sign.
+  bool stops(const LoopField& field, const State& x);
+
+  struct Flight {
+    double from;  ///< rubbing displacement
+    bool moved;
+    double v;
+  };
 
   const Loop* loop_;
   ErrorWeights weights_;
   std::function<bool()> stop_;
   Eigen::VectorXd rest_, held_;  ///< linear states of the rest point, and their change per unit of displacement
+  std::optional<Flight> flight_;
   long steps_ = 0;
 };
 

@@ -86,6 +86,7 @@ SideSearch::Reached SideSearch::reached_at(double p, const std::vector<LoopState
     const bool ended = settled.outcome == Outcome::rest || settled.outcome == Outcome::sliding ||
                        settled.outcome == Outcome::divergence;
     open = open || !ended;
+    reached.irregular = reached.irregular || settled.outcome == Outcome::irregular;
     if (ended && reached.outcome == Outcome::undecided) reached.outcome = settled.outcome;
     if (settled.outcome == Outcome::divergence && from.empty()) return reached;
   }
@@ -147,19 +148,25 @@ bool SideSearch::stays(const LoopState& state) const {
   return outcome != Outcome::rest && outcome != Outcome::sliding && outcome != Outcome::divergence;
 }
 
-/// Where simulations cease to come to a cycle, between p, where they do, and the limit. For a branch that a step left
-/// across its end, as where a relay just fails to switch.
-MarginSide SideSearch::by_bisection(double hunts) {
+/// Where simulations cease to come to a cycle or to a motion without a period, between one value at which they do and
+/// another at which they do not. For a branch that a step left across its end, as where a relay just fails to switch,
+/// and for one whose end tells nothing about what is stable there.
+MarginSide SideSearch::by_bisection(MarginSide::What what, double hunts, double rests,
+                                    const std::vector<LoopState>& from) {
   constexpr double narrow = 1e-3;
-  double ends = limit_;
-  while (std::abs(std::log(ends / hunts)) > narrow && !stopped()) {
-    const double middle = hunts * std::sqrt(ends / hunts);
-    (reached_at(middle, starts_).cycle ? hunts : ends) = middle;
+  while (std::abs(std::log(rests / hunts)) > narrow && !stopped()) {
+    const double middle = hunts * std::sqrt(rests / hunts);
+    const Reached reached = reached_at(middle, from);
+    (reached.cycle || reached.irregular ? hunts : rests) = middle;
   }
   if (stopped()) return {};
-  return {MarginSide::What::ends, ends,
-          std::abs(ends - hunts), "by bisection of the outcome: simulations no longer come to a cycle",
-          std::nullopt,           std::nullopt};
+  const std::string side = what == MarginSide::What::ends ? "no longer come" : "come";
+  return {what,
+          rests,
+          std::abs(rests / hunts - 1.0),
+          "by bisection of the outcome: simulations " + side + " to a cycle or to a motion without a period",
+          std::nullopt,
+          std::nullopt};
 }
 
 MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
@@ -171,7 +178,8 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
   double p = parameter_.value;
   for (int i = 0; i <= successors; ++i) {
     const Lost lost = follow(cycle, p, limit_);
-    if (lost.kind == Lost::Kind::border && !stopped() && !stays(lost.last)) return by_bisection(p);
+    if (lost.kind == Lost::Kind::border && !stopped() && !stays(lost.last))
+      return by_bisection(What::ends, p, limit_, starts_);
     if (lost.kind == Lost::Kind::border)
       return {What::none, 0.0, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
     if (lost.kind == Lost::Kind::failed) return {What::unknown, 0.0, unknown, lost.why};
@@ -219,6 +227,7 @@ MarginSide SideSearch::back_from(Cycle cycle, double p) {
     bool decided = false;
     auto other = before(lost, at, decided);
     if (!other) {
+      if (decided && std::isnan(lost.error)) return by_bisection(What::begins, p, at, {lost.last});
       MarginSide side = found(What::begins, lost, lost.why);
       if (decided) return side;
       side.why += "; whether the loop hunts on another cycle before it was not determined";
@@ -237,19 +246,26 @@ MarginSide SideSearch::where_hunting_begins() {
   using What = MarginSide::What;
   const int steps = std::max(1, static_cast<int>(std::ceil(options_.scan_per_decade * std::log10(options_.factor))));
   double last = parameter_.value;
+  std::optional<double> open;
   for (int i = 1; i <= steps && !stopped(); ++i) {
     const double p = parameter_.value * std::pow(limit_ / parameter_.value, static_cast<double>(i) / steps);
     if (progress_) progress_(static_cast<double>(i) / (steps + 1));
     if (!parameter_.family(p))
       return {What::none, 0.0, 0.0,
               "none up to " + short_number(last, 5) + "; the case is not valid at " + short_number(p, 5)};
-    const auto [cycle, outcome] = reached_at(p, {});
-    if (outcome == Outcome::divergence)
+    const Reached reached = reached_at(p, {});
+    if (reached.outcome == Outcome::divergence)
       return {What::none, 0.0, 0.0,
               "none up to " + short_number(last, 5) + "; at " + short_number(p, 5) + " the motion diverges"};
-    if (cycle) return back_from(*cycle, p);
+    if (reached.cycle) return back_from(*reached.cycle, p);
+    if (reached.irregular) return by_bisection(What::begins, p, last, {});
+    if (reached.outcome == Outcome::undecided && !open) open = p;
     last = p;
   }
+  if (open)
+    return {What::unknown, 0.0, unknown,
+            "no cycle was reached up to " + short_number(last, 5) + ", but simulations at " + short_number(*open, 5) +
+                " did not decide"};
   return {What::none, 0.0, 0.0, "it does not hunt up to " + short_number(last, 5)};
 }
 

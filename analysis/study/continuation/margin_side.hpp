@@ -34,6 +34,7 @@ class SideSearch {
     std::optional<Cycle> cycle;  ///< the first stable one
     /// Without a cycle: that of the first start. Undecided if one of them was, or continues for ever in another way.
     Outcome outcome = Outcome::undecided;
+    bool irregular = false;  ///< one of them moves for ever without a period
   };
   Reached reached_at(double p, const std::vector<LoopState>& from);
   /// The side of a lost cycle: simulated outwards until a decision.
@@ -44,7 +45,7 @@ class SideSearch {
   /// Follows a cycle found at p, and its successors, back to the beginning of hunting.
   MarginSide back_from(Cycle cycle, double p);
   bool stays(const LoopState& state) const;
-  MarginSide by_bisection(double hunts);
+  MarginSide by_bisection(MarginSide::What what, double hunts, double rests, const std::vector<LoopState>& from);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
 
   const MarginParameter& parameter_;

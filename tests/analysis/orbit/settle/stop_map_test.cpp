@@ -6,7 +6,10 @@
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/friction/bristle/elasto_plastic.hpp"
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/dry/karnopp.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -52,6 +55,50 @@ TEST_CASE("map of stops: without stiction no swing grows, and a loop without int
   CHECK_FALSE(within->ratio(0.05));  // held for ever within the dead zone
   const Loop unable = build_loop(parts);
   CHECK_FALSE(StopMap::of(unable, 1e-8, {}));
+}
+
+TEST_CASE("map of stops: on bristles that yield it tends to that of stiction the stiffer they are") {
+  Stribeck<double> dry;
+  dry.Fs = dry.Fs_minus = 1.5;
+  dry.Fc = dry.Fc_minus = 1.0;
+  dry.vs = 0.01;
+  const Loop stuck = servo(dry);
+  auto held = StopMap::of(stuck, 1e-8, {});
+  REQUIRE(held);
+  const double p = GENERATE(0.1, 0.5, 2.0);
+  const auto off = [&](double sigma0) {
+    LuGre<double> law;
+    law.Fs = law.Fs_minus = dry.Fs;
+    law.Fc = law.Fc_minus = dry.Fc;
+    law.vs = dry.vs;
+    law.sigma0 = sigma0;
+    law.sigma1 = std::sqrt(sigma0);
+    const Loop loop = servo(law);
+    auto map = StopMap::of(loop, 1e-8, {});
+    REQUIRE(map);
+    return std::abs(map->ratio(p).value() / held->ratio(p).value() - 1.0);
+  };
+  const double soft = off(1e5), stiff = off(1e6);
+  CAPTURE(p, soft, stiff);
+  CHECK(soft < 0.02);
+  CHECK(stiff < 0.5 * soft);
+}
+
+TEST_CASE("predict: a hunting cycle on bristles into which no displaced start falls is found from its break-away") {
+  ElastoPlastic<double> law;
+  law.Fc = law.Fc_minus = 247.997;
+  law.Fs = law.Fs_minus = 426.197;
+  law.vs = 0.0070504922;
+  law.sigma0 = 483203.0;
+  law.sigma1 = 15764.2;
+  LoopParts parts;
+  parts.plant = Mass{13363.8, 205.78, 0.0};
+  parts.controller = pid(1270.36, 37.0563, 8209.67);
+  parts.friction = law;
+  const PredictReport report = predict(build_loop(parts));
+  REQUIRE_FALSE(report.cycles.empty());
+  CHECK(report.cycles.front().stable == true);
+  CHECK(report.cycles.front().period == Approx(718.2).epsilon(1e-3));  // along a branch, from vs where it hunts
 }
 
 TEST_CASE("predict: a hunting cycle into which no displaced start falls is found from where its body breaks away") {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -133,6 +134,35 @@ TEST_CASE("margin: the end of a branch that its steps pass over, where a relay j
   const auto hunts_at = [&](double level) { return !predict(loop(level)).cycles.empty(); };
   CHECK(hunts_at(1.004 * down.value));
   CHECK_FALSE(hunts_at(0.996 * down.value));
+  CHECK(down.error < 2e-3);
+}
+
+TEST_CASE("margin: hunting begins where simulations find it, not where two unstable cycles are born") {
+  // Two unstable cycles merge at 0.2627; what is stable, without a period, ends at 0.2583 (bisected with predict).
+  constexpr double own = 0.27;
+  const auto loop = [](double sigma2) {
+    LuGre<double> law;
+    law.sigma0 = 10655.2;
+    law.sigma1 = 0.0;
+    law.sigma2 = sigma2;
+    law.Fc = law.Fc_minus = 0.0628584;
+    law.Fs = law.Fs_minus = 0.0811793;
+    law.vs = 0.00476074;
+    LoopParts parts;
+    parts.plant = Belt{3.34728, 3.45017, 0.0, 0.0238899};
+    parts.friction = law;
+    return build_loop(parts);
+  };
+  MarginOptions options;
+  options.factor = 1.12;
+  const auto report =
+      margin(loop(own),
+             {{"loop.friction.sigma2", "N s/m", own, false, [&](double p) -> std::optional<Loop> { return loop(p); }}},
+             options);
+  const MarginSide& down = named(report, "loop.friction.sigma2").down;
+  REQUIRE(down.what == MarginSide::What::begins);
+  CHECK(down.value < 0.2590);
+  CHECK(down.value > 0.2570);
   CHECK(down.error < 2e-3);
 }
 
