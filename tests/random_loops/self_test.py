@@ -4,6 +4,7 @@ import math
 
 from . import attractor, loop_model, planted
 from .motion import PiecewiseLoop
+from .truth import Truth, in_mode
 
 
 def _cycle_of(case, displacement):
@@ -82,7 +83,17 @@ def saturated_servo():
     return periods[0], 0.2336927229, periods[1], 0.02336927229
 
 
-TESTS = (relay_with_integrator, relay_with_delay, relay_with_three_lags, servo_with_bristles, saturated_servo)
+def two_masses_in_their_mode():
+    """Swing and velocity of y a quarter of a turn on, in the mode of two masses joined by a spring."""
+    plant = {"kind": "two-mass", "motor_mass": 2.0, "load_mass": 3.0, "stiffness": 30.0}
+    model = Truth({"loop": {"plant": plant, "friction": {"kind": "coulomb", "Fc": 1.0}}}).model
+    w = math.sqrt(30.0 / 2.0 + 30.0 / 3.0)
+    X = in_mode(model, 1.1 * w, 0.2, math.pi / 3.0)
+    return model.y @ X, 0.1, model.y @ model.A @ X, -0.2 * w * math.sin(math.pi / 3.0)
+
+
+TESTS = (relay_with_integrator, relay_with_delay, relay_with_three_lags, servo_with_bristles, saturated_servo,
+         two_masses_in_their_mode)
 
 
 def run():

@@ -56,12 +56,18 @@ class Truth:
 
     def settle(self, displacement=0.0, kick=0.0, windup=0.0):
         """The attractor from a start; kept."""
-        key = (displacement, kick, windup)
+        return self._from((displacement, kick, windup), self.model.start)
+
+    def settle_in_mode(self, frequency, swing, phase):
+        """The attractor from a swing of y in the mode of the loop without its elements whose frequency is nearest."""
+        return self._from((frequency, swing, phase, "mode"), lambda w, size, turn, _: in_mode(self.model, w, size, turn))
+
+    def _from(self, key, start):
         if key not in self.found and self.out_of_time():
             return attractor.Attractor("unknown", why="no time left")
         if key not in self.found:
-            X = self.model.start(*key)
-            far = abs(displacement) + abs(self.model.reference)
+            X = start(*key)
+            far = abs(self.model.y @ X) + abs(self.model.reference)
             bound = 1e6 * max(far, self.scale())
             method = smooth.settle if self.smooth else attractor.settle
             one = method(self.loop, X, bound)
@@ -89,6 +95,17 @@ class Truth:
             elif not any(one.same(other) for other in distinct):
                 distinct.append(one)
         return distinct
+
+
+def in_mode(model, frequency, swing, phase):
+    """The state in which y is swing cos(phase), in the mode of the loop without its elements nearest this frequency."""
+    X = model.start(0.0)
+    values, vectors = np.linalg.eig(model.A[:-1, :-1])
+    mode = vectors[:, np.argmin(np.abs(values - 1j * frequency))]
+    y = model.y[: len(mode)] @ mode
+    if abs(y) > 1e-9 * np.linalg.norm(mode):
+        X[: len(mode)] += swing * np.real(mode / y * np.exp(1j * phase))
+    return X
 
 
 def _slow(one, other):
