@@ -17,6 +17,7 @@
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/bristle/lugre_spline.hpp"
+#include "limcycle/models/friction/bristle/lugre_table.hpp"
 #include "limcycle/models/friction/bristle/non_drift.hpp"
 #include "limcycle/models/friction/bristle/two_state.hpp"
 #include "limcycle/models/friction/dry/awrejcewicz.hpp"
@@ -25,8 +26,10 @@
 #include "limcycle/models/friction/dry/kikuuwe.hpp"
 #include "limcycle/models/friction/dry/quinn.hpp"
 #include "limcycle/models/friction/dry/stribeck.hpp"
+#include "limcycle/models/friction/dry/stribeck_table.hpp"
 #include "limcycle/models/friction/dry/wojewoda.hpp"
 #include "limcycle/models/friction/sliders/gms.hpp"
+#include "limcycle/models/friction/sliders/gms_table.hpp"
 #include "limcycle/models/friction/sliders/iwan.hpp"
 #include "limcycle/models/friction/sliders/jenkins.hpp"
 #include "limcycle/models/friction/sliders/leuven.hpp"
@@ -45,9 +48,9 @@ struct KindList {
 /// Kinds of friction laws, of elements in series after the controller, of elements on the error before it, and of those
 /// that a loop makes from its other parts, which no case names. A new law is one pair of files and one word here;
 /// everything else uses catalogue.hpp.
-using FrictionLaws =
-    KindList<Coulomb, Stribeck, Karnopp, Quinn, Kikuuwe, Awrejcewicz, Wojewoda, Dahl, BoucWen, LuGre, LuGreSpline,
-             ElastoPlastic, Leuven, Jenkins, MaxwellSlip, Iwan, Gms, Xiong, TwoState, NonDrift>;
+using FrictionLaws = KindList<Coulomb, Stribeck, StribeckTable, Karnopp, Quinn, Kikuuwe, Awrejcewicz, Wojewoda, Dahl,
+                              BoucWen, LuGre, LuGreTable, LuGreSpline, ElastoPlastic, Leuven, Jenkins, MaxwellSlip,
+                              Iwan, Gms, GmsTable, Xiong, TwoState, NonDrift>;
 using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic>;
 using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
 using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity, Sampled>;

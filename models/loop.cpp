@@ -103,8 +103,10 @@ std::optional<BrokenRule> validate_sampling(const LoopParts& parts, const PlantM
   if (!sampling.is_on()) return std::nullopt;
   const auto refuse = [](const char* rule) { return BrokenRule{"loop.controller.sample_time", rule}; };
   if (!uses_error(parts)) return refuse("has nothing to sample: with friction alone the error is not used");
-  if (std::holds_alternative<Cascade>(parts.controller))
-    return refuse("is not for a cascade yet: it is for pid, transfer-function, state-space and none");
+  const bool differences =
+      std::holds_alternative<Cascade>(parts.controller) || std::holds_alternative<Pid>(parts.controller);
+  if (sampling.velocity_window > 0.0 && !differences)
+    return BrokenRule{"loop.controller.velocity_window", "is for pid and cascade: another takes no velocity"};
   if (parts.reference_rate != 0.0) return refuse("cannot stand beside a ramp yet: the reference must be constant");
   if (plant.delay > 0.0) return refuse("cannot stand beside a dead time of the plant yet");
   const StateSpace discrete = backward_difference(model_of(parts.controller), sampling.sample_time);

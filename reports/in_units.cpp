@@ -83,7 +83,9 @@ PredictReport in_units(PredictReport report, const Units& units) {
   for (OutcomeOfStart& one : report.outcomes) {
     scale_displacement(one.start, k);
     scale(one.trace, k);
-    one.irregular.half_range *= k;
+    for (double IrregularMotion::*size : {&IrregularMotion::half_range, &IrregularMotion::mean_amplitude,
+                                          &IrregularMotion::smallest_amplitude, &IrregularMotion::largest_amplitude})
+      one.irregular.*size *= k;
   }
   return report;
 }

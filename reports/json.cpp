@@ -1,5 +1,6 @@
 #include "limcycle/reports/json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -55,7 +56,8 @@ std::string text_of(const std::string& command, const Provenance& provenance, co
   return json_document(command, provenance, json_text(body));
 }
 
-Json cycle_json(const Cycle& cycle) {
+/// `sample_time`: of a sampled controller; 0: there is none.
+Json cycle_json(const Cycle& cycle, double sample_time) {
   Json multipliers = Json::array();
   for (const auto& multiplier : cycle.multipliers) multipliers.push_back(pair(multiplier));
   return {{"amplitude", number(cycle.amplitude)},
@@ -71,7 +73,24 @@ Json cycle_json(const Cycle& cycle) {
           {"error", number(cycle.error)},
           {"residual", number(cycle.residual)},
           {"half_wave_symmetric", cycle.half_wave_symmetric},
-          {"remembered", cycle.remembered}};
+          {"remembered", cycle.remembered},
+          {"locked", sample_time > 0.0 ? Json(true) : Json(nullptr)},
+          {"samples", sample_time > 0.0 ? Json(std::lround(cycle.period / sample_time)) : Json(nullptr)}};
+}
+
+/// The motion of a sampled loop whose period is no number of samples, as the cycle that it is on the mean.
+Json unlocked_json(const IrregularMotion& motion) {
+  Cycle mean;
+  mean.amplitude = motion.mean_amplitude;
+  mean.period = motion.mean_period;
+  mean.first_harmonic = mean.offset = mean.sticking_fraction = mean.error = mean.residual = NAN;
+  mean.stable = true;
+  mean.method = "simulation";
+  Json out = cycle_json(mean, 0.0);
+  out["locked"] = false;
+  out["spread"] = {{"period", number(0.5 * (motion.longest_period - motion.shortest_period))},
+                   {"amplitude", number(0.5 * (motion.largest_amplitude - motion.smallest_amplitude))}};
+  return out;
 }
 
 Json ends(const Interval& interval) { return pair({interval.low, interval.high}); }
@@ -161,10 +180,29 @@ void append_point(std::string& out, const DfPoint& point, const DescribingFuncti
   out.append(R"(","status":")").append(to_string(result.status)).append(R"("})");
 }
 
-Json outcome_json(const OutcomeOfStart& outcome) {
+/// Adds the motions of a sampled loop that are not locked to its samples to the cycles, each once, and the index to its
+/// outcomes.
+void add_unlocked(const PredictReport& report, Json& cycles, std::vector<std::optional<std::size_t>>& cycle_of) {
+  std::vector<std::pair<const IrregularMotion*, std::size_t>> known;
+  for (std::size_t i = 0; i < report.outcomes.size(); ++i) {
+    const OutcomeOfStart& one = report.outcomes[i];
+    if (!(report.sample_time > 0.0) || one.outcome != Outcome::irregular) continue;
+    const auto same =
+        std::ranges::find_if(known, [&](const auto& other) { return agree(*other.first, one.irregular); });
+    if (same == known.end()) {
+      cycle_of[i] = cycles.size();
+      known.emplace_back(&one.irregular, cycles.size());
+      cycles.push_back(unlocked_json(one.irregular));
+    } else {
+      cycle_of[i] = same->second;
+    }
+  }
+}
+
+Json outcome_json(const OutcomeOfStart& outcome, const std::optional<std::size_t>& cycle) {
   Json out = {{"start", outcome.start},
               {"outcome", to_string(outcome.outcome)},
-              {"cycle", or_null(outcome.cycle)},
+              {"cycle", or_null(cycle)},
               {"why", outcome.why}};
   if (!outcome.by.empty()) out["by"] = outcome.by;
   if (outcome.outcome == Outcome::irregular) {
@@ -197,11 +235,15 @@ std::string df_json(const Provenance& provenance, const std::vector<DfPoint>& po
 std::string predict_json(const Provenance& provenance, const PredictReport& report) {
   Json top;
   for (const char* key : {"cycles", "predictions", "missed", "outcomes"}) top[key] = Json::array();
-  for (const auto& cycle : report.cycles) top["cycles"].push_back(cycle_json(cycle));
+  for (const auto& cycle : report.cycles) top["cycles"].push_back(cycle_json(cycle, report.sample_time));
+  std::vector<std::optional<std::size_t>> cycle_of;
+  for (const auto& outcome : report.outcomes) cycle_of.push_back(outcome.cycle);
+  add_unlocked(report, top["cycles"], cycle_of);
   for (const auto& prediction : report.predictions) top["predictions"].push_back(prediction_json(prediction));
   for (const auto& missed : report.missed)
     top["missed"].push_back({{"method", missed.method}, {"cycle", missed.cycle}});
-  for (const auto& outcome : report.outcomes) top["outcomes"].push_back(outcome_json(outcome));
+  for (std::size_t i = 0; i < report.outcomes.size(); ++i)
+    top["outcomes"].push_back(outcome_json(report.outcomes[i], cycle_of[i]));
   top["search"] = {
       {"amplitude", Json::array({number(report.search.amplitude_min), number(report.search.amplitude_max)})},
       {"frequency", Json::array({number(report.search.frequency_min), number(report.search.frequency_max)})}};

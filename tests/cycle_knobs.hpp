@@ -145,9 +145,9 @@ inline std::vector<Knob> lugre_knobs() {
   using Law = LuGre<double>;
   auto knobs = and_levels<Law>(servo_knobs());
   knobs.push_back({"vs", [](LoopParts& parts) -> double& { return law_of<Law>(*parts.friction).vs; }});
-  knobs.push_back(of_law("sigma0", &Law::sigma0));
-  knobs.push_back(of_law("sigma1", &Law::sigma1));
-  knobs.push_back(of_law("sigma2", &Law::sigma2));
+  knobs.push_back(of_law<Law>("sigma0", &Law::sigma0));
+  knobs.push_back(of_law<Law>("sigma1", &Law::sigma1));
+  knobs.push_back(of_law<Law>("sigma2", &Law::sigma2));
   return knobs;
 }
 inline LoopParts belt_parts(Element friction) {

@@ -72,8 +72,9 @@ Law made(const Settings& settings) {
   for (const auto& parameter : table) {
     if (std::ranges::find(given, parameter.key) != given.end()) continue;
     if (!parameter.default_from.empty())
-      law.*std::get<double Law::*>(parameter.member) =
-          law.*std::get<double Law::*>(row_of(parameter.default_from)->member);
+      std::visit(
+          [&](auto member) { law.*member = law.*std::get<decltype(member)>(row_of(parameter.default_from)->member); },
+          parameter.member);
     else if (parameter.required)
       throw std::invalid_argument(std::string(Law::kind) + " needs " + std::string(parameter.key));
   }
@@ -98,6 +99,9 @@ inline const Settings bristle = with(stribeck_set, {{"sigma0", 1e5}});
 inline const double root = 316.22776601683796;  // sqrt(1e5) N s/m
 inline const Settings four_stops{{"k", std::vector<double>{4e4, 2e4, 1e4, 5e3}},
                                  {"W", std::vector<double>{0.3, 0.4, 0.4, 0.5}}};
+inline const Settings measured{{"Fs", 1.5},
+                               {"velocities", std::vector<double>{5e-4, 1e-3, 2e-3, 5e-3, 0.02}},
+                               {"forces", std::vector<double>{1.35, 1.2, 1.05, 1.0, 1.04}}};
 inline const Settings three_blocks =
     with(stribeck_set, {{"k", std::vector<double>{4e4, 2e4, 1e4}}, {"alpha", std::vector<double>{0.5, 0.3, 0.2}}});
 
@@ -222,6 +226,22 @@ inline std::vector<Sample> samples_of_kind(std::string_view kind) {
              .rate_independent = true,
              .steady = 1.0}};
   }
+  if (kind == "stribeck-table")
+    return {{.name = "measured", .settings = measured, .level = 1.5, .passive = true, .holds_below = 1.5},
+            {.name = "uneven",
+             .settings =
+                 with(measured, {{"Fs_minus", 1.3}, {"forces_minus", std::vector<double>{1.2, 1.1, 1.0, 0.9, 0.9}}}),
+             .level = 1.5,
+             .passive = true,
+             .holds_below = 1.3}};
+  if (kind == "lugre-table") {
+    const Settings on_bristle = with(measured, {{"sigma0", 1e5}});
+    return {{.name = "without damping", .settings = on_bristle, .level = 1.5, .passive = true},
+            {.name = "damped",
+             .settings = with(on_bristle, {{"sigma1", root}, {"sigma2", 0.4}}),
+             .level = 1.5,
+             .per_speed = 2.5 * root + 0.4}};
+  }
   if (kind == "lugre")
     return {{.name = "1995",
              .settings = with(bristle, {{"sigma1", root}, {"sigma2", 0.4}}),
@@ -322,6 +342,17 @@ inline std::vector<Sample> samples_of_kind(std::string_view kind) {
             sample("linear", {{"curve", "linear"}}, 1.5),
             sample("seven elements", {{"curve", "koizumi-shibazaki"}, {"elements", 7.0}}, 1.5)};
   }
+  if (kind == "gms-table")
+    return {{.name = "measured",
+             .settings = with(measured, {{"k", std::vector<double>{4e4, 2e4, 1e4}},
+                                         {"alpha", std::vector<double>{0.5, 0.3, 0.2}},
+                                         {"C", 10.0}}),
+             .level = 1.5,
+             .fastest = 0.1,
+             .slowest = 0.15,
+             .closes = exact,
+             .holds_below = 1.0,
+             .settles_slowly = true}};
   if (kind == "gms")
     return {{.name = "slow",
              .settings = with(three_blocks, {{"C", 10.0}}),
@@ -415,10 +446,10 @@ inline std::vector<Sample> samples_of_kind(std::string_view kind) {
   return {};
 }
 
-inline constexpr std::array<std::string_view, 20> sampled_kinds{
-    "coulomb", "stribeck",     "karnopp", "quinn",  "awrejcewicz",  "wojewoda", "kikuuwe",
-    "dahl",    "bouc-wen",     "lugre",   "leuven", "lugre-spline", "iwan",     "elasto-plastic",
-    "jenkins", "maxwell-slip", "gms",     "xiong",  "two-state",    "non-drift"};
+inline constexpr std::array<std::string_view, 23> sampled_kinds{
+    "stribeck-table", "lugre-table", "gms-table",    "coulomb",  "stribeck", "karnopp",   "quinn",        "awrejcewicz",
+    "wojewoda",       "kikuuwe",     "dahl",         "bouc-wen", "lugre",    "leuven",    "lugre-spline", "iwan",
+    "elasto-plastic", "jenkins",     "maxwell-slip", "gms",      "xiong",    "two-state", "non-drift"};
 
 /// Calls visit(law, sample) for each sample of the law.
 template <template <class> class Kind>

@@ -35,9 +35,14 @@ function parameter(p) {
   throw new Error(`${p.key} is a ${p.type}, which tools/case-schema.mjs does not know`);
 }
 
+/// A law over measured points is named so, or as the one over a formula with `curve = "table"`.
+const table_suffix = /-table$/;
+const kind_of = (law) => !table_suffix.test(law.kind) ? { kind: { const: law.kind } } :
+  { kind: { enum: [law.kind.replace(table_suffix, ''), law.kind] }, curve: { const: 'table' } };
+
 const kind_definition = (law) =>
   table(law.equation, {
-    kind: { const: law.kind },
+    ...kind_of(law),
     ...Object.fromEntries(law.parameters.map((p) => [p.key, parameter(p)])),
   }, ['kind', ...law.parameters.filter((p) => p.required).map((p) => p.key)]);
 
@@ -65,7 +70,7 @@ const block_definition = (law) => {
   const signals = law.kind === 'constant' ? {} : { ...(law !== compensation && { input }), ...(touches && { on, between }) };
   return table(law.equation, {
     name,
-    kind: { const: law.kind },
+    ...kind_of(law),
     ...signals,
     ...Object.fromEntries(law.parameters.map((p) => [p.key, parameter(p)])),
   }, ['name', 'kind', ...(touches || law.kind === 'constant' ? [] : ['input']),

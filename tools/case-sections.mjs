@@ -27,6 +27,12 @@ function described(meanings) {
   return Object.fromEntries(Object.entries(all).map(([key, set]) => [key, { description: [...set].join('; or ') }]));
 }
 
+/// With `curve = "table"` a kind stands for the one over measured points: "lugre" for "lugre-table".
+const by_curve = (kind, kinds) => {
+  const measured = kinds[`${kind}-table`];
+  if (!measured) return ref(kinds[kind]);
+  return { if: { properties: { curve: { const: 'table' } }, required: ['curve'] }, then: ref(measured), else: ref(kinds[kind]) };
+};
 /// A table whose `kind` says which of `kinds` (kind -> name of its definition) it follows. By "if" and not by "oneOf":
 /// then a mistake is told as one of that kind. Not every editor looks behind "if": of a key it shows `meanings`.
 export const by_kind = (description, kinds, meanings, type = 'object') => ({
@@ -34,9 +40,9 @@ export const by_kind = (description, kinds, meanings, type = 'object') => ({
   description,
   properties: { kind: choice(Object.keys(kinds), 'which'), ...described(meanings) },
   required: ['kind'],
-  allOf: Object.entries(kinds).map(([kind, name]) => ({
+  allOf: Object.keys(kinds).map((kind) => ({
     if: { type: 'object', properties: { kind: { const: kind } }, required: ['kind'] },
-    then: ref(name),
+    then: by_curve(kind, kinds),
   })),
 });
 

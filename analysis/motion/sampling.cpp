@@ -10,15 +10,35 @@
 namespace limcycle {
 namespace {
 
-/// Size of the command of a controller whose input and states have these sizes: that of the force or signal that it has
-/// to overcome, or its own gains times these sizes if nothing follows it.
-double command_size(const Loop& loop, const Sampled<double>& controller, const State& states, double input) {
-  if (loop.elements.back().as<Sampled<double>>() == nullptr) return output_level(loop, loop.elements.size() - 1);
-  double size = std::abs(controller.D) * input;
-  for (std::size_t i = 0; i < std::min(states.size(), controller.C.size()); ++i)
-    size += std::abs(controller.C[i]) * states[i];
-  return size;
+/// The reading or part of a controller in this place; empty for any other element.
+const Sampled<double>* sampled_at(const Loop& loop, std::size_t k) { return loop.elements[k].as<Sampled<double>>(); }
+
+/// Number of its states that the continuous controller has too; the others are past inputs.
+std::size_t states_of_controller(const Sampled<double>& sampled) {
+  return static_cast<std::size_t>(sampled.order() - static_cast<int>(sampled.memory));
 }
+
+/// The same sizes of an input and of the rate at which it changes, and of the states that are no past inputs.
+struct SampledSizes {
+  double input, rate;
+  State states;
+
+  /// Of the output: that of the force or signal that a command has to overcome, if there is one; that of a difference
+  /// is a rate.
+  double output(const Loop& loop, std::size_t k) const {
+    const Sampled<double>& sampled = *sampled_at(loop, k);
+    const bool commands =
+        loop.ports[k].path == "loop.controller" && sampled_at(loop, loop.elements.size() - 1) == nullptr;
+    if (commands) return output_level(loop, loop.elements.size() - 1);
+    double mean = sampled.D, size = 0.0;
+    for (std::size_t i = 0; i < sampled.C.size(); ++i) {
+      if (i < states.size()) size += std::abs(sampled.C[i]) * states[i];
+      if (i >= states.size()) mean += sampled.C[i];
+    }
+    const bool difference = states.empty() && std::abs(mean) < 1e-9 * std::abs(sampled.D);
+    return size + (difference ? rate : std::abs(sampled.D) * input);
+  }
+};
 
 /// Which entries of X belong to the plant and what follows it, and which to the controller.
 struct Shares {
@@ -34,9 +54,12 @@ Shares shares_of(const Loop& loop, const Values& X) {
   return shares;
 }
 
-/// The element in place of the controller; empty for any other.
-const Sampled<double>* controller_at(const Loop& loop, std::size_t k) {
-  return loop.ports[k].path == "loop.controller" ? loop.elements[k].as<Sampled<double>>() : nullptr;
+/// The next `count` of some values.
+State taken(const State& values, std::size_t& from, std::size_t count) {
+  const std::size_t to = std::min(values.size(), from + count);
+  State some(values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(to));
+  from = to;
+  return some;
 }
 
 }  // namespace
@@ -47,26 +70,39 @@ double sample_time(const Loop& loop) {
   return infinite;
 }
 
+double repetition_time(const Loop& loop) {
+  double longest = 0.0;
+  for (const Element& element : loop.elements)
+    if (const auto* sampled = element.as<Sampled<double>>())
+      longest = std::max(longest, sampled->sample_time * sampled->every);
+  return longest;
+}
+
 State sampled_sizes(const Loop& loop, const State& continuous) {
   auto [result, of_controller] = shares_of(loop, continuous);
   const Eigen::VectorXd X = Eigen::Map<const Eigen::VectorXd>(result.data(), loop.states());
   Eigen::VectorXd outputs = Eigen::VectorXd::Zero(std::ssize(loop.elements));
+  std::size_t next = 0;
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
     const Element& element = loop.elements[k];
     const Port& port = loop.ports[k];
-    const double input = (port.C.cwiseAbs() * X + port.D.cwiseAbs() * outputs).value();
+    SampledSizes sizes{
+        (port.C.cwiseAbs() * X + port.D.cwiseAbs() * outputs).value(), (port.C_v.cwiseAbs() * X).value(), {}};
     double& output = outputs(static_cast<Eigen::Index>(k));
-    output = input;
-    const auto* sampled = controller_at(loop, k);
-    if (sampled) output = command_size(loop, *sampled, of_controller, input);
+    output = sizes.input;
+    const auto* sampled = sampled_at(loop, k);
+    if (sampled) {
+      sizes.states = taken(of_controller, next, states_of_controller(*sampled));
+      output = sizes.output(loop, k);
+    }
     for (int i = 0; i < element.states(); ++i) {
       const int own = i - Sampled<double>::first_own;
-      if (element.even_state(i) || element.as<Sampled<double>>() == nullptr)
+      if (!sampled || element.even_state(i))
         result.push_back(element.state_scale(i));
-      else if (!sampled || own < 0 || own >= sampled->order())
+      else if (own < 0 || own >= sampled->order())
         result.push_back(output);
       else
-        result.push_back(own < std::ssize(of_controller) ? of_controller[static_cast<std::size_t>(own)] : input);
+        result.push_back(own < std::ssize(sizes.states) ? sizes.states[static_cast<std::size_t>(own)] : sizes.input);
     }
   }
   return result;
@@ -77,23 +113,22 @@ LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X) {
   LoopState state = without_history(loop, Eigen::Map<const Eigen::VectorXd>(plant.data(), std::ssize(plant)));
   LoopField field(loop);
   field.modes() = state.modes;
-  bool commanded = false;  // elements behind the controller begin at its command
+  bool read = false;  // elements behind a reading begin at its output
+  std::size_t next = 0;
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
     const Element& element = loop.elements[k];
-    const auto* sampled = controller_at(loop, k);
-    if (!sampled && !commanded) continue;
+    const auto* sampled = sampled_at(loop, k);
+    read = read || sampled;
+    if (!read || !element.has_modes()) continue;
     State rates;
     field.rate(state.x, rates, 0.0);
     const std::span<double> z(state.x.data() + field.first_state(k), static_cast<std::size_t>(element.states()));
-    if (!sampled) {
-      if (element.has_modes()) field.modes()[k] = state.modes[k] = element.start(field.input(k), z);
-      continue;
+    if (sampled) {
+      const auto own = z.subspan(Sampled<double>::first_own, static_cast<std::size_t>(sampled->order()));
+      std::ranges::fill(own, sampled->reading(field.input(k).x));
+      std::ranges::copy(taken(controller, next, states_of_controller(*sampled)), own.begin());
     }
-    commanded = true;
-    const auto own = z.subspan(Sampled<double>::first_own, static_cast<std::size_t>(sampled->order()));
-    std::ranges::fill(own, field.input(k).x);  // the last input, for a derivative
-    std::ranges::copy(controller, own.begin());
-    field.modes()[k] = state.modes[k] = sampled->next(field.input(k), {}, z, 0);
+    field.modes()[k] = state.modes[k] = element.start(field.input(k), z);
   }
   return state;
 }

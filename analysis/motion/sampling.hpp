@@ -8,6 +8,9 @@ namespace limcycle {
 /// Time between two readings of the sampled controller of a loop, s; infinite without one.
 double sample_time(const Loop& loop);
 
+/// Time after which the readings of all its parts repeat themselves, s: that of the slowest one.
+double repetition_time(const Loop& loop);
+
 /// Typical sizes of the states of a loop with a sampled controller, from those of the linear states of
 /// Loop::continuous: the states of its controller are those of the element in its place, in their order; what is held
 /// between two readings has the size of the input that is read, or of the command.

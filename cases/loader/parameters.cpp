@@ -71,6 +71,27 @@ NamedKind read_kind(const Section& section, const std::vector<std::string>& avai
   return {place, read_string(place)};
 }
 
+namespace {
+
+/// True if the section asks for measured points in the place of a formula.
+bool is_measured(const Section& section) {
+  const auto curve = section.find("curve");
+  const auto* name = curve ? curve->value.as<std::string>() : nullptr;
+  return name != nullptr && *name == "table";
+}
+
+/// The law over measured points of a kind that has a curve, itself or in the name of the other.
+const Element* measured(const Section& section, const std::vector<Element>& list, const std::string& kind) {
+  if (kind.ends_with("-table")) return find_kind(list, kind);
+  if (const Element* table = find_kind(list, kind + "-table")) return table;
+  std::vector<std::string> with_table;
+  for (const std::string& one : limcycle::kinds_of(list))
+    if (one.ends_with("-table")) with_table.push_back(one.substr(0, one.size() - std::string("-table").size()));
+  throw section.at("curve", "").error("is for the kinds " + joined(with_table));
+}
+
+}  // namespace
+
 Element read_element(const Section& section, const std::vector<Element>& list, const KindNames& names,
                      const std::vector<std::string>& extra) {
   const auto available = limcycle::kinds_of(list);
@@ -78,6 +99,10 @@ Element read_element(const Section& section, const std::vector<Element>& list, c
   const Element* kind = find_kind(list, named.kind);
   if (kind == nullptr) throw unknown_kind(named.place, available, names);
   std::vector<std::string> keys{"kind"};
+  if (is_measured(section)) {
+    kind = measured(section, list, named.kind);
+    keys.emplace_back("curve");
+  }
   keys.insert(keys.end(), extra.begin(), extra.end());
   const auto values = read_values(section, kind->parameters(), kind->values(), std::move(keys));
   Element element = kind->with(values);

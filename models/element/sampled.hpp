@@ -8,19 +8,23 @@
 
 namespace limcycle {
 
-/// A linear controller on a computer: its input is read every `sample_time`, its output held in between (zero-order
-/// hold) and put out `computation_delay` after each reading:
+/// A linear controller on a computer, or a part of one: its input is read every `sample_time`, or at each `every`th of
+/// these ticks, its output held in between (zero-order hold) and put out `computation_delay` after each reading:
 ///   e_k = input at k sample_time, rounded to a multiple of input_quantum;
-///   u_k = C X_k + D e_k, rounded to a multiple of output_quantum;   X_(k+1) = A X_k + B e_k.
-/// A, B, C: matrices of the order n in rows (n^2, n, n numbers); a quantum of 0 does not round.
+///   u_k = C X_k + D e_k, limited to +-limit, then rounded to a multiple of output_quantum;
+///   X_(k+1) = A X_k + B e_k + hold_back (limited u_k - u_k).
+/// A, B, C: matrices of the order n in rows (n^2, n, n numbers); a quantum of 0 does not round. hold_back (n numbers,
+/// or none): what the limit takes off the states (back-calculation). The last `memory` of X are past inputs.
 ///
-/// State: time until the next reading (s), output in force, X (n); with a computation delay also the time until the
-/// computed output comes out, and that output. The clock is part of the state, so that a motion that repeats itself
-/// does so together with its samples. Guards: the times. Mode 1: an output is pending.
+/// State: time until the next tick (s), output in force, X (n); with every > 1 the ticks to let pass; with a
+/// computation delay also the time until the computed output comes out, and that output. The clock is part of the
+/// state, so that a motion that repeats itself does so together with its samples. Guards: the times. Mode 1: an output
+/// is pending.
 template <class S>
 struct Sampled {
-  S sample_time{}, computation_delay{0.0}, input_quantum{0.0}, output_quantum{0.0}, D{};
-  std::vector<S> A, B, C;
+  S sample_time{}, computation_delay{0.0}, input_quantum{0.0}, output_quantum{0.0}, limit{infinite}, every{1.0},
+      memory{0.0}, D{};
+  std::vector<S> A, B, C, hold_back;
 
   static constexpr std::string_view kind = "sampled";
   static constexpr int first_own = 2;  ///< position of X in the state
@@ -37,6 +41,10 @@ struct Sampled {
         {"input_quantum", "1", "the input is rounded to its multiples", &Sampled::input_quantum, not_negative, false},
         {"output_quantum", "1", "the output is rounded to its multiples", &Sampled::output_quantum, not_negative,
          false},
+        {"limit", "1", "of the output", &Sampled::limit, {0.0, infinite, true, false}, false},
+        {"every", "1", "ticks of the clock from one reading to the next", &Sampled::every, {1.0, infinite}, false},
+        {"memory", "1", "past inputs among the states, the last of them", &Sampled::memory, not_negative, false},
+        {"hold_back", "1", "change of the states by what the limit takes off", &Sampled::hold_back, any_number, false},
         {"D", "1", "feed-through", &Sampled::D, any_number},
         {"A", "1", "state matrix, row by row", &Sampled::A},
         {"B", "1", "input matrix", &Sampled::B},
@@ -45,13 +53,16 @@ struct Sampled {
   std::optional<BrokenRule> validate() const {
     if (B.size() != C.size() || A.size() != B.size() * B.size())
       return BrokenRule{"A", "must be of the order of B and C"};
+    if (!hold_back.empty() && hold_back.size() != B.size())
+      return BrokenRule{"hold_back", "must be of the order of B and C"};
     if (computation_delay >= sample_time) return BrokenRule{"computation_delay", "must be less than the sample time"};
     return std::nullopt;
   }
 
   int order() const { return static_cast<int>(B.size()); }
   bool delays() const { return computation_delay > 0.0; }
-  int states() const { return 2 + order() + (delays() ? 2 : 0); }
+  bool counts() const { return every > 1.0; }
+  int states() const { return first_own + order() + (counts() ? 1 : 0) + (delays() ? 2 : 0); }
 
   /// The clock runs down; the output waits for its time only while one is pending.
   void rate(const Input<S>&, Mode mode, std::span<const S>, std::span<S> dz) const {
@@ -74,6 +85,10 @@ struct Sampled {
       return {0};
     }
     z[0] = sample_time;
+    if (counts() && z[ticks()] > 0.5) {
+      z[ticks()] = z[ticks()] - S(1.0);
+      return {0};
+    }
     return read(in.x, z);
   }
   /// The first reading is at the start.
@@ -82,16 +97,29 @@ struct Sampled {
     return read(in.x, z);
   }
 
+  /// What is read of an input.
+  template <class T>
+  T reading(const T& input) const {
+    return rounded(input, input_quantum);
+  }
+
   double due(Mode mode, std::span<const double> z) const { return mode.value == 1 ? std::min(z[0], z[wait()]) : z[0]; }
 
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return mode; }
-  bool even_state(int i) const { return i == 0 || (delays() && static_cast<std::size_t>(i) == wait()); }
+  bool even_state(int i) const {
+    const auto at = static_cast<std::size_t>(i);
+    return i == 0 || (counts() && at == ticks()) || (delays() && at == wait());
+  }
   Scales scales() const { return {}; }
-  double state_scale(int i) const { return even_state(i) ? value_of(sample_time) : 1.0; }
+  double state_scale(int i) const {
+    const bool time = i == 0 || (delays() && static_cast<std::size_t>(i) == wait());
+    return time ? value_of(sample_time) : 1.0;
+  }
 
  private:
-  std::size_t wait() const { return 2 + B.size(); }
+  std::size_t ticks() const { return first_own + B.size(); }
+  std::size_t wait() const { return ticks() + (counts() ? 1 : 0); }
   /// A parameter as the scalar of the states.
   template <class T>
   static T as(const S& value) {
@@ -109,17 +137,20 @@ struct Sampled {
   /// Reads the input, computes the output and the next state.
   template <class T>
   Mode read(const T& input, std::span<T> z) const {
-    const T e = rounded(input, input_quantum);
+    const T e = reading(input);
     const std::size_t n = B.size();
     T u = as<T>(D) * e;
     std::vector<T> next(n);
     for (std::size_t i = 0; i < n; ++i) {
-      u += as<T>(C[i]) * z[2 + i];
+      u += as<T>(C[i]) * z[first_own + i];
       next[i] = as<T>(B[i]) * e;
-      for (std::size_t j = 0; j < n; ++j) next[i] += as<T>(A[i * n + j]) * z[2 + j];
+      for (std::size_t j = 0; j < n; ++j) next[i] += as<T>(A[i * n + j]) * z[first_own + j];
     }
-    std::ranges::copy(next, z.begin() + 2);
-    u = rounded(u, output_quantum);
+    const T limited = u > as<T>(limit) ? as<T>(limit) : u < -as<T>(limit) ? -as<T>(limit) : u;
+    for (std::size_t i = 0; i < hold_back.size(); ++i) next[i] += as<T>(hold_back[i]) * (limited - u);
+    std::ranges::copy(next, z.begin() + first_own);
+    if (counts()) z[ticks()] = T(value_of(every) - 1.0);
+    u = rounded(limited, output_quantum);
     if (!delays()) {
       z[1] = u;
       return {0};

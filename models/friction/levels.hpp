@@ -59,6 +59,9 @@ struct StribeckCurve : Levels<S> {
     return forward ? level_between(speed, this->Fs, this->Fc) : level_between(speed, this->Fs_minus, this->Fc_minus);
   }
 
+  double velocity_scale() const { return value_of(vs); }
+  std::optional<BrokenRule> validate_curve() const { return this->validate_levels(); }
+
   /// Power of |v| with which g leaves its value at v = 0, 1 at most.
   double steep_exponent() const {
     constexpr int tustin = 1;  // Tustin's curve has delta = 1, whatever the value of delta

@@ -16,17 +16,23 @@ std::vector<std::string> numbered(Eigen::Index n) {
   return names;
 }
 
+constexpr double widest_window = 100.0;  ///< samples: the past inputs are states
+constexpr double slowest_position = 1e6;
+
 }  // namespace
 
 std::optional<BrokenRule> Sampling::broken_together() const {
   if (!is_on()) {
     for (const auto& [key, value] : {std::pair("computation_delay", computation_delay),
-                                     {"encoder_quantum", encoder_quantum},
-                                     {"output_quantum", output_quantum}})
+                                     {"input_step", input_step},
+                                     {"output_step", output_step},
+                                     {"velocity_window", velocity_window}})
       if (value > 0.0) return BrokenRule{key, "needs sample_time: a continuous controller has none"};
     return std::nullopt;
   }
   if (computation_delay >= sample_time) return BrokenRule{"computation_delay", "must be less than sample_time"};
+  if (velocity_window != std::floor(velocity_window) || velocity_window > widest_window)
+    return BrokenRule{"velocity_window", "must be a whole number of samples, at most 100"};
   return std::nullopt;
 }
 
@@ -59,6 +65,9 @@ ControllerModel Pid::model() const {
 }
 
 std::optional<BrokenRule> Cascade::broken_together() const {
+  if (position_every != std::floor(position_every) || position_every > slowest_position)
+    return BrokenRule{"position_every", "must be a whole number of samples, at most 1000000"};
+  if (position_every > 1.0 && !is_on()) return BrokenRule{"position_every", "needs sample_time"};
   if (anti_windup.index == clamp)
     return BrokenRule{"anti_windup", R"(cannot be "clamp" yet: "back-calculation" is there, and "none")"};
   if (anti_windup.index == 0) return std::nullopt;

@@ -31,12 +31,15 @@ struct Actuator {
 };
 
 /// A controller on a computer: it reads y every `sample_time`, its output is held in between and comes out
-/// `computation_delay` after the reading. sample_time 0: it is continuous, and the others are without effect. Its
-/// equations become differences by d/dt -> (1 - z^-1)/sample_time (backward Euler).
+/// `computation_delay` after the reading. sample_time 0: it is continuous, and has none of the others. Its equations
+/// become differences by d/dt -> (1 - z^-1)/sample_time (backward Euler), a derivative over `velocity_window` samples.
 struct Sampling {
   double sample_time{0.0}, computation_delay{0.0};  ///< s
-  double encoder_quantum{0.0};                      ///< y is read in multiples of it
-  double output_quantum{0.0};                       ///< the command comes in multiples of it
+  double input_step{0.0};                           ///< y is read in multiples of it
+  double output_step{0.0};                          ///< the command comes in multiples of it
+  double velocity_window{0.0};  ///< samples; 0: a cascade measures v, another takes its derivative over one
+  Choice hold{};
+  static constexpr std::string_view holds[] = {"zero-order"};
 
   bool is_on() const { return sample_time > 0.0; }
   /// The dead time that hold and computation amount to on average, s.
@@ -50,10 +53,13 @@ struct Sampling {
                      not_negative, false});
     table.push_back({"computation_delay", "s", "from a reading to its command, less than sample_time",
                      &Owner::computation_delay, not_negative, false});
-    table.push_back({"encoder_quantum", "m", "y is read in multiples of it; 0: exactly", &Owner::encoder_quantum,
+    table.push_back(
+        {"input_step", "m", "y is read in multiples of it; 0: exactly", &Owner::input_step, not_negative, false});
+    table.push_back({"output_step", "N", "the command comes in multiples of it; 0: exactly", &Owner::output_step,
                      not_negative, false});
-    table.push_back({"output_quantum", "N", "the command comes in multiples of it; 0: exactly", &Owner::output_quantum,
-                     not_negative, false});
+    table.push_back({"velocity_window", "1", "samples over which the velocity is differenced; 0: measured",
+                     &Owner::velocity_window, not_negative, false});
+    table.push_back({"hold", "1", "the command between two readings", &Owner::hold, any_number, false, "", holds});
   }
 };
 
@@ -139,11 +145,12 @@ struct StateSpaceController : ControllerParts {
 ///   u = velocity_kp (w - v) + velocity_ki x,  limited to +-limit,
 ///   dx/dt = w - v + anti-windup;  back-calculation: (limited u - u)/velocity_kp, time constant
 ///   velocity_kp/velocity_ki.
+/// On a computer the velocity loop runs at every sample, the position loop at each `position_every`th.
 /// acceleration_feedforward multiplies d2r/dt2, which is zero for a constant reference and for a ramp.
 /// Back-calculation: Astrom and Hagglund (1995), PID Controllers, ch. 3.5.
 struct Cascade : ControllerParts {
   double position_kp{}, position_ki{0.0}, velocity_kp{}, velocity_ki{0.0}, velocity_feedforward{0.0},
-      acceleration_feedforward{0.0}, limit{infinite};
+      acceleration_feedforward{0.0}, limit{infinite}, position_every{1.0};
   Choice anti_windup{};
   static constexpr std::string_view kind = "cascade";
   static constexpr std::string_view equation =
@@ -162,6 +169,12 @@ struct Cascade : ControllerParts {
         {"acceleration_feedforward", "N s^2/m", "force for d2r/dt2", &Cascade::acceleration_feedforward, any_number,
          false},
         {"limit", "N", "limit of the command", &Cascade::limit, {0.0, infinite, true, false}, false},
+        {"position_every",
+         "1",
+         "samples from one run of the position loop to the next",
+         &Cascade::position_every,
+         {1.0, infinite},
+         false},
         {"anti_windup", "1", "what the integral does at the limit", &Cascade::anti_windup, any_number, false, "",
          ways}};
     append_table(table);
@@ -170,7 +183,7 @@ struct Cascade : ControllerParts {
   std::optional<BrokenRule> validate() const { return std::nullopt; }
   /// The rule that the way against wind-up breaks with the other numbers.
   std::optional<BrokenRule> broken_together() const;
-  /// The position loop, from e to w; the velocity loop reads v too: see short_form().
+  /// The position loop, from e to w; the velocity loop reads v too: see through_cascade().
   ControllerModel model() const;
   int states() const { return (position_ki != 0.0 ? 1 : 0) + (velocity_ki != 0.0 ? 1 : 0); }
 };

@@ -22,6 +22,48 @@ StateSpace backward_difference(const ControllerModel& controller, double h) {
   return discrete;
 }
 
+namespace {
+
+/// X = (e_(k-1), ..., e_(k-n)), without an output.
+StateSpace past_inputs(Eigen::Index n) {
+  using Eigen::MatrixXd;
+  StateSpace past{MatrixXd::Zero(n, n), MatrixXd::Zero(n, 1), MatrixXd::Zero(1, n), MatrixXd::Zero(1, 1)};
+  if (n > 0) past.B(0, 0) = 1.0;
+  for (Eigen::Index i = 1; i < n; ++i) past.A(i, i - 1) = 1.0;
+  return past;
+}
+
+}  // namespace
+
+StateSpace difference_over(int n, double h) {
+  StateSpace difference = past_inputs(n);
+  difference.C(0, n - 1) = -1.0 / (n * h);
+  difference.D(0, 0) = 1.0 / (n * h);
+  return difference;
+}
+
+StateSpace windowed_difference(const Pid& pid, double h, int n) {
+  using Eigen::MatrixXd;
+  Pid slow = pid, fast = pid;
+  slow.kd = 0.0;
+  fast.kp = fast.ki = 0.0;
+  // The difference over n samples is the mean of the last n differences over one.
+  const StateSpace rest = backward_difference(slow.model(), h), rate = backward_difference(fast.model(), h);
+  const StateSpace past = past_inputs(n - 1);
+  const Eigen::Index a = rest.states(), b = rate.states(), c = past.states(), all = a + b + c;
+  const double share = 1.0 / n;
+  StateSpace sum{MatrixXd::Zero(all, all), MatrixXd::Zero(all, 1), MatrixXd::Zero(1, all), MatrixXd::Zero(1, 1)};
+  const Eigen::RowVectorXd of_past = Eigen::RowVectorXd::Constant(c, share);
+  sum.A.topLeftCorner(a, a) = rest.A;
+  sum.A.block(a, a, b, b) = rate.A;
+  sum.A.block(a, a + b, b, c) = rate.B * of_past;
+  sum.A.bottomRightCorner(c, c) = past.A;
+  sum.B << rest.B, share * rate.B, past.B;
+  sum.C << rest.C, rate.C, rate.D(0, 0) * of_past;
+  sum.D(0, 0) = rest.D(0, 0) + share * rate.D(0, 0);
+  return sum;
+}
+
 StateSpace averaged(const ControllerModel& controller, double h) {
   using Eigen::MatrixXd;
   const StateSpace& c = controller.ss;

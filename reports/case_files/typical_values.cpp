@@ -46,11 +46,14 @@ constexpr std::array typical_rows{
     TypicalRow{"friction", "", "ks", {"1e5", "1e4 to 1e8"}},
     TypicalRow{"friction", "", "sigma0", {"1e5", "Fs over the way before sliding: 1e4 to 1e8"}},
     TypicalRow{"friction", "lugre", "sigma1", {"316.22776601683796", "up to 2 sqrt(sigma0 mass)"}},
+    TypicalRow{"friction", "lugre-table", "sigma1", {"316.22776601683796", "up to 2 sqrt(sigma0 mass)"}},
     TypicalRow{"friction", "lugre-spline", "sigma1", {"316.22776601683796", "up to 2 sqrt(sigma0 mass)"}},
     TypicalRow{"friction", "elasto-plastic", "sigma1", {"316.22776601683796", "up to 2 sqrt(sigma0 mass)"}},
     TypicalRow{"friction", "", "sigma2", {"0.4", "0 to 100"}},
     TypicalRow{
         "friction", "", "velocity", {"[0.0, 0.0005, 0.001, 0.0015, 0.003, 0.005]", "to the end of the Stribeck curve"}},
+    TypicalRow{"friction", "", "velocities", {"[0.0005, 0.001, 0.0015, 0.003, 0.005]", "measured, ascending"}},
+    TypicalRow{"friction", "", "forces", {"[1.39, 1.18, 1.05, 1.0, 1.0]", "friction at these speeds"}},
     TypicalRow{"friction", "", "coefficients", {"[1.5, 1.49, 1.4, 1.28, 1.1, 1.02, 1.0, 1.0]", "0.1 to 1000"}},
 
     TypicalRow{"element", "relay", "level", {"5.0", "the actuator's output when on"}},

@@ -74,7 +74,9 @@ std::string irregular_size(const PredictReport& report, const Units& units) {
   const auto largest =
       std::ranges::max_element(report.outcomes, {}, [](const OutcomeOfStart& one) { return one.irregular.half_range; });
   const IrregularMotion& motion = largest->irregular;
-  return fmt::format(" It never comes to rest: half-range {}, mean period {} s, single ones from {} to {} s over {} s.",
+  const bool always = count(report, Outcome::irregular) == report.outcomes.size();
+  return fmt::format(" {}: half-range {}, mean period {} s, single ones from {} to {} s over {} s.",
+                     always ? "It never comes to rest" : "Where it does",
                      Units::attach(with_digits(motion.half_range, 3), units.y), with_digits(motion.mean_period, 4),
                      with_digits(motion.shortest_period, 4), with_digits(motion.longest_period, 4),
                      with_digits(motion.observed, 2));
@@ -82,7 +84,7 @@ std::string irregular_size(const PredictReport& report, const Units& units) {
 
 std::string without_cycle(const PredictReport& report, const Units& units) {
   if (report.outcomes.empty()) return "Not verified in the time domain.";
-  if (count(report, Outcome::undecided) > 0)
+  if (count(report, Outcome::undecided) > 0 && count(report, Outcome::irregular) == 0)
     return "Whether this loop has a limit cycle is undecided: " + fates(report) + ".";
   if (count(report, Outcome::irregular) > 0 && report.sample_time > 0.0)
     return "This loop hunts, without a period that is locked to its samples: " + fates(report) + "." +

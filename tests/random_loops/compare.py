@@ -133,7 +133,7 @@ def _starts(truth, listed, document):
         size = displacement(outcome["start"])
         if size is None or outcome["outcome"] == "undecided" or middle is None:
             continue
-        one = truth.settle(middle + size)
+        one = truth.settle(middle + _all_digits(size, document))
         kind = outcome["outcome"]
         if one.kind == "unknown":
             continue
@@ -144,6 +144,14 @@ def _starts(truth, listed, document):
         elif kind == "cycle" and outcome["cycle"] is not None and not matches(one, listed[outcome["cycle"]]):
             wrong.append(f"{outcome['start']}: another cycle, {_texts([one])}")
     return wrong
+
+
+def _all_digits(size, document):
+    """A displacement before it was rounded for the name of its start: the largest of the search box, or that over a
+    power of ten. Long transients end elsewhere for another fifth digit."""
+    largest = document["search"]["amplitude"][1]
+    exact = math.copysign(largest * 10.0 ** round(math.log10(abs(size) / largest)), size)
+    return exact if abs(exact / size - 1.0) < 1e-3 else size
 
 
 def _rest_of_linear_part(truth):

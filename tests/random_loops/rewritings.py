@@ -7,6 +7,7 @@ import copy
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 
 from . import linear, units
 
@@ -40,7 +41,8 @@ def mirror(case, dice):
     plant = turned["loop"]["plant"]
     if "speed" in plant:
         plant["speed"] = -plant["speed"]
-    return Rewriting(turned, -1.0, same_starts=False) if turned != case else None
+    # Its starts are displaced to the same side, which is the other one of the mirrored loop.
+    return Rewriting(turned, -1.0, outcomes=False) if turned != case else None
 
 
 def reordered(case, dice):
@@ -108,24 +110,32 @@ def _matrices(plant):
     return linear.plant(plant)
 
 
+def _sizes(plant):
+    """Sizes of the states that balance the plant: mixed without them, its numbers lose the digits that its poles need."""
+    system = np.block([[plant.A, plant.B[:, None]], [plant.C[None, :], np.zeros((1, 1))]])
+    scale = scipy.linalg.matrix_balance(system, permute=False, separate=True)[1][0]
+    return scale[:-1] / scale[-1]
+
+
 def _state_space(case, transform, extra=0):
     """The plant as a state space, after x -> transform x, with decoupled states already in the matrices."""
     plant = _matrices(case["loop"]["plant"])
     if plant is None:
         return None
     n = len(plant.A)
+    size = _sizes(plant)
     wide = np.zeros((n + extra, n + extra))
-    wide[:n, :n] = plant.A
+    wide[:n, :n] = plant.A * size / size[:, None]
     for i in range(extra):
         wide[n + i, n + i] = -(i + 1.0) * np.abs(plant.A).max()
     T = transform(n + extra)
     back = np.linalg.inv(T)
 
     def column(values):
-        return (T @ np.append(values, np.zeros(extra)))[:, None].tolist()
+        return (T @ np.append(values / size, np.zeros(extra)))[:, None].tolist()
 
     def row(values):
-        return (np.append(values, np.zeros(extra)) @ back)[None, :].tolist()
+        return (np.append(values * size, np.zeros(extra)) @ back)[None, :].tolist()
 
     other = copy.deepcopy(case)
     keys = {"kind": "state-space", "A": (T @ wide @ back).tolist(), "B": column(plant.B), "C": row(plant.C)}
@@ -285,9 +295,16 @@ def _cycles(first, other, rewriting):
     return sentences + [f"new: T = {b['period']:.8g}, A = {b['amplitude']:.6g}" for b in new]
 
 
+def displaced(outcome):
+    return outcome["start"].startswith("y(0) = ")
+
+
 def _outcomes(first, other, rewriting):
-    """Outcomes that differ, start by start where the starts are the same, else the set of those decided."""
-    a, b = ([o["outcome"] for o in d["outcomes"]] for d in (first, other))
-    if not rewriting.same_starts:
+    """Outcomes that differ, start by start where the starts are the same, else the set of those decided. Starts beside
+    unstable cycles and predictions are not compared one by one: they are as many as were found."""
+    if rewriting.same_starts:
+        a, b = ([o["outcome"] for o in d["outcomes"] if displaced(o)] for d in (first, other))
+    else:
+        a, b = ([o["outcome"] for o in d["outcomes"]] for d in (first, other))
         a, b = (sorted({o for o in some if o != "undecided"}) for some in (a, b))
     return [] if a == b else [f"outcomes: {', '.join(a)} became {', '.join(b)}"]

@@ -47,6 +47,36 @@ TEST_CASE("every document says what it is and where it comes from") {
   CHECK(OrderedJson::parse(simulate_json(provenance(), {}))["command"] == "simulate");
 }
 
+TEST_CASE("predict: a sampled loop tells of each cycle if it is locked, and of a motion that is not its spread") {
+  PredictReport report = sample::relay();
+  CHECK(OrderedJson::parse(predict_json(provenance(), report))["cycles"][0]["locked"].is_null());
+  report.sample_time = report.cycles.front().period / 40.0;
+  OutcomeOfStart one;
+  one.outcome = Outcome::irregular;
+  one.irregular = {0.11, 5.0, 4.9, 5.2, 200.0, 0.1, 0.09, 0.105};
+  report.outcomes = {one, one};
+  report.outcomes.back().irregular.mean_period = 5.01;  // the same motion, from another start
+  one.irregular.mean_period = 9.0;
+  report.outcomes.push_back(one);
+  const auto document = OrderedJson::parse(predict_json(provenance(), report));
+  const auto& cycles = document["cycles"];
+  REQUIRE(cycles.size() == report.cycles.size() + 2);
+  CHECK(cycles[0]["locked"] == true);
+  CHECK(cycles[0]["samples"] == 40);
+  const std::size_t first = report.cycles.size();
+  const auto& mean = cycles[first];
+  CHECK(mean["locked"] == false);
+  CHECK(mean["samples"].is_null());
+  CHECK(mean["period"] == 5.0);
+  CHECK(mean["amplitude"] == 0.1);
+  CHECK(mean["first_harmonic"].is_null());
+  CHECK(mean["spread"]["period"].get<double>() == Approx(0.15));
+  CHECK(mean["spread"]["amplitude"].get<double>() == Approx(0.0075));
+  CHECK(document["outcomes"][0]["cycle"] == first);
+  CHECK(document["outcomes"][1]["cycle"] == first);
+  CHECK(document["outcomes"][2]["cycle"] == first + 1);
+}
+
 TEST_CASE("predict: keys and values") {
   const auto document = OrderedJson::parse(predict_json(provenance(), sample::relay()));
   CHECK(keys(document) == Keys{"schema", "command", "case", "provenance", "cycles", "predictions", "missed", "outcomes",
@@ -54,7 +84,7 @@ TEST_CASE("predict: keys and values") {
   const auto& cycle = document["cycles"][0];
   CHECK(keys(cycle) == Keys{"amplitude", "first_harmonic", "period", "frequency", "offset", "stable", "multipliers",
                             "multiplier_error", "sticking_fraction", "method", "error", "residual",
-                            "half_wave_symmetric", "remembered"});
+                            "half_wave_symmetric", "remembered", "locked", "samples"});
   CHECK(cycle["amplitude"] == 0.65831343);
   CHECK(cycle["frequency"].get<double>() == Approx(1.0).epsilon(1e-15));
   CHECK(cycle["stable"] == true);

@@ -35,10 +35,8 @@ LoopField::LoopField(const Loop& loop)
     E_.emplace_back(loop.E.row(i));
   }
   for (std::size_t i = 0; i < ne_; ++i) {
-    const Port& port = loop.ports[i];
-    ports_.push_back({Sparse(port.C), Sparse(port.D), Sparse(port.C_v), Sparse(port.D_v), Sparse(port.c),
-                      Sparse(port.c_v), Sparse(loop.B.col(static_cast<Index>(i)).transpose()).entries});
-    if (port.selection_of) has_follower_[*port.selection_of] = true;
+    ports_.push_back(sparse_port(i));
+    if (const auto& leader = loop.ports[i].selection_of) has_follower_[*leader] = true;
     if (loop.elements[i].facts().has_clock) clocks_.push_back(i);
   }
   for (std::size_t i = 0; i < ne_; ++i) {
@@ -57,6 +55,29 @@ LoopField::LoopField(const Loop& loop)
   ext_rate_ = External::Zero();
   for (std::size_t i = 0; i < n_; ++i) E_ext_[i] = E_[i].dot(ext_.data());
   if (PlainField::applies(loop)) plain_.emplace(loop);
+  // The search for the force that a compensation and its friction share leaves other values behind.
+  evaluated_.kept =
+      !clocks_.empty() && !asks_drive_ && std::ranges::none_of(has_follower_, [](bool has) { return has; });
+}
+
+LoopField::SparsePort LoopField::sparse_port(std::size_t i) const {
+  const Port& port = loop_->ports[i];
+  const Element& element = loop_->elements[i];
+  const auto column = loop_->B.col(static_cast<Index>(i));
+  SparsePort sparse{Sparse(port.C),
+                    Sparse(port.D),
+                    Sparse(port.C_v),
+                    Sparse(port.D_v),
+                    Sparse(port.c),
+                    Sparse(port.c_v),
+                    Sparse(column.transpose()).entries};
+  const Eigen::RowVectorXd& row = element.facts().holds == Held::input ? port.C : port.C_v;
+  sparse.reach = (row * column).value();
+  sparse.reaches = sparse.reach < -1e-12 * (row.cwiseAbs() * column.cwiseAbs()).value();
+  sparse.uses_drive =
+      port.rubs || element.is_friction() || element.facts().holds != Held::nothing || element.needs_drive();
+  if (sparse.C_v.entries.size() == 1) sparse.velocity = sparse.C_v.entries.front().first;
+  return sparse;
 }
 
 Held LoopField::held(std::size_t i) const { return loop_->elements[i].held(modes_[i]); }
@@ -71,25 +92,25 @@ double LoopField::hold_row(std::size_t i, Eigen::RowVectorXd& row) const {
 
 /// The state that is the velocity held by element i, if it is one state.
 std::optional<std::size_t> LoopField::held_state(std::size_t i) const {
-  const Port& port = loop_->ports[i];
-  if (held(i) != Held::rate || port.c_v.dot(ext_.transpose()) != 0.0) return std::nullopt;
-  if (port.c_v.dot(ext_rate_.transpose()) != 0.0 || (port.C_v.array() != 0.0).count() != 1) return std::nullopt;
-  Index only = 0;
-  port.C_v.cwiseAbs().maxCoeff(&only);
-  return static_cast<std::size_t>(only);
+  const SparsePort& port = ports_[i];
+  if (held(i) != Held::rate || port.c_v.dot(ext_.data()) != 0.0 || port.c_v.dot(ext_rate_.data()) != 0.0)
+    return std::nullopt;
+  return port.velocity;
+}
+
+/// Rate of the signal that element i can hold, at the present outputs.
+double LoopField::free_rate_of_held(std::size_t i) const {
+  const SparsePort& port = ports_[i];
+  const bool input = loop_->elements[i].facts().holds == Held::input;
+  return (input ? port.C : port.C_v).dot(dX_.data()) + (input ? port.c : port.c_v).dot(ext_rate_.data());
 }
 
 /// Output that would hold the signal of element i at the present other outputs; +-infinity if no output can.
 double LoopField::drive_of(std::size_t i) const {
-  Eigen::RowVectorXd row;
-  const double free_rate = hold_row(i, row);
-  const auto column = loop_->B.col(static_cast<Index>(i));
-  const double reach = (row * column).value();
-  const double without =
-      row.dot(Eigen::Map<const Eigen::RowVectorXd>(dX_.data(), row.size())) + free_rate - reach * w_[i];
-  const double size = (row.cwiseAbs() * column.cwiseAbs()).value();
-  if (!(reach < -1e-12 * size)) return without >= 0.0 ? infinite : -infinite;
-  return -without / reach;
+  const SparsePort& port = ports_[i];
+  const double without = free_rate_of_held(i) - port.reach * w_[i];
+  if (!port.reaches) return without >= 0.0 ? infinite : -infinite;
+  return -without / port.reach;
 }
 
 /// The same at the turn of element i, when dX_ contains all other contributions.
@@ -171,11 +192,7 @@ void LoopField::sweep(const State& x) {
 /// Rates of the held signals at the last sweep.
 Eigen::VectorXd LoopField::hold_residual() const {
   Eigen::VectorXd residual(std::ssize(holding_));
-  Eigen::RowVectorXd row;
-  for (Index k = 0; k < residual.size(); ++k) {
-    const double free_rate = hold_row(holding_[static_cast<std::size_t>(k)], row);
-    residual(k) = row.dot(Eigen::Map<const Eigen::RowVectorXd>(dX_.data(), row.size())) + free_rate;
-  }
+  for (Index k = 0; k < residual.size(); ++k) residual(k) = free_rate_of_held(holding_[static_cast<std::size_t>(k)]);
   return residual;
 }
 
@@ -208,6 +225,11 @@ void LoopField::solve_held(const State& x) {
     const Eigen::VectorXd outputs = outputs_by_superposition(x);
     for (Index k = 0; k < outputs.size(); ++k) w_[holding_[static_cast<std::size_t>(k)]] = outputs(k);
     sweep(x);
+  } else if (holding_.size() == 1) {
+    const std::size_t i = holding_.front();
+    reach_.setConstant(1, 1, ports_[i].reach);
+    w_[i] = -free_rate_of_held(i) / ports_[i].reach;
+    add_output(i, w_[i]);
   } else {
     const Index m = std::ssize(holding_);
     reach_.resize(m, m);
@@ -218,17 +240,17 @@ void LoopField::solve_held(const State& x) {
         reach_(k, j) = (row * loop_->B.col(static_cast<Index>(holding_[static_cast<std::size_t>(j)]))).value();
     }
     const Eigen::VectorXd free = hold_residual();
-    const Eigen::VectorXd outputs =
-        m == 1 ? Eigen::VectorXd(-free / reach_(0, 0)) : Eigen::VectorXd(solve_fully_pivoted(reach_, -free));
+    const Eigen::VectorXd outputs = solve_fully_pivoted(reach_, -free);
     for (Index k = 0; k < m; ++k) {
       const std::size_t i = holding_[static_cast<std::size_t>(k)];
       w_[i] = outputs(k);
       add_output(i, w_[i]);
     }
-    // The forces leave a rate of rounding size, on which a body at rest would creep.
+  }
+  // The forces leave a rate of rounding size, on which a body at rest would creep.
+  if (!followed_)
     for (const std::size_t i : holding_)
       if (const auto only = held_state(i)) dX_[*only] = 0.0;
-  }
   for (const std::size_t i : holding_) inputs_[i].drive = w_[i];
 }
 
@@ -240,6 +262,17 @@ void LoopField::look_outside(double t) {
 }
 
 void LoopField::evaluate(const State& x, double t) {
+  if (!evaluated_.kept) return evaluate_anew(x, t);
+  if (evaluated_.known && evaluated_.t == t && evaluated_.x == x && evaluated_.modes == modes_) return;
+  evaluated_.known = false;
+  evaluate_anew(x, t);
+  evaluated_.t = t;
+  evaluated_.x = x;
+  evaluated_.modes = modes_;
+  evaluated_.known = true;
+}
+
+void LoopField::evaluate_anew(const State& x, double t) {
   look_outside(t);
   if (plain_) {
     plain_->rate(x, modes_, inputs_, w_, plain_dx_);
@@ -267,7 +300,7 @@ void LoopField::find_inputs(const State& x) {
     inputs_[i].v = port.C_v.dot(x.data()) + port.D_v.dot(w_.data()) + port.c_v.dot(ext_.data());
     if (has_follower_[i])  // overcompensated friction holds nothing, even where the forces would balance
       inputs_[i].drive = drive_with_follower(i, x);
-    else if (held(i) == Held::nothing && i != asks_drive_)  // which has it from its turn
+    else if (port.uses_drive && held(i) == Held::nothing && i != asks_drive_)  // which has it from its turn
       inputs_[i].drive = drive_of(i);
   }
 }

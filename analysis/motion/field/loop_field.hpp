@@ -47,7 +47,10 @@ class LoopField {
   std::size_t size() const { return size_; }
   std::vector<Mode>& modes() { return modes_; }
   const std::vector<Mode>& modes() const { return modes_; }
-  void set_external(ExternalSignals signals) { signals_ = std::move(signals); }
+  void set_external(ExternalSignals signals) {
+    signals_ = std::move(signals);
+    evaluated_.known = false;
+  }
   bool driven() const { return static_cast<bool>(signals_); }
 
   /// dx/dt. Cost O(n^2).
@@ -94,6 +97,7 @@ class LoopField {
 
  private:
   void evaluate(const State& x, double t);
+  void evaluate_anew(const State& x, double t);
   void sweep(const State& x);
   void solve_held(const State& x);
   void solve_with_drive(const State& x);
@@ -154,7 +158,13 @@ class LoopField {
   struct SparsePort {
     Sparse C, D, C_v, D_v, c, c_v;
     std::vector<std::pair<std::size_t, double>> B;
+    double reach = 0.0;                     ///< of the output on the rate of the signal that the element can hold
+    bool reaches = false;                   ///< its output can hold that signal
+    bool uses_drive = false;                ///< the element looks at it
+    std::optional<std::size_t> velocity{};  ///< the state that the rate row is, to a factor, if it is one state
   };
+  SparsePort sparse_port(std::size_t i) const;
+  double free_rate_of_held(std::size_t i) const;
   void add_output(std::size_t i, double w);
 
   std::vector<Sparse> A_, E_;
@@ -162,6 +172,14 @@ class LoopField {
   External ext_, ext_rate_;
   std::vector<double> w_, dX_, E_ext_;
   std::vector<std::size_t> holding_;
+  /// Of a loop with clocks, several of which may run down at one time: the point that is evaluated, not to do it again.
+  struct Point {
+    bool kept = false, known = false;
+    double t = 0.0;
+    State x{};
+    std::vector<Mode> modes{};
+  };
+  Point evaluated_;
   bool followed_ = false;                  ///< one of the holding elements has a follower
   std::optional<std::size_t> asks_drive_;  ///< the element that needs the drive
   double drive_reach_ = 0.0;               ///< of its output on the rate of its velocity; < 0, or 0 if there is none

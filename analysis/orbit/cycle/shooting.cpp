@@ -123,7 +123,8 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
   const double coarse = std::clamp(loose_tolerance(options.rtol, loosest_shooting_rtol), 1e-7, loosest_shooting_rtol);
   const bool exact = choose_stepper(loop, options.rtol) == StepperKind::exact;
   std::optional<Reflection> reflection;
-  if (half) reflection = symmetry(loop);
+  const bool odd = options.returns % 2 != 0;  // an even number of half maps is a map of the whole period
+  if (half && odd) reflection = symmetry(loop);
   ReturnMap::Options map{coarse, options.max_steps_per_map, options.stop};
   map.longest = options.longest_map;
   map.returns = options.returns;

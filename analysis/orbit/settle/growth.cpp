@@ -10,7 +10,7 @@ namespace limcycle {
 
 bool grows_like_a_power(const TurningPoints& turning) {
   constexpr std::size_t few = 64, averaged = 4;
-  constexpr double least_growth = 1.3, alike = 0.2;
+  constexpr double least_growth = 1.2, least_part = 0.01, rise = 1.2;
   const std::size_t count = turning.points().size();
   if (count < few) return false;
   const auto size = [&](std::size_t swings) {
@@ -18,11 +18,13 @@ bool grows_like_a_power(const TurningPoints& turning) {
     for (std::size_t k = 0; k < averaged; ++k) sum += turning.swing(count - 1 - swings + k);
     return sum;
   };
+  // The growth in each doubling of the number of swings is 2^p times that before for n^p, and comes down to that for
+  // (a + n)^p, from afar. For a motion that is bounded it falls, for an exponential growth its ratio rises.
   const std::size_t all = count - 1;
-  const double last = size(all) / size(all / 2), before = size(all / 2) / size(all / 4),
-               first = size(all / 4) / size(all / 8);
-  const auto like = [](double one, double other) { return std::abs(one / other - 1.0) < alike; };
-  return std::min({last, before, first}) > least_growth && like(last, before) && like(before, first);
+  const double last = size(all) - size(all / 2), before = size(all / 2) - size(all / 4),
+               first = size(all / 4) - size(all / 8);
+  return first > 0.0 && last > least_part * size(all) && last > least_growth * before &&
+         before > least_growth * first && last * first < rise * before * before;
 }
 
 bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long most_steps,

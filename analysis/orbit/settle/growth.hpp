@@ -8,8 +8,8 @@
 namespace limcycle {
 
 /// True if the swings grow like a power of time, as a limited command allows an unstable loop, and not towards a cycle:
-/// each doubling of their number increases them by about the same factor. On the way to a cycle that factor falls
-/// towards 1; in an exponential growth, which may end in a cycle, it rises. Needs 64 swings.
+/// each doubling of their number increases them by more than the one before, by at least a quarter. On the way to a
+/// cycle it increases them by less and less. Needs 64 swings.
 bool grows_like_a_power(const TurningPoints& turning);
 
 /// True if the motion from this state, moved thirty times as far from rest, grows too: its later swings are larger

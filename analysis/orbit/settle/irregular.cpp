@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "limcycle/analysis/orbit/settle/outcome_watch.hpp"
@@ -48,13 +49,19 @@ bool goes_one_way(const std::array<Part, part_count>& all) {
   return (falls || rises) && scatter(all, &Part::spread) > one_way;
 }
 
-/// Upward crossings of a level, and the largest y between each and the next.
+/// Upward crossings of a level, and the largest and the least y between each and the next.
 struct Returns {
-  std::vector<double> times, peaks;
+  std::vector<double> times, peaks, troughs;
   double mean() const { return (times.back() - times.front()) / static_cast<double>(times.size() - 1); }
   std::vector<double> periods() const {
     std::vector<double> all;
     for (std::size_t i = 1; i < times.size(); ++i) all.push_back(times[i] - times[i - 1]);
+    return all;
+  }
+  /// Half of largest less least y of each; the last one is not complete.
+  std::vector<double> amplitudes() const {
+    std::vector<double> all;
+    for (std::size_t i = 0; i + 1 < times.size(); ++i) all.push_back(0.5 * (peaks[i] - troughs[i]));
     return all;
   }
 };
@@ -67,9 +74,12 @@ Returns returns_to(double level, const Trace& trace, std::size_t from) {
     if (step.y0 < level && step.y1 >= level) {
       found.times.push_back(step.crossing(level));
       found.peaks.push_back(step.y1);
+      found.troughs.push_back(step.y1);
     } else if (!found.peaks.empty()) {
-      const bool turns = trace.rate[i - 1] > 0.0 && trace.rate[i] <= 0.0;
-      found.peaks.back() = std::max(found.peaks.back(), turns ? step.turning().y : step.y1);
+      const bool turns = trace.rate[i - 1] * trace.rate[i] < 0.0 || trace.rate[i] == 0.0;
+      const double y = turns ? step.turning().y : step.y1;
+      found.peaks.back() = std::max(found.peaks.back(), y);
+      found.troughs.back() = std::min(found.troughs.back(), y);
     }
   }
   return found;
@@ -120,9 +130,17 @@ std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_rep
       scatter(all, count) > returns_scatter)
     return std::nullopt;
   if (goes_one_way(all) || (!may_repeat && repeats(returns, high - low))) return std::nullopt;
+  const std::vector<double> sizes = returns.amplitudes();
   const auto [shortest, longest] = std::ranges::minmax(returns.periods());
-  return IrregularMotion{0.5 * (high - low), returns.mean(), shortest, longest,
-                         returns.times.back() - returns.times.front()};
+  const auto [smallest, largest] = std::ranges::minmax(sizes);
+  return IrregularMotion{0.5 * (high - low),
+                         returns.mean(),
+                         shortest,
+                         longest,
+                         returns.times.back() - returns.times.front(),
+                         std::accumulate(sizes.begin(), sizes.end(), 0.0) / static_cast<double>(sizes.size()),
+                         smallest,
+                         largest};
 }
 
 bool agree(const IrregularMotion& one, const IrregularMotion& other) {

@@ -11,6 +11,8 @@ struct IrregularMotion {
   double mean_period = 0.0;  ///< mean time between upward crossings of the middle of that range, s
   double shortest_period = 0.0, longest_period = 0.0;  ///< of the times between two such crossings, s
   double observed = 0.0;                               ///< time of all of them, s
+  double mean_amplitude = 0.0;  ///< mean of the halves of largest less least y between one crossing and the next
+  double smallest_amplitude = 0.0, largest_amplitude = 0.0;
 };
 
 /// The numbers of a recorded motion without its first third, if it looks permanent: over four equal parts of the rest

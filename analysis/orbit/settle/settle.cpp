@@ -23,8 +23,18 @@ namespace {
 constexpr long steps_of_tries = 200'000, tries_per_step = 3;
 constexpr double settled_change = 1e-3;  ///< relative change of the swings of a motion that has all but settled
 constexpr long most_readings = 5'000'000, most_sampled_steps = 4'000'000;
-constexpr int most_restarts = 3;       ///< with short steps, of a march that left the range of numbers
-constexpr long periods_of_a_try = 40;  ///< of return maps; most that converge take 5 to 20, up to 15 maps
+constexpr double large_swing =
+    0.05;  ///< of the range of y and the rest: a swing below it may be the ringing of a bristle
+constexpr std::size_t enough_turns = 12;  ///< for a cycle to be recognised
+constexpr int most_restarts = 3;          ///< with short steps, of a march that left the range of numbers
+constexpr long periods_of_a_try = 40;     ///< of return maps; most that converge take 5 to 20, up to 15 maps
+
+/// True if y is the displacement of the body that rubs, to a factor.
+bool rubs_at_output(const Loop& loop) {
+  const Eigen::RowVectorXd& rubs = loop.ports.back().C;
+  const double along = rubs.dot(loop.C_y);
+  return along * along >= (1.0 - 1e-12) * rubs.squaredNorm() * loop.C_y.squaredNorm();
+}
 
 /// One run: simulation, and shooting whenever the swings look steady.
 class Settling {
@@ -36,12 +46,16 @@ class Settling {
         field_(loop),
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
         stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol),
-        switching_(loop, loop_sizes(loop)) {}
+        switching_(loop, loop_sizes(loop)),
+        rubs_elsewhere_(loop.ports.back().rubs && !loop.continuous && !rubs_at_output(loop)) {}
 
   Settled run() {
     field_.modes() = start_.modes;
     march_.begin(start_.x, 0.0);
     note();
+    bool exact = false;
+    const double rest = loop_.C_y.dot(loop_.rest_point(exact).transpose());
+    if (exact) low_ = high_ = rest;
     while (!decided_) step();
     result_.time = march_.t();
     result_.steps = march_.steps();
@@ -88,7 +102,13 @@ class Settling {
     const double y = result_.trace.y.back();
     if (std::abs(y) > options_.amplitude_ceiling) return decide(Outcome::divergence, "y grows without bound");
     if (march_.t() >= 1e15) return decide(Outcome::undecided, "undecided after 1e15 s");
-    if (turning_.feed(march_.t(), y)) look_at_swings();
+    low_ = std::min(low_, y);
+    high_ = std::max(high_, y);
+    if (of_y_.turning.feed(march_.t(), y)) {
+      if (turning_.points().size() > 1 && turning_.swing(0) > large_swing * (high_ - low_)) ++large_turns_;
+      look_at_swings();
+    }
+    if (!decided_ && rubs_elsewhere_ && of_rubbing_.turning.feed(march_.t(), rubbing())) look_for_cycle(of_rubbing_);
     if (decided_) return;
     if (auto still = stillness_.look(march_.t(), march_.x(), dx_, field_.modes())) come_to(*still);
     if (decided_ || !march_.last().switched) return;
@@ -118,7 +138,10 @@ class Settling {
     constexpr double periods = 6.0;
     const auto may_be = [&](const Cycle& cycle) { return march_.t() < periods * cycle.period; };
     if (loop_.continuous) return most_sampled_steps;  // a stiff bristle takes many after every sample
-    const bool early = turning_.points().size() < options_.fewest_turns || std::ranges::any_of(options_.known, may_be);
+    // An exact march takes few steps a turn, so that its turns are many before its steps are.
+    const bool exact = march_.kind() == StepperKind::exact;
+    const std::size_t fewest = exact ? std::min(options_.fewest_turns, enough_turns) : options_.fewest_turns;
+    const bool early = large_turns_ < fewest || std::ranges::any_of(options_.known, may_be);
     return early && options_.fewest_turns > 0 ? longer * options_.max_steps : options_.max_steps;
   }
 
@@ -127,7 +150,13 @@ class Settling {
     const bool sampled = loop_.continuous != nullptr;
     // A wait before the first swing, of an integrator that has to wind up, is no part of the motion.
     const std::size_t turns = turning_.points().size();
-    const auto motion = permanent_motion(sampled && turns > 4 ? recent(turns - 2) : result_.trace, sampled);
+    const auto motion = permanent_motion(sampled && turns > 4 ? recent(turning_, turns - 2) : result_.trace, sampled);
+    const auto known = [&](const IrregularMotion& other) { return motion && agree(other, *motion); };
+    if (std::ranges::any_of(options_.known_irregular, known)) {
+      result_.irregular = *motion;
+      decide(Outcome::irregular, "bounded without a period, in the range of another start");
+      return {};
+    }
     // An exact march has no tolerance that could be another.
     const bool exact = march_.kind() == StepperKind::exact;
     const auto again = motion && !exact ? permanent_motion(repeated(march_.t()), sampled) : motion;
@@ -191,29 +220,45 @@ class Settling {
       return decide(slides_at_rest(loop_) ? Outcome::sliding : Outcome::rest,
                     "the oscillation decayed below the smallest amplitude of interest");
     }
-    if (points.size() < next_try_) return;
+    look_for_cycle(of_y_);
+  }
+
+  /// Turning points of a signal, and the number of them at which a cycle is looked for next.
+  struct Swings {
+    TurningPoints turning;
+    std::size_t next_try = 5;
+  };
+
+  void look_for_cycle(Swings& swings) {
+    if (swings.turning.points().size() < swings.next_try) return;
     // A period of more turning points is one only if the swings repeat better with it: those of a slow drift do not.
     double least = 0.05;
     for (std::size_t order : {2U, 4U, 6U}) {
-      if (points.size() <= 2 * order) return;
-      const double change = largest_change(order);
+      if (swings.turning.points().size() <= 2 * order) return;
+      const double change = largest_change(swings.turning, order);
       if (change > least) continue;
-      if (try_cycle(order, change)) return;
+      if (try_cycle(swings, order, change)) return;
       least = 0.5 * change;
     }
   }
 
   /// Largest relative change of the last swings from those one period (of `order` turning points) before.
-  double largest_change(std::size_t order) const {
+  static double largest_change(const TurningPoints& turning, std::size_t order) {
     double largest = 0.0;
     for (std::size_t k = 0; k < order; ++k)
-      largest = std::max(largest, std::abs(turning_.swing(k) / turning_.swing(k + order) - 1.0));
+      largest = std::max(largest, std::abs(turning.swing(k) / turning.swing(k + order) - 1.0));
     return largest;
   }
 
+  /// Displacement of the body that rubs.
+  double rubbing() const {
+    const Eigen::RowVectorXd& row = loop_.ports.back().C;
+    return row.dot(Eigen::Map<const Eigen::RowVectorXd>(march_.x().data(), row.size()));
+  }
+
   /// The part of the trace since the turning point `count` back.
-  Trace recent(std::size_t count) const {
-    const auto& points = turning_.points();
+  Trace recent(const TurningPoints& turning, std::size_t count) const {
+    const auto& points = turning.points();
     const double since = points[points.size() - 1 - count].t;
     Trace part;
     for (std::size_t i = 0; i < result_.trace.t.size(); ++i) {
@@ -236,11 +281,12 @@ class Settling {
   }
 
   /// `change`: see largest_change().
-  bool try_cycle(std::size_t order, double change) {
-    if (tried_ > (loop_.continuous ? march_.steps() / 2 : steps_of_tries + tries_per_step * march_.steps()))
+  bool try_cycle(Swings& swings, std::size_t order, double change) {
+    if (tried_ > (loop_.continuous ? march_.steps() / 8 : steps_of_tries + tries_per_step * march_.steps()))
       return false;
-    next_try_ = turning_.points().size() + turning_.points().size() / 2 + 1;
-    const Trace period = recent(order);
+    const std::size_t turns = swings.turning.points().size();
+    swings.next_try = turns + turns / 2 + 1;
+    const Trace period = recent(swings.turning, order);
     const auto [low, high] = extremes(period);
     const double swing = high - low;
     const LoopState here{march_.x(), field_.modes()};
@@ -257,12 +303,15 @@ class Settling {
     shooting.max_steps = periods_of_a_try * (std::ssize(period.t) + samples_in(period.t.back() - period.t.front()));
     shooting.longest_map = 10.0 * (period.t.back() - period.t.front());
     const Section section = choose_section(loop_, period);
-    shooting.returns = returns_of(section, period);
+    const int returns = returns_of(section, period);
+    // While y rings it may cross the section several times in a row; the half map goes from there to the mirrored one.
+    shooting.returns = half && returns % 2 == 0 ? 1 : returns;
     auto shot = shoot(loop_, here, section, half, shooting);
     tried_ += shot.steps;
     // Swings that are as large on both sides, and repeat, may differ in form.
     if (half && shot.status != Status::converged && change < settled_change) {
       half = false;
+      shooting.returns = returns;
       shot = shoot(loop_, here, section, half, shooting);
       tried_ += shot.steps;
     }
@@ -305,12 +354,17 @@ class Settling {
   March march_;
   StillnessWatch stillness_;
   SwitchingWatch switching_;
-  TurningPoints turning_;
+  /// A body behind a spring may be held for long while y swings on: then its own displacement shows a period.
+  Swings of_y_, of_rubbing_;
+  const TurningPoints& turning_ = of_y_.turning;
+  bool rubs_elsewhere_;
   Settled result_;
   State dx_;
   std::optional<Cycle> candidate_;
   double mismatch_ = 0.0;
-  std::size_t next_try_ = 5, next_growth_ = 64;
+  double low_ = infinite, high_ = -infinite;  ///< of y
+  std::size_t large_turns_ = 0;
+  std::size_t next_growth_ = 64;
   std::size_t next_irregular_ = 128;  ///< of a sampled loop, whose cycles need not lock to the samples
   long tried_ = 0;                    ///< steps of return maps
   long readings_ = 0;

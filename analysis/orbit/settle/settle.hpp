@@ -21,9 +21,12 @@ struct SettleOptions {
   double amplitude_floor = 1e-9;   ///< swings of y below this have died out
   double amplitude_ceiling = 1e6;  ///< |y| beyond this has diverged
   long max_steps = 60000;          ///< the horizon: steps, not seconds, so that it follows the loop's own time scales
-  std::size_t fewest_turns = 12;   ///< of y; with fewer, the horizon is four times as long; 0: it never is
+  /// Turns of y, after swings of a good part of its range, that tell a motion without a period: with fewer, the horizon
+  /// is four times as long; 0: it never is.
+  std::size_t fewest_turns = 100;
   ShootingOptions shooting;
   std::span<const Cycle> known;  ///< cycles found before: recognised by period and swing (to 1e-4) without shooting
+  std::span<const IrregularMotion> known_irregular;  ///< and permanent motions, recognised by their numbers (agree())
   std::function<bool()> stop;
 };
 

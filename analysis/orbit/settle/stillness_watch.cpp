@@ -44,7 +44,7 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
 std::optional<Stillness> StillnessWatch::read(double t, const State& x, const LoopField& field) {
   constexpr double nearly = 1.0 - 1e-9;
   const double passed = t - read_at_;
-  if (!read_.empty() && passed < nearly * sample_time(loop_)) return std::nullopt;
+  if (!read_.empty() && passed < nearly * repetition_time(loop_)) return std::nullopt;
   State mean(x.size());
   for (std::size_t i = 0; i < read_.size(); ++i) mean[i] = (x[i] - read_[i]) / passed;
   const bool first = read_.empty();

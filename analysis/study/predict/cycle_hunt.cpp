@@ -20,7 +20,9 @@ CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const Sear
 
 OutcomeOfStart CycleHunt::simulate(const LoopState& start, std::string name) {
   settle_.known = cycles_;
+  settle_.known_irregular = irregular_;
   Settled settled = settle(loop_, start, settle_);
+  if (settled.outcome == Outcome::irregular) irregular_.push_back(settled.irregular);
   OutcomeOfStart outcome{std::move(name),          settled.outcome, std::move(settled.why), {},
                          std::move(settled.trace), settled.time,    settled.steps};
   outcome.cycle = settled.known;

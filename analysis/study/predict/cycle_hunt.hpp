@@ -44,6 +44,7 @@ class CycleHunt {
   const Loop& loop_;
   SettleOptions settle_;
   std::vector<Cycle> cycles_;
+  std::vector<IrregularMotion> irregular_;
   std::vector<OutcomeOfStart> outcomes_;
   long maps_ = 0, steps_ = 0;
 };

@@ -70,6 +70,9 @@ std::string structured(std::string_view key) {
                                                           {"zeros", "[]"},
                                                           {"poles", "[-1, -2]"},
                                                           {"velocity", "[0, 1]"},
+                                                          {"velocities", "[1]"},
+                                                          {"forces", "[1]"},
+                                                          {"forces_minus", "[1]"},
                                                           {"coefficients", "[2, 2, 2, 2]"},
                                                           {"k", "[1]"},
                                                           {"W", "[2]"},
@@ -169,8 +172,9 @@ void check_choice(const Parameter<Owner, double>& parameter) {
 }
 
 /// Parameters that a loop rejects although they exist: tested with that rule.
-constexpr std::string_view elsewhere[] = {"clearance",         "elements",        "anti_windup",   "sample_time",
-                                          "computation_delay", "encoder_quantum", "output_quantum"};
+constexpr std::string_view elsewhere[] = {"clearance",   "elements",          "anti_windup",
+                                          "sample_time", "computation_delay", "input_step",
+                                          "output_step", "velocity_window",   "position_every"};
 
 template <class Owner>
 void check_owner() {

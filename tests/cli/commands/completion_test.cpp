@@ -57,7 +57,7 @@ TEST_CASE("completion: bash offers commands, options, values and files") {
   CHECK(offered({"limcycle", "predict", "--json", "n"}) == Words{"notes.txt"});
   CHECK(offered({"limcycle", "predict", "-o", "n"}) == Words{"notes.txt"});
   CHECK(offered({"limcycle", "predict", "--seed", ""}).empty());
-  CHECK(offered({"limcycle", "laws", "lu"}) == Words{"lugre", "lugre-spline"});
+  CHECK(offered({"limcycle", "laws", "lu"}) == Words{"lugre", "lugre-spline", "lugre-table"});
   CHECK(offered({"limcycle", "experiment", "stick-slip-"}) == Words{"stick-slip-transition"});
   CHECK(offered({"limcycle", "experiment", "--law", "da"}) == Words{"dahl"});
   CHECK(offered({"limcycle", "map", "servo.toml", "--methods", "comp"}) == Words{"composite-describing-function"});

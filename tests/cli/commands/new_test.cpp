@@ -63,7 +63,7 @@ TEST_CASE("new: every plant with every controller and every friction law is a va
           CHECK(made.simulate.has_value() == all);
           ++cases;
         }
-  CHECK(cases == 2 * 8 * std::ssize(some_of(kinds_in("controller"))) * 20);
+  CHECK(cases == 2 * 8 * std::ssize(some_of(kinds_in("controller"))) * 23);
 }
 
 TEST_CASE("new: a cascade as a diagram, without kinds of slots") {

@@ -89,6 +89,9 @@ const std::vector<double> spline_knots{0.0, 2.5e-4, 5e-4, 7.5e-4, 1e-3, 1.25e-3,
 const std::vector<double> spline_coefficients{1.5,      1.49654,  1.469707, 1.3894,   1.284891, 1.18394,
                                               1.104806, 1.040758, 1.004573, 1.000007, 1.0,      1.0};
 
+const std::vector<double> table_speeds{0.00025, 0.0005, 0.00075, 0.001, 0.0015, 0.002, 0.003, 0.005};
+const std::vector<double> table_forces{1.469707, 1.3894, 1.284891, 1.18394, 1.0527, 1.009158, 1.000062, 1};
+
 const std::string root_note =
     "the printed set reads 100000 where the radical sign was lost with the line break: it is sqrt(1e5) = 316.2 N s/m";
 const std::string one_level = "values chosen here; the law has one level, which is the documents' break-away level";
@@ -123,6 +126,10 @@ std::vector<LawSetting> documents_laws() {
 std::vector<LawSetting> other_laws() {
   return {{"coulomb", "coulomb", {{"Fc", 1.0}, {"Fs", 1.5}}, chosen},
           {"stribeck", "stribeck", stribeck({}), chosen},
+          {"stribeck-table",
+           "stribeck-table",
+           {{"velocities", table_speeds}, {"forces", table_forces}, {"Fs", 1.5}},
+           "values chosen here: points of the exponential curve of the other laws (vs = 0.001)"},
           {"karnopp", "karnopp", stribeck({{"dv", 1e-5}}), chosen},
           {"quinn", "quinn", stribeck({{"dv", 1e-5}}), chosen},
           {"kikuuwe", "kikuuwe", stribeck({{"K", 1e5}, {"B", root}}), chosen},
@@ -133,6 +140,19 @@ std::vector<LawSetting> other_laws() {
            "bouc-wen",
            {{"k", 1e5}, {"D", 1.5e-5}, {"beta", 0.5}, {"gamma", 0.5}},
            one_level + " (k D = 1.5 N)"},
+          {"lugre-table",
+           "lugre-table",
+           {{"velocities", table_speeds}, {"forces", table_forces}, {"Fs", 1.5}, {"sigma0", 1e5}, {"sigma1", root}},
+           "values chosen here: points of the exponential curve of the other laws (vs = 0.001)"},
+          {"gms-table",
+           "gms-table",
+           {{"velocities", table_speeds},
+            {"forces", table_forces},
+            {"Fs", 1.5},
+            {"k", std::vector<double>{4e4, 2e4, 1e4}},
+            {"alpha", std::vector<double>{0.5, 0.3, 0.2}},
+            {"C", 10.0}},
+           "values chosen here: points of the exponential curve of the other laws (vs = 0.001)"},
           {"lugre-spline",
            "lugre-spline",
            {{"velocity", spline_knots}, {"coefficients", spline_coefficients}, {"sigma0", 1e5}, {"sigma1", root}},

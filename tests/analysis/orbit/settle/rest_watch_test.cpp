@@ -170,7 +170,7 @@ TEST_CASE("slow hunting is no rest: an integrator 1000 and 10000 times weaker on
       SettleOptions options;
       options.max_steps = 4000;
       const auto settled = settle(loop, displaced(loop, 1.0), options);
-      CAPTURE(ki, even, settled.time);
+      CAPTURE(ki, even, settled.time, settled.why);
       CHECK(settled.time > 1e4);
       CHECK((settled.outcome == Outcome::cycle || settled.outcome == Outcome::undecided));
     }

@@ -120,13 +120,50 @@ TEST_CASE("sampled servo: its mean period tends to that of the continuous one, a
   }
 }
 
+TEST_CASE("sampled cascade: its mean period tends to that of the continuous one as its average does") {
+  const auto at = [](double h) {
+    Cascade law;
+    law.position_kp = 1.0;
+    law.velocity_kp = 4.0;
+    law.velocity_ki = 6.0;
+    if (h > 0.0) {
+      law.sample_time = h;
+      law.position_every = 4.0;
+      law.velocity_window = 2.0;
+      law.computation_delay = 0.5 * h;
+    }
+    LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+    parts.controller = law;
+    return build_loop(parts);
+  };
+  const auto continuous = settled(at(0.0), 0.03);
+  REQUIRE(continuous.shot);
+  const double T0 = continuous.shot->cycle.period;
+  double before = infinite;
+  for (const double h : {0.04, 0.02, 0.01}) {
+    INFO("sample time " << h);
+    const Loop loop = at(h);
+    const auto sampled = settled(in_time_domain(loop, 1).loop, 0.03);
+    REQUIRE(sampled.outcome == Outcome::irregular);
+    Loop averaged = loop;
+    averaged.sampled.reset();
+    const auto mean = settled(in_time_domain(averaged, 2).loop, 0.03);
+    REQUIRE(mean.shot);
+    const double T = sampled.irregular.mean_period, average = mean.shot->cycle.period;
+    CAPTURE(T0, T, average);
+    CHECK(std::abs(T - average) < 0.25 * std::abs(average - T0));
+    CHECK(std::abs(T - average) < 0.7 * before);
+    before = std::abs(T - average);
+  }
+}
+
 TEST_CASE("sampled servo: without integral action it comes to rest, and within a count of its encoder too") {
   const PredictReport report = predict(build_loop(servo_at(0.02, 0.0)));
   CHECK(report.cycles.empty());
   for (const OutcomeOfStart& one : report.outcomes) CHECK(one.outcome == Outcome::rest);
 
   LoopParts parts = servo_at(0.02);
-  std::get<Pid>(parts.controller).encoder_quantum = 0.1;
+  std::get<Pid>(parts.controller).input_step = 0.1;
   const Loop loop = in_time_domain(build_loop(parts), 1).loop;
   const Settled within = settled(loop, 0.04), outside = settled(loop, 0.06);
   CHECK(within.outcome == Outcome::rest);
@@ -151,13 +188,20 @@ TEST_CASE("sampled controller: what does not go together is refused with a reaso
   controller.computation_delay = 0.01;
   CHECK(validate(parts)->key == "loop.controller.computation_delay");
   controller = Pid{};
-  controller.encoder_quantum = 1.0;
-  CHECK(validate(parts)->key == "loop.controller.encoder_quantum");
+  controller.input_step = 1.0;
+  CHECK(validate(parts)->key == "loop.controller.input_step");
   Cascade cascade;
   cascade.position_kp = cascade.velocity_kp = 1.0;
-  cascade.sample_time = 0.01;
+  cascade.position_every = 4.0;
   parts.controller = cascade;
-  CHECK(validate(parts)->key == "loop.controller.sample_time");
+  CHECK(validate(parts)->key == "loop.controller.position_every");
+  cascade.sample_time = 0.01;
+  cascade.velocity_window = 1.5;
+  parts.controller = cascade;
+  CHECK(validate(parts)->key == "loop.controller.velocity_window");
+  cascade.velocity_window = 2.0;
+  parts.controller = cascade;
+  CHECK_FALSE(validate(parts));
   NoController none;
   none.sample_time = 0.01;
   parts.controller = none;

@@ -100,9 +100,9 @@ TEST_CASE("local sensitivity: damping beside viscous friction, borders, and numb
   const auto settled = settle(loop, displaced(loop, 1.0), options);
   REQUIRE(settled.shot);
   const Cycle& cycle = settled.shot->cycle;
-  const std::vector<LoopNumber> numbers{number_of(parts, test::of_law("sigma2", &LuGre<double>::sigma2)),
+  const std::vector<LoopNumber> numbers{number_of(parts, test::of_law<LuGre<double>>("sigma2", &LuGre<double>::sigma2)),
                                         number_of(parts, test::of_plant("damping", &Mass::damping)),
-                                        number_of(parts, test::of_law("vd", &LuGre<double>::vd)),
+                                        number_of(parts, test::of_law<LuGre<double>>("vd", &LuGre<double>::vd)),
                                         number_of(parts, test::of_pid("tf", &Pid::tf))};
   const auto local = local_sensitivities(loop, cycle, numbers);
   REQUIRE(local.size() == 4);

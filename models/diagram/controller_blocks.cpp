@@ -1,0 +1,85 @@
+#include "limcycle/models/diagram/controller_blocks.hpp"
+
+#include "limcycle/models/element/sampled.hpp"
+#include "limcycle/models/linear/discrete.hpp"
+
+namespace limcycle {
+namespace {
+
+StateSpace discrete_of(const Controller& controller, const Sampling& sampling) {
+  const auto* pid = std::get_if<Pid>(&controller);
+  if (pid != nullptr && sampling.velocity_window > 0.0)
+    return windowed_difference(*pid, sampling.sample_time, static_cast<int>(sampling.velocity_window));
+  return backward_difference(model_of(controller), sampling.sample_time);
+}
+
+/// A derivative over n samples is that over one, behind a mean of n: on average a lag of (n - 1)/2 samples.
+ControllerModel model_behind_window(const Controller& controller, const Sampling& sampling) {
+  if (const auto* pid = std::get_if<Pid>(&controller); pid != nullptr && sampling.velocity_window > 1.0) {
+    Pid slower = *pid;
+    slower.tf += 0.5 * (sampling.velocity_window - 1.0) * sampling.sample_time;
+    return slower.model();
+  }
+  return model_of(controller);
+}
+
+}  // namespace
+
+Element encoder(const Sampling& sampling, double every) {
+  Sampled<double> element;
+  element.sample_time = sampling.sample_time;
+  element.input_quantum = sampling.input_step;
+  element.every = every;
+  element.D = 1.0;
+  return element;
+}
+
+Sampled<double> on_computer(const Sampling& sampling, const StateSpace& discrete, Eigen::Index of_states) {
+  Sampled<double> element;
+  element.sample_time = sampling.sample_time;
+  for (const auto row : discrete.A.rowwise()) element.A.insert(element.A.end(), row.begin(), row.end());
+  element.B.assign(discrete.B.col(0).begin(), discrete.B.col(0).end());
+  element.C.assign(discrete.C.row(0).begin(), discrete.C.row(0).end());
+  element.D = discrete.D(0, 0);
+  element.memory = static_cast<double>(discrete.states() - of_states);
+  return element;
+}
+
+Block averaged_block(std::string name, std::string path, ControllerModel model, double sample_time, SignalSum e) {
+  const StateSpace mean = averaged(model, sample_time);
+  StateSpaceController controller;
+  controller.A = mean.A;
+  controller.B = mean.B;
+  controller.C = mean.C;
+  controller.D = mean.D;
+  Block block{std::move(name), std::move(path), Controller(std::move(controller)), {std::move(e)}};
+  block.states = std::move(model.state_names);
+  if (std::ssize(block.states) < mean.states()) block.states.emplace_back("e_last");
+  return block;
+}
+
+SignalSum through_controller(std::vector<Block>& blocks, const Controller& controller, SignalSum e, Clock clock) {
+  if (const auto* cascade = std::get_if<Cascade>(&controller))
+    return through_cascade(blocks, *cascade, std::move(e), clock);
+  const std::string name = "controller", path = "loop.controller";
+  const Sampling& sampling = sampling_of(controller);
+  switch (clock) {
+    case Clock::continuous:
+      blocks.push_back({name, path, controller, {std::move(e)}});
+      break;
+    case Clock::averaged:
+      blocks.push_back(
+          averaged_block(name, path, model_behind_window(controller, sampling), sampling.sample_time, std::move(e)));
+      break;
+    case Clock::sampled: {
+      Sampled<double> element =
+          on_computer(sampling, discrete_of(controller, sampling), model_of(controller).ss.states());
+      element.computation_delay = sampling.computation_delay;
+      element.output_quantum = sampling.output_step;
+      blocks.push_back({name, path, Element(element), {std::move(e)}});
+    }
+  }
+  return {{1.0, name, ""}};
+}
+
+}  // namespace limcycle

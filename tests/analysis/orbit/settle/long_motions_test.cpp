@@ -1,0 +1,96 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "limcycle/analysis/orbit/settle/displaced.hpp"
+#include "limcycle/analysis/orbit/settle/growth.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/models/friction/bristle/elasto_plastic.hpp"
+#include "limcycle/models/friction/dry/stribeck.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using namespace limcycle::test;
+
+namespace {
+
+Settled from(const Loop& loop, double displacement, double floor) {
+  SettleOptions options;
+  options.amplitude_floor = floor;
+  return settle(loop, displaced(loop, displacement), options);
+}
+
+}  // namespace
+
+TEST_CASE("settle: a load that rings while the motor sticks hunts with the period of the motor") {
+  LoopParts parts;
+  parts.plant = TwoMass{364000.0, 261036.0, 323210.0, 10656.9, {0}, {1}};
+  parts.controller = pid(18925.1, 480.725, 215246.0);
+  parts.friction = coulomb(220.329, 200.436);
+  const Settled settled = from(build_loop(parts), 0.003395, 1e-8);
+  REQUIRE(settled.outcome == Outcome::cycle);
+  // Found by an independent event-driven simulation; ringing crosses the section twice on each side.
+  CHECK(settled.shot->cycle.period == Approx(1210.8298).epsilon(1e-7));
+  CHECK(settled.shot->cycle.amplitude == Approx(0.00158162).epsilon(1e-5));
+  CHECK(settled.shot->cycle.stable == true);
+}
+
+TEST_CASE("shooting: an even number of half maps is a map of the whole period, not of half of it") {
+  const Loop loop = servo(coulomb(1.5, 1.0));
+  const Settled settled = from(loop, 0.5, 1e-9);
+  REQUIRE(settled.shot);
+  const Cycle& cycle = settled.shot->cycle;
+  ShootingOptions options;
+  options.returns = 2;
+  const auto twice = shoot(loop, cycle.start, choose_section(loop, cycle.trace), true, options);
+  REQUIRE(twice.status == Status::converged);
+  CHECK(twice.cycle.period == Approx(2.0 * cycle.period).epsilon(1e-9));
+  CHECK_FALSE(twice.cycle.half_wave_symmetric);
+}
+
+TEST_CASE("settle: a bristle that rings for long while the controller winds up does not use up the step limit") {
+  ElastoPlastic<double> law;
+  law.Fc = law.Fc_minus = law.Fs = law.Fs_minus = 0.0100165;
+  law.vs = 118.312;
+  law.sigma0 = 3.24942;
+  LoopParts parts;
+  parts.plant = Mass{2.99456e-10, 0.0, 0.0};
+  Pid controller = pid(0.00024906, 0.0230542, 3.85146e-07);
+  controller.lag = 8.66066e-05;
+  parts.controller = controller;
+  parts.friction = law;
+  CHECK(from(build_loop(parts), 0.1233, 1e-4).outcome == Outcome::rest);
+}
+
+TEST_CASE("settle: a limited servo diverges from afar as it does from nearby") {
+  Stribeck<double> law;
+  law.Fc = law.Fc_minus = 1.40491;
+  law.Fs = law.Fs_minus = 2.39885;
+  law.sigma2 = 0.017355;
+  law.vs = 1.30454;
+  LoopParts parts;
+  parts.plant = Mass{0.00016836, 0.0025536, 0.0};
+  Pid controller = pid(136.949, 19998.4, 0.28443);
+  controller.saturation = 8.25144;
+  parts.controller = controller;
+  parts.friction = law;
+  const Loop loop = build_loop(parts);
+  for (const double start : {42.78, 427.8}) CHECK(from(loop, start, 1e-6).outcome == Outcome::divergence);
+}
+
+TEST_CASE("growth: without bound from afar, and none towards a bound or a cycle") {
+  const auto grows = [](auto size) {
+    TurningPoints turning;
+    for (int n = 0; n < 400; ++n) {
+      turning.feed(3.0 * n, size(n) * (n % 2 == 0 ? 1.0 : -1.0));
+      turning.feed(3.0 * n + 1.0, 0.99 * size(n) * (n % 2 == 0 ? 1.0 : -1.0));
+    }
+    return grows_like_a_power(turning);
+  };
+  CHECK(grows([](int n) { return std::sqrt(1.0 + n); }));
+  CHECK(grows([](int n) { return std::sqrt(300.0 + n); }));
+  CHECK(grows([](int n) { return 1.0 + std::pow(n, 1.0 / 3.0); }));
+  CHECK_FALSE(grows([](int n) { return 2.0 - std::exp(-0.02 * n); }));
+  CHECK_FALSE(grows([](int n) { return 1.0 + std::log1p(n); }));
+  CHECK_FALSE(grows([](int) { return 1.0; }));
+  CHECK_FALSE(grows([](int n) { return 1.0 / (1.0 + n); }));
+}
