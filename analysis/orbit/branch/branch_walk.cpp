@@ -317,6 +317,22 @@ class Walk {
     return true;
   }
 
+  /// Removes changes of stability just before an end that is no event, and the points behind them. Where a motion
+  /// begins to stick or to switch a branch turns at a corner: what Newton's method finds beyond it within its own
+  /// accuracy has the multipliers of the other side. True if there were any.
+  bool leave_out_corner(double end) {
+    constexpr double narrow = 1e-5;
+    bool any = false;
+    while (!branch_.events.empty() && branch_.events.back().type == BranchEvent::Type::stability &&
+           branch_.events.back().point > 0 && std::abs(branch_.events.back().parameter / end - 1.0) < narrow) {
+      branch_.points.erase(branch_.points.begin() + static_cast<std::ptrdiff_t>(branch_.events.back().point),
+                           branch_.points.end());
+      branch_.events.pop_back();
+      any = true;
+    }
+    return any;
+  }
+
   void give_up(bool on_purpose) {
     EndEvidence evidence;
     for (std::size_t i = 0; i < std::min<std::size_t>(100, branch_.points.size()); ++i)
@@ -328,7 +344,11 @@ class Walk {
     evidence.invalid = solver_.invalid();
     evidence.first_amplitude = start_.amplitude;
     evidence.on_purpose = on_purpose;
-    const EndDiagnosis found = diagnose_end(map_, now_, evidence);
+    EndDiagnosis found = diagnose_end(map_, now_, evidence);
+    if (!found.understood && leave_out_corner(found.parameter))
+      found.why =
+          "the branch turns at a corner, where the motion begins to stick or to switch (the last of it, within "
+          "the accuracy of that, is left out)";
     end_here(found.why);
     branch_.events.back().parameter = found.parameter;
     branch_.events.back().error = found.error;
