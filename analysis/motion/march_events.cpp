@@ -207,6 +207,7 @@ Status March::land_by_clock(double tried) {
   if (tried == 0.0) {
     end_at(0.0);
     ++steps_;
+    if (tracks_) step_.transition = Eigen::MatrixXd::Identity(std::ssize(x_), std::ssize(x_));
   }
   field_.guards(step_.x1, step_.t1, guards_mid_);
   step_.by_clock = true;
