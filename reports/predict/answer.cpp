@@ -76,7 +76,7 @@ std::string irregular_size(const PredictReport& report, const Units& units) {
   const IrregularMotion& motion = largest->irregular;
   const bool always = count(report, Outcome::irregular) == report.outcomes.size();
   return fmt::format(" {}: half-range {}, mean period {} s, single ones from {} to {} s over {} s.",
-                     always ? "It never comes to rest" : "Where it does",
+                     always ? "It never comes to rest" : "Where it moves",
                      Units::attach(with_digits(motion.half_range, 3), units.y), with_digits(motion.mean_period, 4),
                      with_digits(motion.shortest_period, 4), with_digits(motion.longest_period, 4),
                      with_digits(motion.observed, 2));
