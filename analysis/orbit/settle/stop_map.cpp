@@ -17,26 +17,39 @@ constexpr long steps_of_a_flight = 3000;
 constexpr double broken = 20.0;    ///< in lengths over which a bristle yields: a body that moved so far has broken away
 constexpr double for_ever = 1e15;  ///< s: a body that the controller does not push waits so long
 
-/// The smallest change of the states, in their typical sizes, that leaves y, the rubbing displacement and its velocity
-/// as they are and takes the force off the body that holds at the displaced state; empty if there is none.
-Eigen::VectorXd balance(const Loop& loop, const Eigen::VectorXd& displaced) {
+/// The linear states, from the rest point, of a loop that has held its body at y = 1 for long and winds up steadily, at
+/// the moment at which no force acts on the body: A X = X', A X' = 0 with A as far as the body stays at rest, C_v X =
+/// C_v A X = 0 and C_y X = 1, the smallest such X and X' in their typical sizes. Empty if there is none, as without
+/// integral action, or if the loop does not wind up.
+Eigen::VectorXd steady_hold(const Loop& loop) {
   const Port& port = loop.ports.back();
+  const Eigen::Index n = loop.states();
   const State typical = typical_sizes(loop);
-  const Eigen::VectorXd sizes = Eigen::Map<const Eigen::VectorXd>(typical.data(), loop.states());
-  const Eigen::RowVectorXd force = port.C_v * working_loop(loop);
-  Eigen::MatrixXd rows(4, loop.states());
-  rows << loop.C_y, port.C, port.C_v, force;
-  Eigen::VectorXd wanted = Eigen::VectorXd::Zero(4);
-  wanted(3) = -force.dot(displaced.transpose());
-  rows = (rows * sizes.asDiagonal()).eval();
-  for (Eigen::Index i = 0; i < 4; ++i)
+  const Eigen::VectorXd sizes = Eigen::Map<const Eigen::VectorXd>(typical.data(), n);
+  const Eigen::MatrixXd A = working_loop(loop);
+  const Eigen::VectorXd push = loop.B.rightCols<1>();
+  const Eigen::RowVectorXd force = port.C_v * A;
+  const Eigen::MatrixXd held = A - push * force / port.C_v.dot(push.transpose());
+  const Eigen::MatrixXd scaled = sizes.cwiseInverse().asDiagonal() * held * sizes.asDiagonal();
+
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * n + 3, 2 * n);
+  rows.topLeftCorner(n, n) = scaled;
+  rows.topRightCorner(n, n) = -Eigen::MatrixXd::Identity(n, n);
+  rows.block(n, n, n, n) = scaled;
+  rows.bottomLeftCorner(3, n) << loop.C_y, port.C_v, force;
+  rows.bottomLeftCorner(3, n) *= sizes.asDiagonal();
+  Eigen::VectorXd wanted = Eigen::VectorXd::Zero(2 * n + 3);
+  wanted(2 * n) = 1.0;
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
     if (const double size = rows.row(i).norm(); size > 0.0) {
       rows.row(i) /= size;
       wanted(i) /= size;
     }
-  const Eigen::VectorXd change = least_squares(rows, wanted);
-  if (!change.allFinite() || (rows * change - wanted).norm() > 1e-6 * wanted.norm()) return {};
-  return sizes.cwiseProduct(change);
+  const Eigen::VectorXd found = least_squares(rows, wanted);
+  if (!found.allFinite() || (rows * found - wanted).norm() > 1e-6 * wanted.norm()) return {};
+  const Eigen::VectorXd X = sizes.cwiseProduct(found.head(n)), rising = sizes.cwiseProduct(found.tail(n));
+  if (std::abs(force.dot(rising.transpose())) <= 1e-9 * force.cwiseAbs().dot(rising.cwiseAbs().transpose())) return {};
+  return X;
 }
 
 }  // namespace
@@ -53,11 +66,8 @@ std::optional<StopMap> StopMap::of(const Loop& loop, double rtol, std::function<
   StopMap map(loop, rtol, std::move(stop));
   map.rest_ = loop.rest_point(exact);
   if (!exact) return std::nullopt;
-  const LoopState unit = displaced(loop, 1.0);
-  const Eigen::VectorXd moved = Eigen::Map<const Eigen::VectorXd>(unit.x.data(), loop.states()) - map.rest_;
-  const Eigen::VectorXd balancing = balance(loop, moved);
-  if (balancing.size() == 0 || balancing.isZero(0.0)) return std::nullopt;
-  map.held_ = moved + balancing;
+  map.held_ = steady_hold(loop);
+  if (map.held_.size() == 0) return std::nullopt;
   return map;
 }
 
@@ -122,6 +132,19 @@ std::optional<double> StopMap::growing_between(double low, double high) {
   return std::exp(at_c > at_d ? c : d);
 }
 
+/// A displacement between two from which the swings grow, if the ratio rises steadily as the displacement falls and
+/// passes 1 before it jumps down: by bisection for the jump. `upper` is the ratio at `high`, `rise` its increase per
+/// unit of the logarithm, `lower` the ratio below the jump.
+std::optional<double> StopMap::growing_above_jump(double low, double high, double upper, double rise, double lower) {
+  const double from = high;
+  for (int i = 0; i < refinements; ++i) {
+    const double p = std::sqrt(low * high), expected = upper + rise * std::log(from / p), now = ratio(p).value_or(0.0);
+    if (now > 1.0) return p;
+    (now > 0.5 * (expected + lower) ? high : low) = p;
+  }
+  return std::nullopt;
+}
+
 std::vector<double> StopMap::growing(double least, double most) {
   std::vector<double> places, ratios, found;
   for (double p = most; p >= least && !(stop_ && stop_()); p /= between) {
@@ -130,7 +153,13 @@ std::vector<double> StopMap::growing(double least, double most) {
   }
   for (std::size_t i = 1; i < places.size(); ++i) {  // from the largest down
     if (ratios[i] > 1.0 && ratios[i - 1] > 0.0 && ratios[i - 1] < 1.0) found.push_back(places[i]);
-    if (i + 1 == places.size() || ratios[i] > 1.0 || ratios[i] < nearly_grows) continue;
+    if (ratios[i] > 1.0) continue;
+    const double rise = i > 1 && ratios[i - 2] > 0.0 && ratios[i - 1] < 1.0 ? ratios[i - 1] - ratios[i - 2] : 0.0;
+    if (rise > 0.0 && ratios[i - 1] + rise > 1.0)
+      if (const auto p =
+              growing_above_jump(places[i], places[i - 1], ratios[i - 1], rise / std::log(between), ratios[i]))
+        found.push_back(*p);
+    if (i + 1 == places.size() || ratios[i] < nearly_grows) continue;
     if (ratios[i] <= ratios[i - 1] || ratios[i] < ratios[i + 1]) continue;
     if (const auto p = growing_between(places[i + 1], places[i - 1])) found.push_back(*p);
   }

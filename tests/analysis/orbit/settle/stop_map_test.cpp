@@ -84,6 +84,34 @@ TEST_CASE("map of stops: on bristles that yield it tends to that of stiction the
   CHECK(stiff < 0.5 * soft);
 }
 
+TEST_CASE("map of stops: a command with a lag is that of a long hold, and tends to the one without at first order") {
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  parts.controller = pid(3.0, 4.0, 6.0);
+  const Loop direct = build_loop(parts);
+  auto at_once = StopMap::of(direct, 1e-10, {});
+  REQUIRE(at_once);
+  const auto off = [&](double lag) {
+    Pid late = pid(3.0, 4.0, 6.0);
+    late.lag = lag;
+    parts.controller = late;
+    const Loop loop = build_loop(parts);
+    auto map = StopMap::of(loop, 1e-10, {});
+    REQUIRE(map);
+    // The command falls by ki p a second while held, so that the integral is ahead of the lag by ki p lag.
+    const LoopState held = map->held_at(0.2);
+    const Eigen::Map<const Eigen::VectorXd> x(held.x.data(), loop.states());
+    CHECK(loop.C_y.dot(x.transpose()) == Approx(0.2));
+    const Eigen::VectorXd rate = loop.A * x;
+    const Eigen::RowVectorXd force = loop.ports.back().C_v * loop.A;
+    CHECK(std::abs(force.dot(x.transpose())) < 1e-9);
+    CHECK(force.dot(rate.transpose()) == Approx(-4.0 * 0.2).epsilon(1e-6));
+    return std::abs(map->ratio(0.2).value() - at_once->ratio(0.2).value());
+  };
+  const double coarse = off(1e-2), fine = off(1e-3);
+  CHECK(fine > 0.0);
+  CHECK(fine == Approx(0.1 * coarse).epsilon(0.1));
+}
+
 TEST_CASE("predict: a hunting cycle on bristles into which no displaced start falls is found from its break-away") {
   ElastoPlastic<double> law;
   law.Fc = law.Fc_minus = 247.997;
@@ -116,4 +144,23 @@ TEST_CASE("predict: a hunting cycle into which no displaced start falls is found
   CHECK(report.cycles.front().stable == true);
   CHECK(report.cycles.front().period == Approx(18.3754788).epsilon(1e-6));  // along a branch, from Fs where it hunts
   CHECK(report.cycles.front().amplitude == Approx(9.228709).epsilon(1e-6));
+}
+
+TEST_CASE("predict: a hunting cycle just above a jump of the map from stop to stop is found, behind a lagging drive") {
+  Karnopp<double> law;
+  law.Fs = law.Fs_minus = 0.763766;
+  law.Fc = law.Fc_minus = 0.408388;
+  law.vs = 0.0123187;
+  law.dv = 0.000627915;
+  Pid late = pid(1150.41, 8940.50375382706, 4.89913);
+  late.lag = 4.38052e-05;
+  LoopParts parts;
+  parts.plant = Mass{0.00912517, 0.0, 0.0};
+  parts.controller = late;
+  parts.friction = law;
+  const PredictReport report = predict(build_loop(parts));
+  REQUIRE(report.cycles.size() == 1);
+  CHECK(report.cycles.front().stable == true);
+  CHECK(report.cycles.front().period == Approx(1.8196089667).epsilon(1e-6));  // along a branch, from ki where it hunts
+  CHECK(report.cycles.front().amplitude == Approx(1.5059603e-4).epsilon(1e-6));
 }

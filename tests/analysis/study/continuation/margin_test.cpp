@@ -190,3 +190,23 @@ TEST_CASE("margin: a stop keeps the parameters that are done") {
   REQUIRE(report.parameters.size() == 1);
   CHECK(report.parameters[0].down.value == Approx(0.05 / fold).epsilon(1e-6));
 }
+
+TEST_CASE("closest approach of -1/N: on a plane of equal distances it ends after a few thousand describing functions") {
+  LoopParts parts;  // stiff bristles under a slow belt: the distance is 1 but for roundings where they only yield
+  parts.plant = Belt{1236680.0, 3313400.0, 0.0, 0.000370623};
+  LuGre<double> law;
+  law.Fc = law.Fc_minus = 2723.84;
+  law.Fs = law.Fs_minus = 5042.94;
+  law.sigma2 = 113126.0;
+  law.vs = 0.000319629;
+  law.sigma0 = 326434000000.0;
+  parts.friction = law;
+  const Loop loop = build_loop(parts);
+  long asked = 0;
+  const auto found = balance_distance(loop, default_search_box(loop), [&] {
+    ++asked;
+    return false;
+  });
+  REQUIRE(found);
+  CHECK(asked < 3000);
+}
