@@ -47,7 +47,8 @@ Eigen::VectorXd steady_hold(const Loop& loop) {
     }
   const Eigen::VectorXd found = least_squares(rows, wanted);
   if (!found.allFinite() || (rows * found - wanted).norm() > 1e-6 * wanted.norm()) return {};
-  const Eigen::VectorXd X = sizes.cwiseProduct(found.head(n)), rising = sizes.cwiseProduct(found.tail(n));
+  Eigen::VectorXd X = sizes.cwiseProduct(found.head(n));
+  const Eigen::VectorXd rising = sizes.cwiseProduct(found.tail(n));
   if (std::abs(force.dot(rising.transpose())) <= 1e-9 * force.cwiseAbs().dot(rising.cwiseAbs().transpose())) return {};
   return X;
 }
