@@ -31,12 +31,7 @@ Eigen::VectorXd steady_motion(const Loop& loop, double rate) {
     rows.row(n + i) = port.rubs ? port.C_v : port.C;
     pull(n + i) = port.rubs ? 0.0 : port.c(reference_value) * rate;
   }
-  for (Index i = 0; i < rows.rows(); ++i) {
-    const double size = rows.row(i).norm();
-    if (size == 0.0) continue;
-    rows.row(i) /= size;
-    pull(i) /= size;
-  }
+  equilibrate(rows, pull);
   return least_squares(rows, -pull);
 }
 

@@ -65,6 +65,14 @@ inline Pid pid(double kp, double ki, double kd) {
   return controller;
 }
 
+inline Loop loop_of(Plant plant, Controller controller, Element friction) {
+  LoopParts parts;
+  parts.plant = std::move(plant);
+  parts.controller = std::move(controller);
+  parts.friction = std::move(friction);
+  return build_loop(parts);
+}
+
 /// m = 1 kg under PID (3, 4, 6): the servo of the 1995 paper.
 inline LoopParts servo_parts(Element friction) {
   LoopParts parts;

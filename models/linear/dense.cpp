@@ -70,6 +70,15 @@ Eigen::MatrixXd solve_columns_fully_pivoted(const Eigen::MatrixXd& A, const Eige
   return A.fullPivLu().solve(B);
 }
 
+void equilibrate(Eigen::MatrixXd& A, Eigen::VectorXd& b) {
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    const double size = A.row(i).norm();
+    if (size == 0.0) continue;
+    A.row(i) /= size;
+    b(i) /= size;
+  }
+}
+
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold) {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> system;
   if (threshold) system.setThreshold(*threshold);

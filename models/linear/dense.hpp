@@ -61,6 +61,10 @@ Eigen::MatrixXd kernel(const Eigen::MatrixXd& A);
 std::optional<Eigen::MatrixXcd> solve_if_regular(const Eigen::MatrixXcd& A, const Eigen::MatrixXcd& B,
                                                  double least_rcond);
 
+/// Divides each equation of A x = b by the length of its row of A, except where that is 0, so that least squares weigh
+/// all alike.
+void equilibrate(Eigen::MatrixXd& A, Eigen::VectorXd& b);
+
 /// The shortest x that minimises |A x - b|. Pivots below `threshold` times the largest count as zero; without it, those
 /// of rounding size.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold = {});

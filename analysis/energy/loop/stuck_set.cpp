@@ -40,12 +40,7 @@ struct Equilibria {
     VectorXd pull(n + 1);
     pull << loop.E * loop.external, port.c_v.dot(loop.external.transpose());
     M = (M * scale.asDiagonal()).eval();
-    for (Index i = 0; i <= n; ++i) {
-      const double size = M.row(i).norm();
-      if (size == 0.0) continue;
-      M.row(i) /= size;
-      pull(i) /= size;
-    }
+    equilibrate(M, pull);
     const VectorXd u = least_squares(M, -pull, negligible);
     solvable = (M * u + pull).norm() <= 1e-9 * (pull.norm() + u.norm());
     kernel = MatrixXd::Identity(n + 1, n + 1);

@@ -40,11 +40,7 @@ Eigen::VectorXd steady_hold(const Loop& loop) {
   rows.bottomLeftCorner(3, n) *= sizes.asDiagonal();
   Eigen::VectorXd wanted = Eigen::VectorXd::Zero(2 * n + 3);
   wanted(2 * n) = 1.0;
-  for (Eigen::Index i = 0; i < rows.rows(); ++i)
-    if (const double size = rows.row(i).norm(); size > 0.0) {
-      rows.row(i) /= size;
-      wanted(i) /= size;
-    }
+  equilibrate(rows, wanted);
   const Eigen::VectorXd found = least_squares(rows, wanted);
   if (!found.allFinite() || (rows * found - wanted).norm() > 1e-6 * wanted.norm()) return {};
   Eigen::VectorXd X = sizes.cwiseProduct(found.head(n));

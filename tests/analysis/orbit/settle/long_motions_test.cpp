@@ -22,11 +22,9 @@ Settled from(const Loop& loop, double displacement, double floor) {
 }  // namespace
 
 TEST_CASE("settle: a load that rings while the motor sticks hunts with the period of the motor") {
-  LoopParts parts;
-  parts.plant = TwoMass{364000.0, 261036.0, 323210.0, 10656.9, {0}, {1}};
-  parts.controller = pid(18925.1, 480.725, 215246.0);
-  parts.friction = coulomb(220.329, 200.436);
-  const Settled settled = from(build_loop(parts), 0.003395, 1e-8);
+  const Loop loop = loop_of(TwoMass{364000.0, 261036.0, 323210.0, 10656.9, {0}, {1}}, pid(18925.1, 480.725, 215246.0),
+                            coulomb(220.329, 200.436));
+  const Settled settled = from(loop, 0.003395, 1e-8);
   REQUIRE(settled.outcome == Outcome::cycle);
   // Found by an independent event-driven simulation; ringing crosses the section twice on each side.
   CHECK(settled.shot->cycle.period == Approx(1210.8298).epsilon(1e-7));
@@ -52,13 +50,9 @@ TEST_CASE("settle: a bristle that rings for long while the controller winds up d
   law.Fc = law.Fc_minus = law.Fs = law.Fs_minus = 0.0100165;
   law.vs = 118.312;
   law.sigma0 = 3.24942;
-  LoopParts parts;
-  parts.plant = Mass{2.99456e-10, 0.0, 0.0};
   Pid controller = pid(0.00024906, 0.0230542, 3.85146e-07);
   controller.lag = 8.66066e-05;
-  parts.controller = controller;
-  parts.friction = law;
-  CHECK(from(build_loop(parts), 0.1233, 1e-4).outcome == Outcome::rest);
+  CHECK(from(loop_of(Mass{2.99456e-10, 0.0, 0.0}, controller, law), 0.1233, 1e-4).outcome == Outcome::rest);
 }
 
 TEST_CASE("settle: a limited servo diverges from afar as it does from nearby") {
@@ -67,13 +61,9 @@ TEST_CASE("settle: a limited servo diverges from afar as it does from nearby") {
   law.Fs = law.Fs_minus = 2.39885;
   law.sigma2 = 0.017355;
   law.vs = 1.30454;
-  LoopParts parts;
-  parts.plant = Mass{0.00016836, 0.0025536, 0.0};
   Pid controller = pid(136.949, 19998.4, 0.28443);
   controller.saturation = 8.25144;
-  parts.controller = controller;
-  parts.friction = law;
-  const Loop loop = build_loop(parts);
+  const Loop loop = loop_of(Mass{0.00016836, 0.0025536, 0.0}, controller, law);
   for (const double start : {42.78, 427.8}) CHECK(from(loop, start, 1e-6).outcome == Outcome::divergence);
 }
 

@@ -85,16 +85,13 @@ TEST_CASE("map of stops: on bristles that yield it tends to that of stiction the
 }
 
 TEST_CASE("map of stops: a command with a lag is that of a long hold, and tends to the one without at first order") {
-  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
-  parts.controller = pid(3.0, 4.0, 6.0);
-  const Loop direct = build_loop(parts);
+  const Loop direct = servo(coulomb(1.5, 1.0));
   auto at_once = StopMap::of(direct, 1e-10, {});
   REQUIRE(at_once);
   const auto off = [&](double lag) {
     Pid late = pid(3.0, 4.0, 6.0);
     late.lag = lag;
-    parts.controller = late;
-    const Loop loop = build_loop(parts);
+    const Loop loop = loop_of(Mass{1.0, 0.0, 0.0}, late, coulomb(1.5, 1.0));
     auto map = StopMap::of(loop, 1e-10, {});
     REQUIRE(map);
     // The command falls by ki p a second while held, so that the integral is ahead of the lag by ki p lag.
@@ -119,11 +116,7 @@ TEST_CASE("predict: a hunting cycle on bristles into which no displaced start fa
   law.vs = 0.0070504922;
   law.sigma0 = 483203.0;
   law.sigma1 = 15764.2;
-  LoopParts parts;
-  parts.plant = Mass{13363.8, 205.78, 0.0};
-  parts.controller = pid(1270.36, 37.0563, 8209.67);
-  parts.friction = law;
-  const PredictReport report = predict(build_loop(parts));
+  const PredictReport report = predict(loop_of(Mass{13363.8, 205.78, 0.0}, pid(1270.36, 37.0563, 8209.67), law));
   REQUIRE_FALSE(report.cycles.empty());
   CHECK(report.cycles.front().stable == true);
   CHECK(report.cycles.front().period == Approx(718.2).epsilon(1e-3));  // along a branch, from vs where it hunts
@@ -135,11 +128,7 @@ TEST_CASE("predict: a hunting cycle into which no displaced start falls is found
   law.Fc = law.Fc_minus = 1561.17;
   law.vs = 72.2398;
   law.dv = 0.879203;
-  LoopParts parts;
-  parts.plant = Mass{0.108679, 0.0, 0.0};
-  parts.controller = pid(29.8999, 46.2654, 2.20988);
-  parts.friction = law;
-  const PredictReport report = predict(build_loop(parts));
+  const PredictReport report = predict(loop_of(Mass{0.108679, 0.0, 0.0}, pid(29.8999, 46.2654, 2.20988), law));
   REQUIRE(report.cycles.size() == 1);
   CHECK(report.cycles.front().stable == true);
   CHECK(report.cycles.front().period == Approx(18.3754788).epsilon(1e-6));  // along a branch, from Fs where it hunts
@@ -154,11 +143,7 @@ TEST_CASE("predict: a hunting cycle just above a jump of the map from stop to st
   law.dv = 0.000627915;
   Pid late = pid(1150.41, 8940.50375382706, 4.89913);
   late.lag = 4.38052e-05;
-  LoopParts parts;
-  parts.plant = Mass{0.00912517, 0.0, 0.0};
-  parts.controller = late;
-  parts.friction = law;
-  const PredictReport report = predict(build_loop(parts));
+  const PredictReport report = predict(loop_of(Mass{0.00912517, 0.0, 0.0}, late, law));
   REQUIRE(report.cycles.size() == 1);
   CHECK(report.cycles.front().stable == true);
   CHECK(report.cycles.front().period == Approx(1.8196089667).epsilon(1e-6));  // along a branch, from ki where it hunts
