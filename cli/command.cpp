@@ -144,6 +144,7 @@ Provenance provenance(const CommonFlags& flags, const Case* from) {
     made.file = from->file;
     made.sha256 = from->sha256;
     made.overrides = from->overrides;
+    if (from->loop) made.measured = measured_plants(*from->loop);
   }
   return made;
 }

@@ -13,6 +13,8 @@
 #include "limcycle/cases/loader/printable.hpp"
 #include "limcycle/cli/colour.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
+#include "limcycle/models/measured/plants_of_loop.hpp"
+#include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 namespace {
@@ -120,13 +122,25 @@ int cannot_be_replaced(const std::string& path) {
 
 }  // namespace
 
-Output::Output(const CommonFlags& flags) : json_(flags.json), csv_(flags.csv) {
+Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), csv_(flags.csv) {
   keep("the case file", flags.case_file);
+  if (from != nullptr && from->loop) {
+    keep_data(*from);
+    for (const MeasuredPlantAt& plant : measured_plants(*from->loop))
+      basis_ += '\n' + wrapped(basis_in_words(plant) + '.');
+  }
   text_ = !flags.output.empty() ? flags.output : json_ == "-" || csv_ == "-" ? "" : "-";
   colours_ = text_ == "-" && colours_wanted(flags.color, STDOUT_FILENO);
   check_file("--output", flags.output);
   check_file("--json", flags.json);
   check_file("--csv", flags.csv);
+}
+
+void Output::keep_data(const Case& from) {
+  if (!from.loop) return;
+  const auto folder = std::filesystem::path(from.file).parent_path();
+  for (const MeasuredPlantAt& plant : measured_plants(*from.loop))
+    keep("the data of " + plant.path, (folder / plant.response->data().file).string());
 }
 
 void Output::keep(const std::string& what, const std::string& path) {
@@ -147,7 +161,7 @@ void Output::check_file(const std::string& flag, const std::string& path) {
 }
 
 void Output::text(std::string_view document) {
-  const std::string shown = printable(document);
+  const std::string shown = printable(std::string(document) + basis_);
   write(text_, colours_ ? coloured(shown) : shown);
 }
 

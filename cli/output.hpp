@@ -23,7 +23,8 @@ class OutputError : public std::runtime_error {
 /// complete. With several ranks only rank 0 touches any file.
 class Output {
  public:
-  explicit Output(const CommonFlags& flags);
+  /// `from`: the case of the results; of a case with measured plants the text then ends with what it rests on.
+  explicit Output(const CommonFlags& flags, const Case* from = nullptr);
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
@@ -38,6 +39,9 @@ class Output {
   void text(std::string_view document);
   void json(std::string_view document) { write(json_, document); }
   void csv(std::string_view document) { write(csv_, document); }
+
+  /// The files of data that a case names: no document may go there.
+  void keep_data(const Case& from);
 
   /// A file that the command reads or writes by itself, `what` in words ("the store"): no document may go there. An
   /// empty path is ignored.
@@ -55,6 +59,7 @@ class Output {
   void write(const std::string& path, std::string_view document);
 
   std::string text_, json_, csv_;  // "-" is stdout, empty: none
+  std::string basis_;              // sentences at the end of the text
   bool colours_ = false;
   struct TakenFile {
     std::string flag;  // of the document that goes there; empty for a file that the command reads

@@ -24,8 +24,9 @@ inline constexpr int lowest_pade_order = 1, highest_pade_order = 60;
 ///  - in any other loop the delay is replaced by its diagonal Pade approximation of the given order, one for each
 ///    independent delayed signal. States "delay1", ... are appended; if the loop is measured from a rest point, they
 ///    are at rest there too (see with_constant_history).
-/// The rates of the inputs are recomputed from the states. Throws std::invalid_argument for an order out of range where
-/// one is needed, or if an element needs a rate that the approximation makes depend on the element's own output.
+/// Measured plants become their fits. The rates of the inputs are recomputed from the states. Throws
+/// std::invalid_argument for an order out of range where one is needed, or if an element needs a rate that the
+/// approximation makes depend on the element's own output.
 TimeDomainLoop in_time_domain(const Loop& loop, int pade_order);
 
 /// Linear states of the time-domain loop for states X of the original loop that have been constant for all past time.

@@ -121,7 +121,8 @@ std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
   if (parts.element && needs_applied_force(*parts.element))
     return BrokenRule{"loop.element", "needs the applied force: it can only stand as [loop.friction]"};
   if (parts.friction && (!does_not_reach(plant.C_x, plant.B_F) || !does_not_reach(plant.C_y, plant.B_F)))
-    return BrokenRule{"loop.plant", "needs relative degree 2 or more from force to position when there is friction"};
+    return BrokenRule{"loop.plant", "needs relative degree 2 or more from force to position when there is friction" +
+                                        std::string(plant.measured ? ": relative_degree = \"two\" asks for it" : "")};
   if (actuator_of(parts.controller).friction_compensation > 0.0 && !parts.friction)
     return BrokenRule{"loop.controller.friction_compensation", "has nothing to compensate: add [loop.friction]"};
   if (controller.D_rate != 0.0 && !does_not_reach(plant.C_y, plant.B_u))
@@ -197,14 +198,27 @@ struct Resolvent {
 };
 
 Resolvent respond(const Loop& loop, std::complex<double> s) {
-  const std::complex<double> shift = std::exp(-s * loop.delay);
-  const Index n = loop.states();
-  Eigen::MatrixXcd M = s * Eigen::MatrixXcd::Identity(n, n) - loop.A.cast<std::complex<double>>();
-  if (loop.delay > 0.0) M -= shift * loop.A_delayed.cast<std::complex<double>>();
-  return {solve_columns(M, loop.B.cast<std::complex<double>>()), shift};
+  const auto [from, B] = loop.resolved(s);
+  return {solve_columns(from, B), std::exp(-s * loop.delay)};
 }
 
 }  // namespace
+
+Loop::Resolved Loop::resolved(std::complex<double> s) const {
+  using Complex = std::complex<double>;
+  const Complex shift = std::exp(-s * delay);
+  Resolved at{s * Eigen::MatrixXcd::Identity(states(), states()) - A.cast<Complex>(), B.cast<Complex>()};
+  if (delay > 0.0) at.from -= shift * A_delayed.cast<Complex>();
+  if (s.real() != 0.0) return at;
+  for (const MeasuredPart& part : measured) {
+    const Complex more = part.factor * part.response->ratio(s.imag()) - 1.0;
+    Eigen::RowVectorXcd input = part.C.cast<Complex>();
+    if (delay > 0.0) input += shift * part.C_delayed.cast<Complex>();
+    at.from -= (more * part.B.cast<Complex>()) * input;
+    at.B += (more * part.B.cast<Complex>()) * part.D.cast<Complex>();
+  }
+  return at;
+}
 
 Eigen::MatrixXcd Loop::element_response(std::complex<double> s) const {
   const auto [X, shift] = respond(*this, s);

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <complex>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,6 +53,17 @@ struct Port {
                          ///< "loop.friction": in this order, if present; of a diagram "diagram.NAME"
 };
 
+/// A plant of the loop that is known by measured data: its states are those of a fit. In the frequency domain its input
+/// C X + C_delayed X(t - delay) + D w, friction included, acts with the factor response->ratio(w), which makes the
+/// plant that of the data, times `factor`, by which a derivative with respect to the data is taken.
+struct MeasuredPart {
+  std::string path;  ///< "loop.plant", "diagram.NAME"
+  std::shared_ptr<const MeasuredResponse> response;
+  Eigen::VectorXd B;  ///< through which that input acts on the states
+  Eigen::RowVectorXd C, C_delayed, D;
+  std::complex<double> factor = 1.0;
+};
+
 /// Lur'e form: linear part  dX/dt = A X + A_delayed X(t - delay) + B w + E ext,  y = C_y X,  with nonlinear elements
 /// w_i = element_i(x_i, v_i, own state) in feedback. Friction enters with its sign: its column of B is negative.
 ///
@@ -80,6 +92,9 @@ struct Loop {
   std::shared_ptr<const Loop> continuous;
   /// The states that state_names name = own_states (origin + X) (see rubbing_coordinates()); empty: origin + X.
   Eigen::MatrixXd own_states;
+  /// Plants known by measured data, which the frequency domain reads. In time, and at s off the imaginary axis, their
+  /// fits stand for them: a loop for the time domain has none of these.
+  std::vector<MeasuredPart> measured;
 
   Eigen::Index states() const { return A.rows(); }
 
@@ -91,6 +106,12 @@ struct Loop {
 
   /// The same loop, measured from its rest point; unchanged if rest_point() is not exact.
   void measure_from_rest();
+
+  /// s I - A and B at s, with delay and measured data: X = (s I - A)^-1 B w.
+  struct Resolved {
+    Eigen::MatrixXcd from, B;
+  };
+  Resolved resolved(std::complex<double> s) const;
 
   /// Response of y to the outputs of the elements, 1 x n_e.
   Eigen::RowVectorXcd output_response(double w) const;

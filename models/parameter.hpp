@@ -37,7 +37,7 @@ inline constexpr Range not_negative{0.0, infinite, false, false};
 
 /// Value of a parameter of any type.
 using ParameterValue =
-    std::variant<double, std::vector<double>, Choice, Eigen::MatrixXd, std::vector<std::complex<double>>>;
+    std::variant<double, std::vector<double>, Choice, Eigen::MatrixXd, std::vector<std::complex<double>>, std::string>;
 
 /// One row of a parameter table, for any owner: all data that loader, listing, report and sensitivity need about it.
 struct ParameterRow {
@@ -53,11 +53,12 @@ struct ParameterRow {
 /// The same with the member of `Owner` (a law, element, plant or controller) that holds the value.
 template <class Owner, class S>
 struct Parameter : ParameterRow {
-  using Member = std::variant<S Owner::*,                                   // number
-                              std::vector<S> Owner::*,                      // list of numbers
-                              Choice Owner::*,                              // one of `choices`
-                              Eigen::MatrixXd Owner::*,                     // rows as lists
-                              std::vector<std::complex<double>> Owner::*>;  // numbers or [re, im] pairs
+  using Member = std::variant<S Owner::*,                                  // number
+                              std::vector<S> Owner::*,                     // list of numbers
+                              Choice Owner::*,                             // one of `choices`
+                              Eigen::MatrixXd Owner::*,                    // rows as lists
+                              std::vector<std::complex<double>> Owner::*,  // numbers or [re, im] pairs
+                              std::string Owner::*>;                       // a text, such as the name of a file
   Member member;
 
   Parameter(std::string_view key_, std::string_view unit_, std::string_view meaning_, Member member_,

@@ -9,14 +9,38 @@
 namespace limcycle {
 namespace {
 
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+/// A plant that is known by measured data, and the fit that stands for it in time.
+Json measured_json(const MeasuredPlantAt& plant) {
+  const FrequencyData& data = plant.response->data();
+  const VectorFit& fit = plant.response->fit();
+  return {{"path", plant.path},
+          {"file", data.file},
+          {"sha256", text_or_null(data.sha256)},
+          {"points", data.size()},
+          {"frequency", {data.frequency.front(), data.frequency.back()}},
+          {"order", fit.shape.order},
+          {"poles_at_zero", fit.shape.poles_at_zero},
+          {"relative_degree", fit.shape.relative_degree},
+          {"delay", plant.response->delay()},
+          {"error", {{"rms", fit.error.rms}, {"largest", fit.error.largest}, {"at", fit.error.at}}},
+          {"deviations", or_null(fit.error.deviations)}};
+}
+
+Json case_json(const Provenance& provenance) {
+  Json made{{"title", text_or_null(provenance.title)},
+            {"file", text_or_null(provenance.file)},
+            {"sha256", text_or_null(provenance.sha256)},
+            {"measured", Json::array()}};
+  for (const MeasuredPlantAt& plant : provenance.measured) made["measured"].push_back(measured_json(plant));
+  return made;
+}
+
 Json head(const std::string& command, const Provenance& provenance) {
-  const auto text_or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
   return {{"schema", "limcycle/1"},
           {"command", command},
-          {"case",
-           {{"title", text_or_null(provenance.title)},
-            {"file", text_or_null(provenance.file)},
-            {"sha256", text_or_null(provenance.sha256)}}},
+          {"case", case_json(provenance)},
           {"provenance",
            {{"version", provenance.version},
             {"commit", provenance.commit},

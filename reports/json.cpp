@@ -123,6 +123,11 @@ Json absence_json(const std::optional<Absence>& absence) {
           {"why", absence->why}};
 }
 
+Json spread_json(const std::optional<RootSpread>& spread) {
+  if (!spread) return nullptr;
+  return {{"amplitude", number(spread->amplitude)}, {"frequency", number(spread->frequency)}};
+}
+
 Json prediction_json(const Prediction& prediction) {
   return {{"method", prediction.method},
           {"amplitude", number(prediction.amplitude)},
@@ -134,6 +139,7 @@ Json prediction_json(const Prediction& prediction) {
           {"residual", number(prediction.residual)},
           {"why", prediction.why},
           {"harmonics", prediction.harmonics},
+          {"uncertainty", spread_json(prediction.spread)},
           {"trust", trust_json(prediction.trust)}};
 }
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/models/measured/plants_of_loop.hpp"
+
 namespace limcycle {
 
 /// Program, settings and input of a result, as every document states them.
@@ -14,8 +16,9 @@ struct Provenance {
 
   bool time_is_over = false;  ///< the command reached its time limit, which interrupted its work
 
-  std::string title, file, sha256;     ///< of the case; empty: the command has no case
-  std::vector<std::string> overrides;  ///< "PATH=VALUE" as given by --set, in order
+  std::string title, file, sha256;          ///< of the case; empty: the command has no case
+  std::vector<std::string> overrides;       ///< "PATH=VALUE" as given by --set, in order
+  std::vector<MeasuredPlantAt> measured{};  ///< plants of the case that are known by data
 };
 
 }  // namespace limcycle

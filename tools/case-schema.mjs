@@ -29,6 +29,7 @@ function parameter(p) {
     case 'number': return { ...one, ...more, description };
     case 'choice': return choice(p.choices, description, more);
     case 'list': return { ...row, description };
+    case 'text': return { type: 'string', minLength: 1, description };
     case 'matrix': return { type: 'array', items: row, ...longest, description };
     case 'complex list': return { type: 'array', items: number_or_pair, ...longest, description };
   }

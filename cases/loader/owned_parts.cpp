@@ -71,6 +71,7 @@ OwnedPart part(std::string section, Find find) {
 }  // namespace
 
 bool is_elsewhere(const OwnedPart& part, std::string_view key) {
+  if (key == "order" || key == "averages") return true;  // of a measured plant: how its data are read and fitted
   return part.section.starts_with("diagram.") && key == "friction_compensation";
 }
 

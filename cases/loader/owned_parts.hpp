@@ -17,8 +17,8 @@ struct OwnedPart {
   std::function<bool(const LoopParts&)> valid;  ///< the part obeys its own rules
 };
 
-/// True for a number that a part has in its table, but not in this place: the compensation of a controller in a diagram
-/// is a block of its own.
+/// True for a number that a part has in its table, but that is none of the loop: the compensation of a controller in a
+/// diagram is a block of its own; how measured data are read and fitted is no quantity of the plant.
 bool is_elsewhere(const OwnedPart& part, std::string_view key);
 
 /// All parts of a loop, in the order of numbers_of(). They serve any loop of the same kinds.

@@ -5,6 +5,10 @@
 #include "limcycle/cases/loader/section.hpp"
 #include "limcycle/models/catalogue.hpp"
 
+namespace limcycle {
+struct MeasuredPlant;
+}
+
 namespace limcycle::case_file {
 
 /// Largest number of entries in a list of a law, plant or controller, and of rows or columns in its matrices. Matrices
@@ -20,12 +24,18 @@ std::vector<ParameterValue> read_values(const Section& section, const std::vecto
 InputError broken_rule(const Section& section, const BrokenRule& broken, const std::vector<ParameterRow>& rows,
                        const std::vector<ParameterValue>& values);
 
+/// Reads what stands in files that a section names. For most there is none.
+template <class Owner>
+void complete(const Section&, Owner&) {}
+void complete(const Section& section, MeasuredPlant& plant);
+
 /// Reads a plant or controller from its section by its parameter table, and applies its own rules.
 template <class Owner>
 Owner read_owner(const Section& section, std::vector<std::string> extra) {
   Owner owner{};
   const auto values = read_values(section, rows_of<Owner>(), values_of(owner), std::move(extra));
   set_values(owner, values);
+  complete(section, owner);
   if (const auto broken = owner.validate()) throw broken_rule(section, *broken, rows_of<Owner>(), values);
   return owner;
 }

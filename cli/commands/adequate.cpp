@@ -90,7 +90,7 @@ int run(AdequateFlags flags) {
   const Case from = load_case(flags);
   const LoopParts& parts = need_friction(from);
   const Units units = units_of(from);
-  Output output(flags);
+  Output output(flags, &from);
   output.check_file("--html", flags.html);
   const AdequateReport report = compute(from, parts, flags);
   const auto made = provenance(flags, &from);

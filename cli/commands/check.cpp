@@ -9,6 +9,7 @@
 #include "limcycle/cli/units_of.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/reports/figures/block_diagram.hpp"
+#include "limcycle/reports/figures/fit_picture.hpp"
 #include "limcycle/reports/figures/staircase.hpp"
 
 namespace limcycle {
@@ -85,6 +86,7 @@ CheckSummary summary_of(const Case& from) {
 
 struct CheckFlags : CommonFlags {
   std::string picture;  ///< --svg
+  std::string fit;      ///< --fit
 };
 
 int check(CheckFlags flags) {
@@ -92,12 +94,18 @@ int check(CheckFlags flags) {
   const Case from = load_case(flags);
   if (!flags.picture.empty() && !from.loop)
     throw std::invalid_argument("--svg: the case holds a lone element; there is no loop to draw");
+  const auto plants = from.loop ? measured_plants(*from.loop) : std::vector<MeasuredPlantAt>();
+  if (!flags.fit.empty() && plants.empty())
+    throw std::invalid_argument("--fit: the case has no measured plant (kind = \"frf\"); there is no fit to draw");
   const auto summary = summary_of(from);
   const auto made = provenance(flags, &from);
   Output output(flags);
   Provenance shown = made;
   shown.file = one_line(made.file);
+  output.keep_data(from);
   output.check_file("--svg", flags.picture);
+  output.check_file("--fit", flags.fit);
+  if (!flags.fit.empty()) output.file(flags.fit, fit_picture(plants.front()));
   if (!flags.picture.empty()) output.file(flags.picture, block_diagram(*from.loop, units_of(from)));
   output.text(check_text(shown, summary));
   if (output.wants_json()) output.json(check_json(made, summary));
@@ -114,6 +122,8 @@ void add_check(CLI::App& program, Action& action) {
                                   [flags] { return check(*flags); });
   command->add_option("--svg", flags->picture, "Write a block diagram of the loop to FILE (so does -o FILE.svg)")
       ->type_name("FILE");
+  command->add_option("--fit", flags->fit, "Write a picture of the data of the (first) measured plant and their fit")
+      ->type_name("FILE.svg");
 }
 
 }  // namespace limcycle

@@ -115,7 +115,7 @@ int run(ClaimsFlags flags) {
   const std::optional<Case> from = case_of(flags);
   const auto which = chosen(from ? claims_of(*from) : claims(), flags.words);
   if (flags.list) return list(flags, which, from);
-  Output output(flags);
+  Output output(flags, from ? &*from : nullptr);
   output.check_file("--html", flags.html);
   const auto tested = test_all(which, flags);
   const Status ended = ending(tested, which.size());

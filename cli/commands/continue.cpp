@@ -35,7 +35,7 @@ int run(ContinueFlags flags) {
   need_loop(from);
   const Units units = units_of(from);
   const CaseNumber number = number_at(from, "--parameter", range.path);
-  Output output(flags);
+  Output output(flags, &from);
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.picture);
 

@@ -74,7 +74,7 @@ DissipativityReport compute(const Case& from, const DissipativityFlags& flags) {
 int run(DissipativityFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
-  Output output(flags);
+  Output output(flags, &from);
   output.check_file("--html", flags.html);
   const DissipativityReport report = answer_of([&] { return compute(from, flags); });
   const auto made = provenance(flags, &from);

@@ -83,7 +83,7 @@ int run(MapFlags flags) {
   const Units units = units_of(from);
   const Methods methods = chosen_methods(flags.methods);
   MapReport report = map_of(from, flags.x, flags.y, methods);
-  Output output(flags);
+  Output output(flags, &from);
   output.keep("the store", flags.store);
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.picture);

@@ -71,7 +71,7 @@ int run(MarginFlags flags) {
   const Units units = units_of(from);
   std::vector<std::string> notes;
   const auto parameters = parameters_of(from, flags, notes);
-  Output output(flags);
+  Output output(flags, &from);
   output.check_file("--html", flags.html);
 
   MarginReport report;

@@ -44,6 +44,9 @@ void check_kind(const std::string& flag, const std::string& kind) {
 int run(NewFlags flags) {
   flags.color = "never";  // the output may be copied into a file
   check_kind("--plant", flags.plant);
+  if (flags.plant == MeasuredPlant::kind)
+    throw refusal("--plant frf", "needs a file of measured data, which a new case does not have",
+                  "cases/measured-axis.toml and its CSV file show one");
   check_kind("--controller", flags.controller);
   check_kind("--friction", flags.friction);
   check_kind("--element", flags.element);

@@ -53,6 +53,7 @@ int run(PredictFlags flags) {
   const LoopParts& parts = need_loop(from);
   const Units units = units_of(from);
   Output output(flags);
+  output.keep_data(from);
   output.keep("the page to be made again", flags.from);
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.pictures);

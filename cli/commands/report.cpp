@@ -69,6 +69,7 @@ int run(ReportFlags flags) {
   if (page == "-" && (flags.json == "-" || flags.csv == "-")) throw refusal("-o -", "stdout holds one document only");
   flags.output = page == "-" ? "/dev/null" : "";
   Output output(flags);
+  output.keep_data(from);
   output.keep("the page to be made again", flags.from);
   output.check_file("-o", page);
 

@@ -237,7 +237,7 @@ int run(SensitivityFlags flags) {
   need_loop(from);
   const Units units = units_of(from);
   const Loop loop = build_loop(need_loop(from));
-  Output output(flags);
+  Output output(flags, &from);
   output.keep("the store", flags.store);
   output.check_file("--html", flags.html);
   Status status = Status::converged;

@@ -66,7 +66,7 @@ int run(SimulateFlags flags) {
   if (flags.csv.empty()) flags.csv = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   need_memory_for(from, flags);
-  Output output(flags);
+  Output output(flags, &from);
   const auto [result, second, energy] = compute(from, flags);
   const Units units = units_of(from);
   std::string text = simulate_text(from.title, in_units(result, units), second, energy, units);

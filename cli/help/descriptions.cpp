@@ -29,9 +29,11 @@ std::vector<Description> to_begin() {
       {"check",
        begin_group,
        "Reads a case file, checks every key and every rule between them, and prints a summary of the loop: its "
-       "elements, its states, its stability without the elements, and the search box. An error names the file, line, "
-       "key and value, and what is allowed.",
+       "elements, its states, its stability without the elements, and the search box. Of a plant that is known by "
+       "measured data it states what they cover, and the order and the error of their fit; --fit draws both. An error "
+       "names the file, line, key and value, and what is allowed.",
        {{"limcycle check cases/pid-lugre.toml", "summary of this case"},
+        {"limcycle check cases/measured-axis.toml --fit fit.svg", "the same, and a picture of data and fit"},
         {"limcycle check cases/pid-lugre.toml --set loop.controller.kd=12.0", "the same with a different gain"}}},
       {"laws",
        begin_group,

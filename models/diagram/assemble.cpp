@@ -33,6 +33,11 @@ void measure_from_other_body(Loop& loop, Row row) {
     port.C_v = port.C_v * back;
     port.C_delayed = port.C_delayed * back;
   }
+  for (MeasuredPart& part : loop.measured) {
+    part.B = to * part.B;
+    part.C = part.C * back;
+    part.C_delayed = part.C_delayed * back;
+  }
   if (loop.own_states.size() == 0) loop.own_states = Eigen::MatrixXd::Identity(n, n);
   loop.own_states = loop.own_states * back;
 }
@@ -54,6 +59,7 @@ class Assembly {
     loop.B = rates_.middleCols(2 * n, ne);
     loop.E = rates_.rightCols(4);
     for (const auto& port : rows_.ports()) add(port, loop);
+    loop.measured = rows_.measured();
     share_selections(loop);
     loop.external << 1.0, reference, 0.0, load;
     loop.state_names = rows_.state_names();

@@ -339,12 +339,39 @@ Eigen::MatrixXd SignalRows::rates() {
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n_, size());
   for (Part& from : parts_) {
     if (from.linear.ss.states() == 0) continue;
-    std::vector<Row> inputs;
-    for (const SignalSum& sum : from.block->inputs) inputs.push_back(value(sum));
-    if (diagram_.load_on == from.block->name) inputs.at(0) += external(external_force);
+    const std::vector<Row> inputs = inputs_of(from);
     for (Index i = 0; i < from.linear.ss.states(); ++i) all.row(from.first + i) = block_rate(from, i, inputs);
   }
   return all;
+}
+
+std::vector<Row> SignalRows::inputs_of(const Part& from) {
+  std::vector<Row> inputs;
+  for (const SignalSum& sum : from.block->inputs) inputs.push_back(value(sum));
+  if (diagram_.load_on == from.block->name) inputs.at(0) += external(external_force);
+  return inputs;
+}
+
+std::vector<MeasuredPart> SignalRows::measured() {
+  std::vector<MeasuredPart> list;
+  for (Part& from : parts_) {
+    if (!from.plant || !from.plant->measured) continue;
+    Row input = inputs_of(from).at(0);
+    for (std::size_t k = 0; k < ports_.size(); ++k) {  // friction acts where u does
+      if (ports_[k].contact != Contact::opposes) continue;
+      if (ports_[k].on == from.block->name) input -= element_output(k);
+      if (ports_[k].against == from.block->name) input += element_output(k);
+    }
+    MeasuredPart& part = list.emplace_back();
+    part.path = from.block->path;
+    part.response = from.plant->measured;
+    part.B = Eigen::VectorXd::Zero(n_);
+    part.B.segment(from.first, from.linear.ss.states()) = from.linear.ss.B.col(0);
+    part.C = input.head(n_);
+    part.C_delayed = input.segment(n_, n_);
+    part.D = input.segment(2 * n_, elements());
+  }
+  return list;
 }
 
 Row SignalRows::block_rate(const Part& from, Index i, const std::vector<Row>& inputs) const {

@@ -36,6 +36,9 @@ class SignalRows {
   Eigen::RowVectorXd output();
   Eigen::MatrixXd rates();
 
+  /// Plants known by measured data, with the rows of their inputs.
+  std::vector<MeasuredPart> measured();
+
   std::vector<std::string> state_names() const;
   /// See Loop::own_states.
   Eigen::MatrixXd own_states() const;
@@ -84,6 +87,7 @@ class SignalRows {
   Row delayed_input(Part& from);
   std::size_t number(Part& from);
   void number_contact(Part& from);
+  std::vector<Row> inputs_of(const Part& from);
   Row block_rate(const Part& from, Eigen::Index i, const std::vector<Row>& inputs) const;
   Row trimmed(const Row& row) const;
 

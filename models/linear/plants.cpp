@@ -8,19 +8,6 @@
 namespace limcycle {
 namespace {
 
-/// Ports of a plant given by its input-output behaviour only: friction acts where u does, rubbing at y.
-PlantModel from_input_output(const StateSpace& g, double delay) {
-  PlantModel plant;
-  plant.A = g.A;
-  plant.B_u = plant.B_F = g.B.col(0);
-  plant.C_y = g.C.row(0);
-  plant.delay = delay;
-  plant.C_v = plant.C_y * plant.A;
-  plant.C_x = plant.C_y;
-  for (Eigen::Index i = 0; i < g.states(); ++i) plant.state_names.push_back("x" + std::to_string(i + 1));
-  return plant;
-}
-
 PlantModel oscillator(double mass, double damping, double stiffness) {
   PlantModel plant;
   plant.A.resize(2, 2);
@@ -58,6 +45,18 @@ std::optional<BrokenRule> strictly_proper(const std::string& key, const auto& re
 }
 
 }  // namespace
+
+PlantModel input_output_plant(const StateSpace& g, double delay) {
+  PlantModel plant;
+  plant.A = g.A;
+  plant.B_u = plant.B_F = g.B.col(0);
+  plant.C_y = g.C.row(0);
+  plant.delay = delay;
+  plant.C_v = plant.C_y * plant.A;
+  plant.C_x = plant.C_y;
+  for (Eigen::Index i = 0; i < g.states(); ++i) plant.state_names.push_back("x" + std::to_string(i + 1));
+  return plant;
+}
 
 PlantModel Mass::model() const { return oscillator(mass, damping, stiffness); }
 
@@ -120,7 +119,7 @@ std::optional<BrokenRule> TransferFunction::validate() const {
   return strictly_proper("numerator", [this] { return realise(numerator, denominator); });
 }
 
-PlantModel TransferFunction::model() const { return from_input_output(realise(numerator, denominator), delay); }
+PlantModel TransferFunction::model() const { return input_output_plant(realise(numerator, denominator), delay); }
 
 std::optional<BrokenRule> ZeroPoleGain::validate() const {
   if (poles.empty()) return BrokenRule{"poles", "must not be empty"};
@@ -134,7 +133,7 @@ std::optional<BrokenRule> ZeroPoleGain::validate() const {
   return strictly_proper("zeros", [this] { return realise_zpk(zeros, poles, gain); });
 }
 
-PlantModel ZeroPoleGain::model() const { return from_input_output(realise_zpk(zeros, poles, gain), delay); }
+PlantModel ZeroPoleGain::model() const { return input_output_plant(realise_zpk(zeros, poles, gain), delay); }
 
 std::optional<BrokenRule> StateSpacePlant::validate() const {
   const auto n = A.rows();
@@ -162,7 +161,7 @@ std::optional<BrokenRule> StateSpacePlant::validate() const {
 }
 
 PlantModel StateSpacePlant::model() const {
-  PlantModel plant = from_input_output({A, B, C, D}, 0.0);
+  PlantModel plant = input_output_plant({A, B, C, D}, 0.0);
   if (B_friction.size() != 0) plant.B_F = B_friction.col(0);
   if (C_friction.size() != 0) {
     plant.C_x = C_friction.row(0);

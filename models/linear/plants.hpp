@@ -1,9 +1,11 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <variant>
 
 #include "limcycle/models/element/gravity.hpp"
 #include "limcycle/models/linear/state_space.hpp"
+#include "limcycle/models/measured/measured_plant.hpp"
 #include "limcycle/models/parameter.hpp"
 
 namespace limcycle {
@@ -21,7 +23,11 @@ struct PlantModel {
   Eigen::VectorXd B_gravity;
   Eigen::RowVectorXd C_gravity;
   std::vector<std::string> state_names;
+  std::shared_ptr<const MeasuredResponse> measured{};  ///< whose fit this is; null: no plant known by measured data
 };
+
+/// Ports of a plant given by its input-output behaviour only: friction acts where u does, rubbing at y.
+PlantModel input_output_plant(const StateSpace& g, double delay);
 
 /// m dv/dt = u - stiffness y - damping v - F(v).
 struct Mass {
@@ -193,7 +199,7 @@ struct StateSpacePlant {
 };
 
 using Plant = std::variant<Mass, TwoMass, Belt, FroudePendulum, FirstOrder, SecondOrder, TransferFunction, ZeroPoleGain,
-                           StateSpacePlant>;
+                           StateSpacePlant, MeasuredPlant>;
 
 inline PlantModel model_of(const Plant& plant) {
   return std::visit([](const auto& p) { return p.model(); }, plant);

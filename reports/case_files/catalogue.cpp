@@ -30,6 +30,7 @@ ParameterEntry entry_of(const ParameterRow& row, const ParameterValue& by_defaul
   } else {
     entry.type = std::holds_alternative<std::vector<double>>(by_default) ? "list"
                  : std::holds_alternative<Eigen::MatrixXd>(by_default)   ? "matrix"
+                 : std::holds_alternative<std::string>(by_default)       ? "text"
                                                                          : "complex list";
   }
   return entry;

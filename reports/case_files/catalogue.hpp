@@ -12,7 +12,7 @@ namespace limcycle {
 /// One parameter of a kind, from its parameter table, without the type of its owner.
 struct ParameterEntry {
   std::string key, unit, meaning;
-  std::string type;  ///< "number", "list", "choice", "matrix", "complex list"
+  std::string type;  ///< "number", "list", "choice", "matrix", "complex list", "text"
   Range range;       ///< of a number, or of each entry of a list
   bool required = true;
   std::optional<double> default_value;  ///< of an optional number; infinite: absent unless given

@@ -50,6 +50,10 @@ std::string check_text(const Provenance& provenance, const CheckSummary& summary
                                       summary.delay > 0.0 ? ", delay " + shortest(summary.delay) + " s" : ""));
     text += line("poles", poles_text(summary));
   }
+  for (const MeasuredPlantAt& plant : provenance.measured) {
+    text += line("data", plant.path + ": " + plant.response->data_in_words());
+    text += line("fit", plant.response->fit_in_words());
+  }
   if (summary.search) text += line("search box", search_text(*summary.search, summary.search_from_case));
   if (!summary.sections.empty()) text += line("sections", fmt::format("{}", fmt::join(summary.sections, "; ")));
   return text + "The case is valid.\n";

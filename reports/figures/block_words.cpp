@@ -69,6 +69,8 @@ std::pair<std::string, std::string> both_ways(const Value& value, std::span<cons
   } else if constexpr (std::is_same_v<Value, Choice>) {
     const std::string name(choices[static_cast<std::size_t>(value.index)]);
     return {name, name};
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return {value, value};
   } else if constexpr (std::is_same_v<Value, Eigen::MatrixXd>) {
     return {fmt::format("{} by {}", value.rows(), value.cols()), matrix_rows(value)};
   } else {

@@ -38,8 +38,10 @@ TEST_CASE("every document says what it is and where it comes from") {
   const auto document = OrderedJson::parse(predict_json(provenance(), {}));
   CHECK(document["schema"] == "limcycle/1");
   CHECK(document["command"] == "predict");
-  CHECK(document["case"] ==
-        OrderedJson({{"title", "a title"}, {"file", "case.toml"}, {"sha256", std::string(64, '0')}}));
+  CHECK(document["case"] == OrderedJson({{"title", "a title"},
+                                         {"file", "case.toml"},
+                                         {"sha256", std::string(64, '0')},
+                                         {"measured", OrderedJson::array()}}));
   CHECK(document["provenance"]["version"] == "1.2.3");
   CHECK(document["provenance"]["seed"] == 18446744073709551615U);
   for (const char* key : {"commit", "isa", "threads"}) CHECK(document["provenance"].contains(key));
@@ -93,12 +95,16 @@ TEST_CASE("predict: keys and values") {
   const auto& predictions = document["predictions"];
   REQUIRE(predictions.size() == 2);
   CHECK(keys(predictions[0]) == Keys{"method", "amplitude", "frequency", "stable", "verdict", "cycle",
-                                     "input_amplitude", "residual", "why", "harmonics", "trust"});
+                                     "input_amplitude", "residual", "why", "harmonics", "uncertainty", "trust"});
   CHECK(predictions[0]["harmonics"] == 1);
   auto balanced = sample::relay();
   balanced.predictions[0].harmonics = 15;
   CHECK(OrderedJson::parse(predict_json(provenance(), balanced))["predictions"][0]["harmonics"] == 15);
   CHECK(predictions[0]["trust"].is_null());
+  CHECK(predictions[0]["uncertainty"].is_null());
+  balanced.predictions[0].spread = RootSpread{0.02, 0.01};
+  CHECK(OrderedJson::parse(predict_json(provenance(), balanced))["predictions"][0]["uncertainty"] ==
+        OrderedJson({{"amplitude", 0.02}, {"frequency", 0.01}}));
   CHECK(document["absence"].is_null());
   CHECK(predictions[0]["verdict"] == "confirmed");
   CHECK(predictions[0]["cycle"] == 0);

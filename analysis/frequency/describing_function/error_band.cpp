@@ -27,6 +27,7 @@ std::optional<std::string> ErrorBand::not_applicable(const Loop& loop) {
   if (!slopes || !element.odd()) return "the theorem needs a memoryless, odd element with bounded slopes";
   if (const auto [alpha, beta] = *slopes; alpha > 0.0 || beta < 0.0)
     return "the slopes of the element exclude 0, so that poles of G on the imaginary axis would go unnoticed";
+  if (!loop.measured.empty()) return "the theorem needs a rational G, and this one is measured";
   if (loop.delay > 0.0) return "the theorem needs a rational G, without delay";
   if (!loop.ports[0].D.isZero(0.0)) return "the theorem needs a strictly proper G";
   bool exact = false;

@@ -8,6 +8,7 @@
 #include "limcycle/analysis/frequency/describing_function/refuse.hpp"
 #include "limcycle/analysis/frequency/harmonic_balance/balance_newton.hpp"
 #include "limcycle/analysis/frequency/harmonic_balance/balance_start.hpp"
+#include "limcycle/models/measured/plants_of_loop.hpp"
 
 namespace limcycle {
 
@@ -274,6 +275,7 @@ class Search {
 }  // namespace
 
 HarmonicBalance harmonic_balance(const Loop& loop, const HarmonicGuess& guess, const HarmonicBalanceOptions& options) {
+  if (!loop.measured.empty()) return harmonic_balance(with_fits(loop), guess, options);
   validate(loop, guess, options);
   return Search(loop, guess, options).run();
 }

@@ -53,7 +53,7 @@ struct HarmonicBalance {
 /// themselves through the elements' periodic outputs and the exact response of the linear part, delay included (see
 /// BalanceEquations). With one harmonic this is the describing function. The element's response to several harmonics is
 /// integrated between its switches and reversals (harmonic_response), so the only approximation is that harmonics above
-/// H are left out.
+/// H are left out. Of measured plants it takes the fits: harmonics reach beyond the data.
 ///
 /// Damped Newton's method for H = 1, 3, 5, 9, 15, 25, 45, 75, ..., each started from the one before, until the tail is
 /// small. Status: converged; incomplete if the tail did not fall below options.tail by max_harmonics, or the last

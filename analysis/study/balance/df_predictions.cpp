@@ -5,11 +5,20 @@
 
 #include "limcycle/analysis/study/balance/df_roots.hpp"
 #include "limcycle/analysis/study/balance/nyquist.hpp"
+#include "limcycle/analysis/study/balance/root_spread.hpp"
+#include "limcycle/analysis/study/balance/within_data.hpp"
 #include "limcycle/analysis/study/predict/failure_note.hpp"
 
 namespace limcycle {
 
 namespace {
+
+/// For a root of the describing function: 1 + N G, and the amplitude of y.
+RootOf root_of_df() {
+  constexpr double accuracy = 1e-10;
+  return {[](const Loop& loop, double A, double w) { return LoopBalance(loop)(A, w, accuracy); },
+          [](const Loop& loop, double A, double w) { return LoopBalance(loop).output_amplitude(A, w); }};
+}
 
 void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& balance, const SearchBox& box,
                   const PredictOptions& options, long max_evaluations) {
@@ -25,6 +34,7 @@ void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& ba
     p.residual = std::abs(balance(root.amplitude, root.frequency, 1e-12));
     p.stable = balance.stable(root.amplitude, root.frequency, root.index);
     p.trust = trust(loop, balance, root.amplitude, root.frequency);
+    p.spread = root_spread(loop, root_of_df(), root.amplitude, root.frequency);
     result.predictions.push_back(std::move(p));
   }
   if (options.stop && options.stop()) return;
@@ -32,7 +42,12 @@ void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& ba
   if (!options.nyquist || found.status == Status::not_finite) return;  // no curve to draw
   std::vector<SearchPoint> roots;
   for (const Root& root : found.roots) roots.push_back({root.amplitude, root.frequency});
-  result.nyquist = nyquist_picture(loop, balance, box, roots, options.stop);
+  SearchBox drawn = box;  // where there are data, if a plant is measured
+  if (const auto boxes = within_data(loop, box); !boxes.empty()) {
+    drawn.frequency_min = boxes.front().frequency_min;
+    drawn.frequency_max = boxes.back().frequency_max;
+  }
+  result.nyquist = nyquist_picture(loop, balance, drawn, roots, options.stop);
 }
 
 }  // namespace

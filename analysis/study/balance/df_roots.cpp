@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/balance/within_data.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -42,14 +43,17 @@ class RootStudy {
   /// G is infinite at an undamped pole of the rest of the loop: the box is cut there, a part in 1e3 of the frequency.
   std::vector<SearchBox> between_undamped_poles() const {
     const auto cuts = undamped_poles();
-    std::vector<SearchBox> boxes{box_};
-    for (const double cut : cuts) {
-      SearchBox& last = boxes.back();
-      if (cut <= last.frequency_min * 1.001 || cut >= last.frequency_max * 0.999) continue;
-      SearchBox next = last;
-      last.frequency_max = cut * (1.0 - 1e-3);
-      next.frequency_min = cut * (1.0 + 1e-3);
-      boxes.push_back(next);
+    std::vector<SearchBox> boxes;
+    for (const SearchBox& known : within_data(loop_, box_)) {
+      boxes.push_back(known);
+      for (const double cut : cuts) {
+        SearchBox& last = boxes.back();
+        if (cut <= last.frequency_min * 1.001 || cut >= last.frequency_max * 0.999) continue;
+        SearchBox next = last;
+        last.frequency_max = cut * (1.0 - 1e-3);
+        next.frequency_min = cut * (1.0 + 1e-3);
+        boxes.push_back(next);
+      }
     }
     return boxes;
   }

@@ -33,9 +33,9 @@ Eigen::MatrixXcd quasi_linear_response(const Loop& loop, const Eigen::VectorXcd&
   }
   // Inputs, and the elements' own outputs, by states and by added outputs.
   inputs = solve_columns(MatrixXcd::Identity(ne, ne) - inputs.rightCols(ne) * gains.asDiagonal(), inputs);
-  const MatrixXcd outputs = gains.asDiagonal() * inputs, B = loop.B.cast<std::complex<double>>();
-  MatrixXcd M = s * MatrixXcd::Identity(n, n) - loop.A.cast<std::complex<double>>() - B * outputs.leftCols(n);
-  if (loop.delay > 0.0) M -= shift * loop.A_delayed.cast<std::complex<double>>();
+  const MatrixXcd outputs = gains.asDiagonal() * inputs;
+  const auto [from, B] = loop.resolved(s);
+  const MatrixXcd M = from - B * outputs.leftCols(n);
   const MatrixXcd X = solve_columns(M, B * (MatrixXcd::Identity(ne, ne) + outputs.rightCols(ne)));
   return inputs.leftCols(n) * X + inputs.rightCols(ne);
 }

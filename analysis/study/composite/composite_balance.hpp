@@ -87,6 +87,7 @@ class CompositeBalance {
   /// The periodic response itself.
   CompositeResponse response(double force, double frequency, const CompositeOptions& options);
 
+  const Loop& loop() const { return *loop_; }
   double mass() const { return mass_; }
   double mean_velocity() const { return mean_velocity_; }
 
@@ -95,6 +96,7 @@ class CompositeBalance {
   /// If the law is symmetric and not biased, N is passive: frequencies at which 1/K would require an active N by more
   /// than 3 degrees are omitted. Cost: about 500 evaluations, 0.03 s for Coulomb's law, 0.2 to 0.4 s for bristles;
   /// several seconds with a mean velocity.
+  /// Of measured plants only the frequencies of their data are searched.
   CompositeSearch find(const CompositeSearchOptions& options = {});
 
   /// State of the loop on the predicted oscillation (first harmonics; velocity and law as in the periodic response), to
@@ -102,6 +104,8 @@ class CompositeBalance {
   LoopState state(const CompositeRoot& root);
 
  private:
+  CompositeSearch find_between(const CompositeSearchOptions& options);
+
   struct Front {
     double force;                       ///< where N jumps
     std::complex<double> below, above;  ///< 1 - K N on either side

@@ -1,11 +1,29 @@
 #include "limcycle/analysis/study/composite/composite_predictions.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
+#include "limcycle/analysis/study/balance/root_spread.hpp"
 #include "limcycle/analysis/study/predict/failure_note.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"
 
 namespace limcycle {
+namespace {
+
+/// For a root of the composite balance: 1 - K N, and the amplitude of y.
+RootOf root_of_composite() {
+  constexpr double accuracy = 1e-9;
+  const auto balance = [](const Loop& loop, double force, double w) {
+    return CompositeBalance(loop)(force, w, accuracy);
+  };
+  return {balance, [balance](const Loop& loop, double force, double w) {
+            const std::complex<double> gain = (1.0 - balance(loop, force, w)) / CompositeBalance(loop).rest_of_loop(w);
+            const auto f = std::ssize(loop.elements) - 1;
+            return std::abs(gain * loop.output_response(w)(f) / loop.element_response(w)(f, f)) * force;
+          }};
+}
+
+}  // namespace
 
 CompositePredictions composite_predictions(CompositeBalance& balance, const SearchBox& box, long max_steps,
                                            const std::function<bool()>& stop) {
@@ -30,6 +48,8 @@ CompositePredictions composite_predictions(CompositeBalance& balance, const Sear
     p.frequency = root.frequency;
     p.residual = root.residual;
     p.stable = root.stable;
+    if (!root.on_break_away_front)
+      p.spread = root_spread(balance.loop(), root_of_composite(), root.force, root.frequency);
     result.predictions.push_back(std::move(p));
   }
   result.roots = std::move(found.roots);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/balance/within_data.hpp"
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 
 namespace limcycle {
@@ -191,6 +192,26 @@ void CompositeBalance::search_biased(const CompositeSearchOptions& options, Comp
 
 CompositeSearch CompositeBalance::find(const CompositeSearchOptions& options) {
   check(options);
+  if (loop_->measured.empty()) return find_between(options);
+  CompositeSearch all;
+  CompositeSearchOptions part = options;
+  for (const SearchBox& box : within_data(*loop_, {0.0, 0.0, options.frequency_min, options.frequency_max})) {
+    part.frequency_min = box.frequency_min;
+    part.frequency_max = box.frequency_max;
+    CompositeSearch found = find_between(part);
+    part.max_steps = std::max(1L, part.max_steps - found.steps);
+    std::ranges::move(found.roots, std::back_inserter(all.roots));
+    std::ranges::move(found.notes, std::back_inserter(all.notes));
+    all.evaluations += found.evaluations;
+    all.steps += found.steps;
+    const bool worse = found.status == Status::interrupted || found.status == Status::incomplete;
+    if (worse || all.status == Status::no_cycle) all.status = found.status;
+    if (all.status == Status::interrupted) break;
+  }
+  return all;
+}
+
+CompositeSearch CompositeBalance::find_between(const CompositeSearchOptions& options) {
   CompositeSearch found;
   const long evaluations = evaluations_, steps = element_.steps();
   last_step_ = steps + options.max_steps;

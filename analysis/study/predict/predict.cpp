@@ -12,6 +12,7 @@
 #include "limcycle/analysis/study/balance/balance_predictions.hpp"
 #include "limcycle/analysis/study/balance/df_predictions.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
+#include "limcycle/analysis/study/balance/within_data.hpp"
 #include "limcycle/analysis/study/composite/composite_predictions.hpp"
 #include "limcycle/analysis/study/predict/between_starts.hpp"
 #include "limcycle/analysis/study/predict/cycle_hunt.hpp"
@@ -266,6 +267,15 @@ class PredictionStudy {
     }
   }
 
+  void note_spreads() {
+    const auto percent = [](double share) { return short_number(100.0 * share, 2) + " %"; };
+    for (std::size_t i = 0; i < report_.predictions.size(); ++i)
+      if (const auto& spread = report_.predictions[i].spread)
+        note("prediction " + std::to_string(i) + ": the uncertainty of the data leaves a standard deviation of " +
+             percent(spread->amplitude) + " in its amplitude and of " + percent(spread->frequency) +
+             " in its frequency");
+  }
+
   void finish() {
     report_.cycles = hunt_->cycles();
     for (Cycle& cycle : report_.cycles) cycle.error = std::max(cycle.error, delay_error(loop_, pade_order_, cycle));
@@ -275,6 +285,9 @@ class PredictionStudy {
     std::ranges::move(compare_with_interest(report_.cycles, options_.search.has_value(), report_.search),
                       std::back_inserter(report_.notes));
     std::ranges::move(derivative_notes(loop_), std::back_inserter(report_.notes));
+    note_spreads();
+    std::ranges::move(data_limits(loop_, box_), std::back_inserter(report_.notes));
+    std::ranges::move(measured_notes(loop_), std::back_inserter(report_.notes));
     for (const auto& method : used_) {
       const auto missed = missed_by(method, report_.cycles, report_.predictions);
       report_.missed.insert(report_.missed.end(), missed.begin(), missed.end());

@@ -200,7 +200,10 @@ void check_owner() {
 
 template <class... Owners>
 void check_all(std::type_identity<std::variant<Owners...>>) {
-  (check_owner<Owners>(), ...);
+  const auto check = []<class Owner>(std::type_identity<Owner>) {
+    if constexpr (!std::is_same_v<Owner, MeasuredPlant>) check_owner<Owner>();  // needs data: see frf_section_test.cpp
+  };
+  (check(std::type_identity<Owners>{}), ...);
 }
 
 template <class Kinds>
