@@ -144,7 +144,7 @@ void March::begin(State x, double t, std::optional<Section> section) {
   armed_ = false;
   fresh_ = true;
   step_.switched.reset();
-  step_.on_section = step_.by_clock = false;
+  step_.on_section = step_.by_clock = step_.crept = false;
   event_times_.clear();
 }
 
@@ -338,7 +338,7 @@ Status March::step(double t_end) {
   step_.t0 = t_;
   step_.x0 = x_;
   step_.switched.reset();
-  step_.on_section = false;
+  step_.on_section = step_.crept = false;
   if (!is_finite(x_) || !is_finite(step_.dx0)) return Status::not_finite;
   field_.guards(x_, t_, guards_start_);
   if (fresh_) {

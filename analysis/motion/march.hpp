@@ -51,6 +51,9 @@ struct Step {
   std::optional<std::size_t> switched;  ///< the element that switched at t1
   bool by_clock = false;                ///< and that by its own clock
   bool on_section = false;              ///< t1 is a crossing of the section
+  /// A body arrived at v = 0 at t1 with no deceleration but roundings: it crept towards a point at which its forces
+  /// balance, which takes for ever, and only roundings made it stop or turn.
+  bool crept = false;
   /// d(state after the step, and after the switch at its end)/dx0, if the march tracks it; empty if a switch was not
   /// crossed transversally.
   Eigen::MatrixXd transition;
@@ -102,6 +105,7 @@ class March {
  private:
   struct Stepper;  ///< a controlled stepper of Odeint or limcycle, or the exact flow
 
+  bool creeps(std::size_t guard) const;
   bool try_step(double& dt);
   bool try_exact(double& dt);
   double shortest_step() const;

@@ -154,6 +154,19 @@ void March::end_at(double h) {
   field_.rate(step_.x1, step_.dx1, step_.t1);
 }
 
+/// See Step::crept.
+bool March::creeps(std::size_t guard) const {
+  constexpr double rounding = 1e-11;
+  const std::size_t i = field_.owner(guard);
+  const Loop& loop = field_.loop();
+  const Element& element = loop.elements[i];
+  if (!element.may_stick() || field_.holds(i)) return false;
+  const Eigen::RowVectorXd& C_v = loop.ports[i].C_v;
+  const double push = std::abs((C_v * loop.B.col(static_cast<Eigen::Index>(i))).value()) * element.scales().output;
+  const double deceleration = (C_v * Eigen::Map<const Eigen::VectorXd>(step_.dx1.data(), loop.states())).value();
+  return push > 0.0 && std::abs(deceleration) <= rounding * push;
+}
+
 /// Completes a step that ends at an event, of one that was tried for the time `tried`.
 Status March::land(std::size_t guard, double tried) {
   const bool at_once = step_.t1 == step_.t0;
@@ -166,6 +179,7 @@ Status March::land(std::size_t guard, double tried) {
     armed_ = false;
     return Status::converged;
   }
+  step_.crept = creeps(guard);
   step_.switched = field_.owner(guard);
   // A body that is at once at rest again was carried there by such a long step that its velocity is within the
   // tolerance.

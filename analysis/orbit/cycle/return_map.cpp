@@ -84,6 +84,7 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
     if (options_.stop && options_.stop()) result.status = Status::interrupted;
     if (march.steps() > options_.max_steps || march.t() >= options_.longest) result.status = Status::max_iterations;
     if (result.status == Status::converged) result.status = march.step(options_.longest);
+    if (result.status == Status::converged && march.last().crept) result.status = Status::no_cycle;
     if (result.status != Status::converged) break;
     if (options_.derivative) result.factors.push_back(march.last().transition);
     if (options_.extremes) result.extremes.include(*field_, march, static_cast<std::size_t>(march.steps() - 1));

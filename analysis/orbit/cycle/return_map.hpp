@@ -59,7 +59,8 @@ class ReturnMap {
 
   ReturnMap(const Loop& loop, Section section, std::optional<Reflection> half, Options options);
 
-  /// From a state on the section to the next one. Status max_iterations: it did not return within the step limit.
+  /// From a state on the section to the next one. Status max_iterations: it did not return within the step limit;
+  /// no_cycle: roundings decide its time, since a body creeps to a stand on the way (Step::crept).
   Result operator()(const LoopState& from);
   /// From anywhere to the section.
   Result approach(const LoopState& from);
