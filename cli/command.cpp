@@ -4,18 +4,16 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <stdexcept>
-#include <thread>
 #include <tuple>
 
-#include "build_info.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/option_values.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
 #include "limcycle/cli/time_limit.hpp"
+#include "limcycle/questions/provenance_of.hpp"
 
 namespace limcycle {
 
@@ -127,25 +125,9 @@ Isa instruction_set(const CommonFlags& flags) {
 }
 
 Provenance provenance(const CommonFlags& flags, const Case* from) {
-  Provenance made;
-  made.version = build_info::version;
-  made.commit = build_info::commit;
-  made.compiler = build_info::compiler;
-  made.build_type = build_info::build_type;
   instruction_set(flags);  // every command rejects one that this machine lacks
-  made.isa = to_string(Isa::scalar);
-  made.seed = flags.seed;
-  // Threads of the machine, even if mpirun gives this process a part of it: results have the same bytes either way.
-  made.threads =
-      flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  Provenance made = provenance_of(flags.seed, flags.threads, from);
   made.time_is_over = interrupted_by_time();
-  if (from != nullptr) {
-    made.title = from->title;
-    made.file = from->file;
-    made.sha256 = from->sha256;
-    made.overrides = from->overrides;
-    if (from->loop) made.measured = measured_plants(*from->loop);
-  }
   return made;
 }
 

@@ -2,12 +2,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "limcycle/analysis/lanes/isa.hpp"
 #include "limcycle/cases/loader/case.hpp"
+#include "limcycle/questions/answer_of.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace CLI {
@@ -23,22 +23,6 @@ enum ExitCode : int {
   exit_bad_input = 2,  ///< wrong usage or input (InputError, std::invalid_argument)
   exit_no_answer = 3   ///< no answer: undecided, interrupted, not written, or a defect of the program
 };
-
-/// A valid case with numbers that no method can handle: exit_no_answer.
-class NoAnswer : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Result of compute(). A method that rejects a valid case is no error of the input: throws NoAnswer with its message.
-template <class Compute>
-auto answer_of(const Compute& compute) {
-  try {
-    return compute();
-  } catch (const std::invalid_argument& refused) {
-    throw NoAnswer(std::string("this case is valid, but could not be computed: ") + refused.what());
-  }
-}
 
 /// Flags common to all subcommands.
 struct CommonFlags {
@@ -92,6 +76,7 @@ void add_continue(CLI::App& program, Action& action);
 void add_dissipativity(CLI::App& program, Action& action);
 void add_df(CLI::App& program, Action& action);
 void add_experiment(CLI::App& program, Action& action);
+void add_identify(CLI::App& program, Action& action);
 void add_laws(CLI::App& program, Action& action);
 void add_map(CLI::App& program, Action& action);
 void add_manual(CLI::App& program, Action& action);
@@ -99,9 +84,11 @@ void add_margin(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_precision(CLI::App& program, Action& action);
 void add_predict(CLI::App& program, Action& action);
+void add_remedy(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
 void add_sensitivity(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);
 void add_status(CLI::App& program, Action& action);
+void add_synthesize(CLI::App& program, Action& action);
 
 }  // namespace limcycle

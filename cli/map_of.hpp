@@ -2,7 +2,6 @@
 #include <string>
 
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/cases/loader/loop_variation.hpp"
 #include "limcycle/reports/map/map.hpp"
 
 namespace limcycle {
@@ -11,11 +10,5 @@ namespace limcycle {
 /// InputError or std::invalid_argument if a side is not of the form of map_axis(), the case has no such number, or both
 /// are the same.
 MapReport map_of(const Case& from, const std::string& x, const std::string& y, const Methods& methods);
-
-/// Options for predicting a point of a map: no more accurate than its verdict needs.
-PredictOptions map_options(const Case& from, const Methods& methods);
-
-/// Point k; one without a loop (a number out of its range) contains the number of methods only.
-MapPoint point_of(const HuntingMap& map, std::size_t k, const LoopVariation& variation, const PredictOptions& options);
 
 }  // namespace limcycle

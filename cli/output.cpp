@@ -14,7 +14,7 @@
 #include "limcycle/cli/colour.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
 #include "limcycle/models/measured/plants_of_loop.hpp"
-#include "limcycle/reports/table.hpp"
+#include "limcycle/questions/words.hpp"
 
 namespace limcycle {
 namespace {
@@ -126,8 +126,7 @@ Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), 
   keep("the case file", flags.case_file);
   if (from != nullptr && from->loop) {
     keep_data(*from);
-    for (const MeasuredPlantAt& plant : measured_plants(*from->loop))
-      basis_ += '\n' + wrapped(basis_in_words(plant) + '.');
+    basis_ = basis_lines(*from);
   }
   text_ = !flags.output.empty() ? flags.output : json_ == "-" || csv_ == "-" ? "" : "-";
   colours_ = text_ == "-" && colours_wanted(flags.color, STDOUT_FILENO);

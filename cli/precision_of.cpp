@@ -3,6 +3,7 @@
 namespace limcycle {
 
 PrecisionReport precision_of(const Case& from, const PrecisionOptions& options) {
+  if (!from.loop) need_element(from);
   const bool friction = from.element || (from.loop && subject_of(*from.loop).opposes);
   const Element* element = from.df || friction ? &df_element(from) : nullptr;
   std::vector<DfPoint> points;

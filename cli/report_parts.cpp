@@ -6,16 +6,16 @@
 #include <cmath>
 #include <new>
 
-#include "limcycle/analysis/study/map/hunting_map.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
 #include "limcycle/analysis/study/sensitivity/local_sensitivity.hpp"
 #include "limcycle/analysis/sweep.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
-#include "limcycle/cli/commands/threshold.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/map_of.hpp"
 #include "limcycle/cli/precision_of.hpp"
+#include "limcycle/questions/map.hpp"
+#include "limcycle/questions/threshold.hpp"
 
 namespace limcycle {
 namespace {
@@ -53,7 +53,7 @@ constexpr Methods methods_of_map{true, false, false};
 ReportPart<MapReport> map_part(const ReportQuestion& ask, const std::function<void(double)>& progress) {
   MapReport report = map_of(ask.from, ask.wishes.x, ask.wishes.y, methods_of_map);
   HuntingMap& map = report.map;
-  const PredictOptions options = map_options(ask.from, methods_of_map);
+  const PredictOptions options = map_options(ask.from, methods_of_map, interrupted);
   const std::string paths[] = {map.x.path, map.y.path};
   const LoopVariation variation(ask.from, "--x, --y", paths);
   SweepOptions sweep;

@@ -32,7 +32,8 @@ install(FILES ${PROJECT_BINARY_DIR}/package/limcycle.pc DESTINATION ${CMAKE_INST
   COMPONENT development)
 
 # Headers that the program does not include, and a user may: methods that it reaches through others, laws of one's own.
-set(entries models/friction/own_law.hpp analysis/frequency/composite/composite_describing_function.hpp
+set(entries models/friction/own_law.hpp models/diagram/assemble.hpp analysis/frequency/describing_function/df_table.hpp
+  analysis/frequency/composite/composite_describing_function.hpp
   analysis/frequency/harmonic_balance/harmonic_balance.hpp analysis/orbit/simulate/ensemble.hpp analysis/orbit/cycle/floquet.hpp
   analysis/study/dissipativity.hpp analysis/study/continuation/follow.hpp analysis/study/precision/precision.hpp analysis/study/adequacy/adequate.hpp)
 set(headers ${CMAKE_INSTALL_INCLUDEDIR}/limcycle)

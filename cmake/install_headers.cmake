@@ -1,8 +1,8 @@
-# Installs the public headers and no others: those that the program is made with (cli/ includes them), those named in
-# `entries`, and all that these include in turn, of the parts that are built. Run by `cmake --install`; needs source,
-# destination, entries, parts.
+# Installs the public headers and no others: those that the program is made with (cli/ and questions/ include them),
+# those named in `entries`, and all that these include in turn, of the parts that are built. Run by `cmake --install`;
+# needs source, destination, entries, parts.
 cmake_policy(VERSION 3.25)
-file(GLOB_RECURSE commands "${source}/cli/*.cpp" "${source}/cli/*.hpp")
+file(GLOB_RECURSE commands "${source}/cli/*.[ch]pp" "${source}/questions/*.[ch]pp")
 set(own "^#include \"limcycle/((models|analysis|cases|reports)/[^\"]+)\".*")
 foreach(command IN LISTS commands)
   file(STRINGS "${command}" lines REGEX "${own}")

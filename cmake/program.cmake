@@ -2,7 +2,7 @@
 find_package(CLI11 2.1 REQUIRED)
 file(GLOB_RECURSE cli_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cli/*.cpp)
 add_executable(limcycle ${cli_sources})
-target_link_libraries(limcycle PRIVATE limcycle_options limcycle_cases limcycle_reports CLI11::CLI11 fmt::fmt
+target_link_libraries(limcycle PRIVATE limcycle_options limcycle_questions CLI11::CLI11 fmt::fmt
   nlohmann_json::nlohmann_json)
 limcycle_hardly_optimised(limcycle)
 limcycle_precompiled(limcycle <CLI/CLI.hpp> <fmt/format.h> "${PROJECT_SOURCE_DIR}/analysis/study/predict/predict.hpp")
@@ -20,4 +20,3 @@ if(LIMCYCLE_MPI)
       SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endif()
-include(cmake/provenance.cmake)

@@ -32,6 +32,18 @@ export const forms = {
     accuracy = 1e-5
     method = "quadrature"`),
   'axes: lists and numbers': also('[df]\namplitude = [1e-5, 1e-3]\nfrequency = 1.0\nbias = [-1, 0.5]'),
+  'identify: beside a loop': also(`[identify]\nlaw = ["lugre", "gms"]\nfree = ["delta"]\nfixed = {sigma2 = 0.0}\nelements = 3
+    [[identify.record]]
+    kind = "pre-sliding"
+    file = "a.csv"
+    time = 1
+    position = "x"
+    velocity = "v"
+    force = 4
+    scale = {time = 1.0, position = 1e-3, velocity = -1.0, force = 2.0}
+    skip = 0.5
+    force_limit = 10.0`),
+  'identify: alone': () => '[identify]\nlaw = "lugre"\n[[identify.record]]\nkind = "lag"\nfile = "a.csv"\n',
   'units: a symbol': also('[units]\ny = "mm"'),
   'units: a table': also('[units]\ny = {symbol = "in", per_si = 39.37}'),
   'a diagram with every linear block': () => `[diagram]

@@ -40,6 +40,8 @@ right analysis/orbit/cycle/shooting.cpp '  #  include "limcycle/analysis/cycle.h
 right analysis/study/predict/predict.cpp '#include "limcycle/analysis/frequency/root.hpp"'
 right cases/load.cpp '#include <toml++/toml.h>'
 right reports/page.cpp '#include "limcycle/analysis/orbit/cycle/shooting.hpp"'
+right questions/predict.cpp '#include "limcycle/reports/text.hpp"'
+right questions/provenance_of.cpp '#include "build_info.hpp"'
 right cli/main.cpp '#include "build_info.hpp"'
 right cli/commands/predict.cpp '#include "limcycle/cases/load.hpp"'
 right tests/analysis/root_test.cpp '#include <gsl/gsl_sf_ellint.h>'
@@ -62,6 +64,9 @@ wrong analysis/study/a.cpp '#include <nlohmann/json.hpp>' 'not a library of anal
 wrong analysis/study/a.cpp '#include "limcycle/cases/load.hpp"' "$arrow"
 wrong analysis/new/a.cpp '#include "limcycle/models/loop.hpp"' 'no rule for the folder'
 wrong cases/a.cpp '#include "limcycle/reports/page.hpp"' "$arrow"
+wrong cases/a.cpp '#include "limcycle/questions/predict.hpp"' "$arrow"
+wrong reports/a.cpp '#include "limcycle/questions/predict.hpp"' "$arrow"
+wrong questions/a.cpp '#include "limcycle/cli/options.hpp"' "$arrow"
 wrong cases/a.hpp '#include <toml++/toml.h>' 'third-party header'
 wrong cases/a.cpp '#include "limcycle/analysis/motion/steppers/rodas5p.hpp"' 'third-party types'
 wrong reports/a.cpp '#include "limcycle/cases/load.hpp"' "$arrow"

@@ -104,7 +104,11 @@ const schema = {
   $schema: 'https://json-schema.org/draft/2020-12/schema',
   title: 'A case file of limcycle: TOML, read as JSON',
   ...table(remark, { ...sections, diagram: diagram_of(ref('block')) }, [], {
-    oneOf: [{ required: ['loop'] }, { required: ['diagram'] }],
+    oneOf: [
+      { required: ['loop'] },
+      { required: ['diagram'] },
+      { required: ['identify'], properties: { loop: false, diagram: false } },
+    ],
     dependentSchemas: simulate_needs_plant,
   }),
   $defs: {

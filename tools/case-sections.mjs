@@ -192,6 +192,30 @@ const claim = table('A claim of your own: quantity comparison formula', {
   ],
 });
 
+const identified = ['coulomb', 'stribeck', 'lugre', 'elasto-plastic', 'gms'];
+const column = (description) => ({ type: ['string', 'integer'], minimum: 1, maximum: 10_000, description });
+/// Single numbers of the laws that can be identified.
+const fitted_keys = [
+  'Fc', 'Fs', 'Fc_minus', 'Fs_minus', 'vs', 'delta', 'sigma0', 'sigma1', 'sigma2', 'vd', 'zba_ratio', 'C',
+];
+
+const record = table('A file of measured friction', {
+  kind: choice(['steady-velocity', 'lag', 'pre-sliding', 'break-away'], 'which experiment'),
+  file: text('relative to the folder of the case'),
+  time: column('name or number of the column of times; default "time"'),
+  position: column('of positions; default "position"'),
+  velocity: column('of velocities; default "velocity"'),
+  force: column('of friction forces; default "force"'),
+  scale: table('factors of the columns', {
+    time: number('of the times', positive),
+    position: number('of the positions', { not: { const: 0 } }),
+    velocity: number('of the velocities', { not: { const: 0 } }),
+    force: number('of the forces', { not: { const: 0 } }),
+  }),
+  skip: number('from the first row, without comparison, s', { minimum: 0, default: 0 }),
+  force_limit: number('of the force sensor: rows at it or beyond are not compared, N', positive),
+}, ['kind', 'file']);
+
 export const sections = {
   title: text("a line for the reader; default: the file's name"),
   loop: ref('loop'),
@@ -252,6 +276,19 @@ export const sections = {
     samples: integer(1, 100_000_000, 'base samples of the Sobol study', { default: 1024 }),
     seed: integer(0, 2147483647, 'of everything random', { default: 0 }),
   }, ['parameters']),
+  identify: table('Friction laws to be fitted to records', {
+    law: {
+      description: 'which law, or a list of them, which is ranked; default all',
+      oneOf: [
+        { enum: identified },
+        { type: 'array', items: { enum: identified }, minItems: 1, uniqueItems: true },
+      ],
+    },
+    free: { type: 'array', items: { enum: fitted_keys }, description: 'keys fitted although they have a default' },
+    fixed: { type: 'object', propertyNames: { enum: fitted_keys }, additionalProperties: { type: 'number', minimum: 0 }, description: 'keys held at a value' },
+    elements: integer(1, 12, 'parallel elements of gms', { default: 4 }),
+    record: { type: 'array', items: ref('record'), minItems: 1, maxItems: 100, description: 'files of measured friction' },
+  }, ['record']),
   claim: { type: 'array', items: ref('claim'), maxItems: 1000, description: 'Claims of your own' },
 };
 
@@ -260,6 +297,7 @@ export const definitions = {
   loop,
   signal,
   spread,
+  record,
   claim,
   ...Object.fromEntries(Object.keys(signal_kinds).map(signal_definition)),
 };

@@ -17,22 +17,23 @@ void check_feedforward(const case_file::Document& document, const Case& from) {
                           "accelerates, and acceleration_feedforward is not simulated: use a constant, step or ramp");
 }
 
-Case read_document(const case_file::Document& document) {
+Case read_document(const case_file::Document& document, const std::optional<Element>& own) {
   const case_file::Section top(document, document.root, "");
   top.allow({"title", "loop", "diagram", "units", "search", "df", "simulate", "predict", "sensitivity", "dissipativity",
-             "claim"});
+             "claim", "identify"});
   Case result;
+  result.own = own;
   result.file = document.file;
   result.overrides = document.overrides;
   result.title = std::filesystem::path(document.file).stem().string();
   if (const auto title = top.find("title")) result.title = case_file::read_string(*title);
 
-  const auto loop = top.section("loop"), diagram = top.section("diagram");
-  if (!loop && !diagram) throw top.error("loop", "is required: a case needs [loop] or [diagram]");
+  const auto loop = top.section("loop"), diagram = top.section("diagram"), identify = top.section("identify");
+  if (!loop && !diagram && !identify) throw top.error("loop", "is required: a case needs [loop] or [diagram]");
   if (loop && diagram) throw top.error("diagram", "cannot stand beside [loop]: the diagram is the whole loop");
   if (loop)
     case_file::read_loop(*loop, result);
-  else
+  else if (diagram)
     case_file::read_diagram(*diagram, result);
   if (const auto units = top.section("units")) result.y_unit = case_file::read_units(*units);
   if (const auto search = top.section("search")) result.predict.search = case_file::read_search(*search);
@@ -46,6 +47,7 @@ Case read_document(const case_file::Document& document) {
   if (const auto energy = top.section("dissipativity")) result.dissipativity = case_file::read_dissipativity(*energy);
   if (const auto sensitivity = top.section("sensitivity"))
     result.sensitivity = case_file::read_sensitivity(*sensitivity, result);
+  if (identify) result.identify = case_file::read_identify(*identify);
   if (const auto claims = top.find("claim")) result.claims = case_file::read_claims(*claims, result);
   return result;
 }
@@ -66,14 +68,19 @@ std::vector<DfPoint> DfSection::points() const {
   return all;
 }
 
-Case read_case(std::string_view text, const std::string& file, const std::vector<std::string>& overrides) {
+Case read_case(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,
+               const std::optional<Element>& own) {
   case_file::check_text(text, file);
   case_file::Document document = case_file::parse(text, file);
   for (const auto& override : overrides) case_file::apply_override(document, override);
-  Case result = read_document(document);
+  Case result = read_document(document, own);
   result.text = text;
-  result.sha256 = sha256(text);
+  if (!own) result.sha256 = sha256(text);
   return result;
+}
+
+Case read_again(const Case& from, const std::vector<std::string>& overrides) {
+  return read_case(from.text, from.file, overrides, from.own);
 }
 
 Case load_case(const std::string& file, const std::vector<std::string>& overrides) {
@@ -81,8 +88,16 @@ Case load_case(const std::string& file, const std::vector<std::string>& override
 }
 
 const LoopParts& need_loop(const Case& from) {
-  if (!from.loop) throw missing(from, "loop.plant", "is required by this command: the case holds a lone element");
+  if (!from.loop)
+    throw missing(from, "loop.plant",
+                  from.element ? "is required by this command: the case holds a lone element"
+                               : "is required by this command: the case holds records only");
   return *from.loop;
+}
+
+const Element& need_element(const Case& from) {
+  if (!from.element) throw missing(from, "loop", "is required by this command: the case holds records only");
+  return *from.element;
 }
 
 const DfSection& need_df(const Case& from) {
@@ -96,7 +111,7 @@ const SimulateOptions& need_simulate(const Case& from) {
 }
 
 const Element& df_element(const Case& from) {
-  if (!from.loop) return *from.element;
+  if (!from.loop) return need_element(from);
   const Subject subject = subject_of(*from.loop);
   if (subject.element == nullptr)
     throw missing(from, "diagram", "has several friction laws or elements: a describing function is of one");

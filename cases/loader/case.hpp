@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -6,8 +7,10 @@
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/analysis/orbit/simulate/simulate.hpp"
 #include "limcycle/analysis/study/claims/user_claim.hpp"
+#include "limcycle/analysis/study/identify/identify.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/analysis/study/sensitivity/parameter_spread.hpp"
+#include "limcycle/cases/loader/csv_reader.hpp"
 #include "limcycle/cases/loader/input_error.hpp"
 #include "limcycle/models/loop.hpp"
 
@@ -36,16 +39,35 @@ struct OutputUnit {
   double per_si = 1.0;  ///< y in this unit over y in the unit of the case
 };
 
+/// [[identify.record]]: a file of measured friction, and which of its columns hold what.
+struct RecordFile {
+  RecordKind kind = RecordKind::steady_velocity;
+  std::string path;                                   ///< from the working folder
+  std::array<std::optional<CsvColumn>, 4> columns{};  ///< time, position, velocity, force; empty: by these names
+  std::array<double, 4> scale{1.0, 1.0, 1.0, 1.0};    ///< factors of the columns
+  double skip = 0.0;                                  ///< s
+  double force_limit = infinite;                      ///< N
+};
+
+/// [identify]: laws to be fitted to records.
+struct IdentifySection {
+  std::vector<Element> laws;
+  std::vector<RecordFile> records;
+  FreeChoice choice;
+};
+
 /// A case file, read and validated.
 struct Case {
   std::string title;                   ///< default: name of the file without folder and extension
   std::string file;                    ///< as named on the command line
   std::string text;                    ///< bytes of the file
-  std::string sha256;                  ///< of these bytes, 64 hexadecimal digits
+  std::string sha256;                  ///< of these bytes, 64 hexadecimal digits; empty with a law that no file holds
   std::vector<std::string> overrides;  ///< "PATH=VALUE" in the order in which they were applied
 
-  std::optional<LoopParts> loop;   ///< empty: a case for describing functions of a lone element
-  std::optional<Element> element;  ///< the lone element; empty if there is a loop
+  std::optional<Element> own;  ///< the friction law that `kind = "own"` stands for
+
+  std::optional<LoopParts> loop;   ///< empty: a case for a lone element, or for records only
+  std::optional<Element> element;  ///< the lone element; empty if there is a loop, or records only
   std::string element_path;        ///< "loop.friction", "loop.element" or "loop.error": the subject of `df`
 
   std::optional<OutputUnit> y_unit;
@@ -53,6 +75,7 @@ struct Case {
   std::optional<SimulateOptions> simulate;  ///< duration, initial, force, reference, stepper, rtol, sample are set
   std::optional<ParameterSpread> sensitivity;
   DissipativitySection dissipativity;
+  std::optional<IdentifySection> identify;
   std::vector<UserClaim> claims;
   PredictOptions predict;  ///< search (from [search]), starts and accuracy are set
 };
@@ -65,17 +88,26 @@ inline constexpr std::size_t largest_case_file = std::size_t{1} << 20;
 /// Throws InputError for anything wrong with the file, its contents or an override.
 Case load_case(const std::string& file, const std::vector<std::string>& overrides = {});
 
-/// The same from text; `file` is used in messages only.
-Case read_case(std::string_view text, const std::string& file, const std::vector<std::string>& overrides = {});
+/// The same from text; `file` is used in messages, and its folder for the files that the case names. `own`: the
+/// friction law that [loop.friction] kind = "own" stands for (see own_law()); without, that kind is refused.
+Case read_case(std::string_view text, const std::string& file, const std::vector<std::string>& overrides = {},
+               const std::optional<Element>& own = {});
+
+/// The case with these overrides in the place of its own ones, read again. Throws InputError.
+Case read_again(const Case& from, const std::vector<std::string>& overrides);
 
 /// Parts of a case that a command needs; each throws an InputError that names the missing section.
 const LoopParts& need_loop(const Case& from);
+const Element& need_element(const Case& from);  ///< the lone element
 const DfSection& need_df(const Case& from);
 const SimulateOptions& need_simulate(const Case& from);
 
 /// The element whose describing function `df` computes: the lone element, else the friction, else the forward element,
 /// else the one on the error.
 const Element& df_element(const Case& from);
+
+/// The laws and records of [identify], the files read now. Throws InputError for a missing section or a bad file.
+IdentifyRequest identify_request(const Case& from);
 
 /// The case's own claims, ready to be tested.
 std::vector<Claim> claims_of(const Case& from);

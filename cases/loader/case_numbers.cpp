@@ -25,7 +25,7 @@ void append(std::vector<CaseNumber>& list, const std::string& section, const std
 std::vector<CaseNumber> numbers_of(const Case& from) {
   std::vector<CaseNumber> list;
   if (!from.loop) {
-    append(list, from.element_path, from.element->parameters(), from.element->values());
+    if (from.element) append(list, from.element_path, from.element->parameters(), from.element->values());
     return list;
   }
   const LoopParts& parts = *from.loop;
@@ -44,7 +44,7 @@ std::vector<CaseNumber> numbers_of(const Case& from) {
   return list;
 }
 
-CaseNumber number_at(const Case& from, const std::string& flag, const std::string& path) {
+CaseNumber number_at(const Case& from, const std::string& argument, const std::string& path) {
   const auto list = numbers_of(from);
   const auto found = std::ranges::find(list, path, &CaseNumber::path);
   if (found != list.end()) return *found;
@@ -54,22 +54,24 @@ CaseNumber number_at(const Case& from, const std::string& flag, const std::strin
   throw InputError({.file = {},
                     .line = 0,
                     .override = {},
-                    .key = flag + " " + path,
-                    .value = {},
+                    .key = argument,
+                    .value = path,
                     .rule = "is not a parameter of this loop that is one number",
                     .suggestion = suggest(path, paths)});
 }
 
+std::string override_of(const std::string& path, double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  const std::string number = text;
+  return path + "=" + number + (number.find_first_of(".en") == std::string::npos ? ".0" : "");
+}
+
 std::optional<Case> case_with(const Case& from, std::span<const std::pair<std::string, double>> values) {
   auto overrides = from.overrides;
-  for (const auto& [path, value] : values) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    const std::string number = text;
-    overrides.push_back(path + "=" + number + (number.find_first_of(".en") == std::string::npos ? ".0" : ""));
-  }
+  for (const auto& [path, value] : values) overrides.push_back(override_of(path, value));
   try {
-    return read_case(from.text, from.file, overrides);
+    return read_again(from, overrides);
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -22,8 +22,11 @@ struct CaseNumber {
 /// All of them: plant, controller, friction, elements, then reference and load; for a lone element its own.
 std::vector<CaseNumber> numbers_of(const Case& from);
 
-/// The number at a path. Throws InputError (of `flag`, such as "--parameter") if there is none.
-CaseNumber number_at(const Case& from, const std::string& flag, const std::string& path);
+/// The number at a path. Throws InputError (of `argument`, such as "--parameter") if there is none.
+CaseNumber number_at(const Case& from, const std::string& argument, const std::string& path);
+
+/// A value at a path as `--set` takes it, "loop.controller.kd=8.0".
+std::string override_of(const std::string& path, double value);
 
 /// The case with other values at some paths, read as `--set` would; empty if that is not a valid case.
 std::optional<Case> case_with(const Case& from, std::span<const std::pair<std::string, double>> values);

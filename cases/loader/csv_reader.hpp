@@ -16,9 +16,10 @@ using CsvColumn = std::variant<std::size_t, std::string>;
 ///
 /// Fields are separated by commas, semicolons, tabs or blanks, whichever the first row shows (a tab before a semicolon
 /// before a comma before blanks). Lines that are empty or begin with # or % are comments. The first row is a header if
-/// one of its fields is no number; names may stand in double quotes. A byte order mark and line ends of any kind are
-/// taken. Every field of a row that is asked for must be a finite number with a decimal point, and every row must have
-/// as many fields as the first.
+/// one of its fields is no number; without one, the comment before it is, if it has as many fields. Names may stand in
+/// double quotes and have a unit in brackets, "force [N]", which a column's name need not repeat. A byte order mark and
+/// line ends of any kind are taken. Every field of a row that is asked for must be a finite number, with a decimal
+/// point or, between semicolons or tabs, a decimal comma, and every row must have as many fields as the first.
 class CsvReader {
  public:
   /// Opens the file and reads its header. Throws InputError if it is missing, a directory, unreadable, binary, or holds
@@ -31,7 +32,10 @@ class CsvReader {
   /// Fields in a row.
   std::size_t width() const { return width_; }
 
-  /// Chooses what next() returns. Throws InputError for a column that the file does not have.
+  /// True for a column that the file has.
+  bool has(const CsvColumn& column) const;
+
+  /// Chooses what next() returns. Throws InputError for a column that the file does not have, or has twice.
   void choose(const std::vector<CsvColumn>& columns);
 
   /// The numbers of the next row in the columns chosen, or false at the end. Throws InputError with file, line and
@@ -47,13 +51,15 @@ class CsvReader {
  private:
   bool next_line();
   bool next_row();
-  void split();
+  std::vector<std::string_view> fields_in(std::string_view row) const;
+  bool is_number(std::string_view field, double& number) const;
   double number(std::size_t column) const;
+  std::vector<std::size_t> places_of(const CsvColumn& column) const;
   std::string name_of(std::size_t column) const;
 
   std::string file_;
   std::ifstream in_;
-  std::string row_;
+  std::string row_, comment_;             ///< the last of each
   std::vector<std::string_view> fields_;  ///< of row_
   std::vector<std::string> header_;
   std::vector<std::size_t> columns_;  ///< from 0

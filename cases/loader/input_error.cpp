@@ -21,7 +21,7 @@ std::string message_of(const InputFault& fault) {
   const bool shown = !fault.override.empty() && fault.override.substr(0, fault.override.find('=')) == fault.key;
   if (!shown && !fault.key.empty()) {
     text += one_line(fault.key, 120);
-    if (!fault.value.empty()) text += " = " + one_line(fault.value, 80);
+    if (!fault.value.empty()) text += (fault.key.starts_with("--") ? " " : " = ") + one_line(fault.value, 120);
     text += ": ";
   }
   text += one_line(fault.rule, 600);

@@ -6,7 +6,14 @@
 namespace limcycle::case_file {
 namespace {
 
-Element read_friction(const Section& section) {
+Element read_friction(const Section& section, const std::optional<Element>& own) {
+  const auto kind = section.find("kind");
+  const auto* name = kind ? kind->value.as<std::string>() : nullptr;
+  if (name != nullptr && *name == "own") {
+    if (!own) throw kind->error("stands for a law of one's own, which C++ or Python hands over: no file holds it");
+    section.allow({"kind"});
+    return *own;
+  }
   return read_element(section, catalogue_of_elements().friction_laws,
                       {.what = "friction law",
                        .elsewhere = limcycle::kinds_of(catalogue_of_elements().forward_elements),
@@ -100,14 +107,14 @@ void read_loop(const Section& section, Case& into) {
 
   into.element_path = friction ? "loop.friction" : element ? "loop.element" : "loop.error";
   if (lone) {
-    into.element = friction ? read_friction(*friction) : read_series(*element);
+    into.element = friction ? read_friction(*friction, into.own) : read_series(*element);
     return;
   }
   LoopParts parts;
   parts.plant = read_plant(*plant);
   parts.controller = read_controller(controller);
   if (element) parts.element = read_series(*element);
-  if (friction) parts.friction = read_friction(*friction);
+  if (friction) parts.friction = read_friction(*friction, into.own);
   if (error) parts.error = read_error(*error);
   if (const auto reference = section.find("reference")) read_reference(*reference, parts);
   if (const auto load = section.find("load")) parts.load = read_number(*load);

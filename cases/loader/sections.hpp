@@ -37,6 +37,9 @@ ParameterSpread read_sensitivity(const Section& section, const Case& from);
 /// A list of {path, distribution, ...}: the distributions of some of these numbers.
 std::vector<SpreadParameter> read_spread_list(const Place& list, const std::vector<CaseNumber>& numbers);
 
+/// [identify]; the files of its records are not read.
+IdentifySection read_identify(const Section& section);
+
 /// [[claim]]; `from`: the case, whose loop is already read.
 std::vector<UserClaim> read_claims(const Place& list, const Case& from);
 

@@ -9,7 +9,7 @@
 #include "limcycle/cli/option_values.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
-#include "limcycle/cli/units_of.hpp"
+#include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/adequacy/adequate.hpp"
 #include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/number.hpp"

@@ -6,8 +6,8 @@
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/output.hpp"
-#include "limcycle/cli/units_of.hpp"
 #include "limcycle/models/linear/dense.hpp"
+#include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/figures/block_diagram.hpp"
 #include "limcycle/reports/figures/fit_picture.hpp"
 #include "limcycle/reports/figures/staircase.hpp"
@@ -67,7 +67,7 @@ CheckSummary summary_of(const Case& from) {
     describe_poles(loop, summary);
     summary.search = from.predict.search ? from.predict.search : default_search_box(loop);
     summary.search_from_case = from.predict.search.has_value();
-  } else {
+  } else if (from.element) {
     summary.elements.push_back({from.element_path, std::string(from.element->kind())});
     const int states = from.element->states();
     for (int i = 0; i < states; ++i)
@@ -81,6 +81,9 @@ CheckSummary summary_of(const Case& from) {
   if (from.sensitivity)
     summary.sections.push_back(fmt::format("sensitivity: {} parameters, {} samples",
                                            from.sensitivity->parameters.size(), from.sensitivity->samples));
+  if (from.identify)
+    summary.sections.push_back(
+        fmt::format("identify: {} laws, {} records", from.identify->laws.size(), from.identify->records.size()));
   return summary;
 }
 
@@ -92,8 +95,7 @@ struct CheckFlags : CommonFlags {
 int check(CheckFlags flags) {
   if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
   const Case from = load_case(flags);
-  if (!flags.picture.empty() && !from.loop)
-    throw std::invalid_argument("--svg: the case holds a lone element; there is no loop to draw");
+  if (!flags.picture.empty() && !from.loop) throw std::invalid_argument("--svg: the case holds no loop to draw");
   const auto plants = from.loop ? measured_plants(*from.loop) : std::vector<MeasuredPlantAt>();
   if (!flags.fit.empty() && plants.empty())
     throw std::invalid_argument("--fit: the case has no measured plant (kind = \"frf\"); there is no fit to draw");

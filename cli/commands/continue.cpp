@@ -1,15 +1,13 @@
 #include <CLI/CLI.hpp>
-#include <cmath>
 
-#include "limcycle/cases/loader/case_numbers.hpp"
-#include "limcycle/cases/loader/loop_variation.hpp"
+#include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/parameter_range.hpp"
 #include "limcycle/cli/progress.hpp"
-#include "limcycle/cli/units_of.hpp"
+#include "limcycle/questions/continue.hpp"
+#include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/continuation/continue.hpp"
 #include "limcycle/reports/in_units.hpp"
 
@@ -42,15 +40,7 @@ int run(ContinueFlags flags) {
   ContinueReport report{range.path, number.unit, {}};
   {
     Progress progress(flags.quiet, flags.verbose);
-    FollowOptions options;
-    options.continuation.from = range.from;
-    options.continuation.to = range.to;
-    options.predict = from.predict;
-    options.predict.stop = interrupted;
-    options.predict.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
-    if (std::isfinite(number.value)) options.own = number.value;
-    catch_interrupts();
-    report.found = follow(LoopVariation(from, "--parameter", range.path), options);
+    report.found = ask_continue(from, number, range.from, range.to, asking_of(flags, progress));
   }
   const auto made = provenance(flags, &from);
   const ContinueReport shown = in_units(report, units);

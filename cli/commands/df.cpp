@@ -1,13 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "limcycle/analysis/frequency/describing_function/df_table.hpp"
+#include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/message.hpp"
-#include "limcycle/cli/need_memory.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/ranks/sweep.hpp"
+#include "limcycle/questions/df.hpp"
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/text.hpp"
@@ -15,52 +15,23 @@
 namespace limcycle {
 namespace {
 
-/// The results from the first point on up to the first gap.
-std::vector<DescribingFunction> sweep_table(const Case& from, const std::vector<DfPoint>& points,
-                                            const DfOptions& options, const SweepFlags& flags) {
-  DfTable table(df_element(from), points, options);
-  const auto columns = df_columns(options.harmonics);
-  SweepTask task{points.size(), columns.size(), table.block(), {}};
-  task.compute = [&](std::span<const std::size_t> which, std::span<double> rows) {
-    std::vector<DescribingFunction> results(which.size());
-    const std::size_t finished = table.compute(which, results, interrupted);
-    for (std::size_t i = 0; i < finished; ++i)
-      std::ranges::copy(df_to_row(results[i]), rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
-    return finished;
-  };
-  const SweptRows swept = run_stored(task, columns, "df " + std::string(to_string(options.isa)), flags, from);
-  std::vector<DescribingFunction> results;
-  results.reserve(points.size());
-  for (std::size_t k = 0; k < points.size() && swept.known[k]; ++k)
-    results.push_back(df_of_row(std::span(swept.rows).subspan(k * columns.size(), columns.size())));
-  return results;
-}
-
-/// Rows, results and the documents of a table are in memory at the same time.
-void need_memory_for(const DfSection& section, const SweepFlags& flags) {
-  const double harmonics = section.options.harmonics;
-  double bytes = 8.0 * (9.0 + 2.0 * harmonics) + 16.0 * harmonics + sizeof(DescribingFunction) + 2.0 * sizeof(DfPoint);
-  if (!flags.json.empty()) bytes += 260.0 + 45.0 * harmonics;
-  if (!flags.csv.empty()) bytes += 150.0 + 45.0 * harmonics;
-  need_memory("df", static_cast<double>(section.size()), bytes, "fewer points or harmonics");
-}
-
 int run(const SweepFlags& flags) {
   const Case from = load_case(flags);
   const DfSection& section = need_df(from);
-  need_memory_for(section, flags);
+  need_memory_for(section, {!flags.json.empty(), !flags.csv.empty()});
   const auto points = section.points();
-  DfOptions options = section.options;
-  options.isa = instruction_set(flags);
-  options.threads = flags.threads;
   Output output(flags);
   output.keep("the store", flags.store);
 
-  const auto results = sweep_table(from, points, options, flags);
+  Progress silent(true);  // the sweep shows its own
+  const Asking asking = asking_of(flags, silent);
+  const auto results = ask_df(from, section, asking, [&](const auto& task, const auto& columns, const auto& design) {
+    return run_stored(task, columns, design, flags, from);
+  });
   const Status ended = results.size() < points.size() ? ending_so_far() : Status::converged;
   output.text(first_line(flags, ended) + df_text(from.title, points, results));
   Provenance made = provenance(flags, &from);
-  made.isa = to_string(options.isa);
+  made.isa = to_string(asking.isa);
   if (output.wants_json()) output.json(df_json(made, points, results));
   if (output.wants_csv()) output.csv(df_csv(points, results));
   output.finish();

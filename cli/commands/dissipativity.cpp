@@ -1,13 +1,13 @@
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/message.hpp"
 #include "limcycle/cli/option_values.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/parameter_range.hpp"
 #include "limcycle/cli/progress.hpp"
+#include "limcycle/questions/dissipativity.hpp"
 #include "limcycle/reports/dissipativity/dissipativity.hpp"
 
 namespace limcycle {
@@ -20,55 +20,15 @@ struct DissipativityFlags : CommonFlags {
   double top_speed = 0.0;
 };
 
-/// The number of the element that a flag names, checked against the element.
-PassivityRange range_of(const Case& from, const DissipativityFlags& flags) {
-  const ParameterRange range = parameter_range("--parameter", flags.parameter);
-  const std::string path = !from.loop ? from.element_path : subject_of(*from.loop).path;
-  const auto refuse = [&](const std::string& rule) {
-    return InputError({.file = {},
-                       .line = 0,
-                       .override = {},
-                       .key = "--parameter " + flags.parameter,
-                       .value = {},
-                       .rule = rule,
-                       .suggestion = {}});
-  };
-  if (!range.path.starts_with(path + ".")) throw refuse("must be a number of the element examined, " + path + ".KEY");
-  if (!(range.from < range.to)) throw refuse("FROM must be less than TO");
-  const std::string key = range.path.substr(path.size() + 1);
-  try {
-    family_of(df_element(from), key);
-  } catch (const std::invalid_argument& no_such_number) {
-    throw refuse(no_such_number.what());
+DissipativityWishes wishes_of(const DissipativityFlags& flags) {
+  DissipativityWishes wishes{flags.speed, flags.top_speed, {}, 0.0, 0.0, "--parameter"};
+  if (!flags.parameter.empty()) {
+    const ParameterRange range = parameter_range("--parameter", flags.parameter);
+    wishes.path = range.path;
+    wishes.from = range.from;
+    wishes.to = range.to;
   }
-  return {key, range.from, range.to};
-}
-
-DissipativityReport compute(const Case& from, const DissipativityFlags& flags) {
-  DissipativityOptions options;
-  options.speed = flags.speed > 0.0 ? flags.speed : from.dissipativity.speed;
-  options.passivity.top_speed = flags.top_speed > 0.0 ? flags.top_speed : from.dissipativity.top_speed;
-  options.passivity.seed = flags.seed;
-  options.predict = from.predict;
-  if (!flags.parameter.empty()) options.range = range_of(from, flags);
-  Progress progress(flags.quiet, flags.verbose);
-  options.passivity.stop = interrupted;
-  options.passivity.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
-  catch_interrupts();
-  if (!from.loop) return dissipativity(*from.element, from.element_path, options);
-  const Subject subject = subject_of(*from.loop);
-  if (subject.element == nullptr || subject.path == "loop.error")
-    throw InputError(
-        {.file = from.file,
-         .line = 0,
-         .override = {},
-         .key = from.loop->diagram ? "diagram" : "loop.friction",
-         .value = {},
-         .rule = from.loop->diagram
-                     ? "has several friction laws or elements: this command examines one"
-                     : "is required by this command: the loop holds neither friction nor a forward element",
-         .suggestion = {}});
-  return dissipativity(*from.loop, options);
+  return wishes;
 }
 
 int run(DissipativityFlags flags) {
@@ -76,14 +36,16 @@ int run(DissipativityFlags flags) {
   const Case from = load_case(flags);
   Output output(flags, &from);
   output.check_file("--html", flags.html);
-  const DissipativityReport report = answer_of([&] { return compute(from, flags); });
+  const DissipativityWishes wishes = wishes_of(flags);
+  DissipativityReport report;
+  {
+    Progress progress(flags.quiet, flags.verbose);
+    report = answer_of([&] { return ask_dissipativity(from, wishes, asking_of(flags, progress)); });
+  }
   const auto made = provenance(flags, &from);
   std::string text = dissipativity_text(from.title, report);
   if (!flags.html.empty()) {
-    std::string again = flags.parameter.empty() ? "" : "--parameter " + flags.parameter;
-    if (flags.speed > 0.0) again += fmt::format(" --speed {}", flags.speed);
-    if (flags.top_speed > 0.0) again += fmt::format(" --top-speed {}", flags.top_speed);
-    output.file(flags.html, dissipativity_page(report, made, from.text, again));
+    output.file(flags.html, dissipativity_page(report, made, from.text, flags_of(wishes)));
     text += page_line(flags.html);
   }
   output.text(first_line(flags, report.status) + text);

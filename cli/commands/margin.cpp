@@ -1,15 +1,13 @@
 #include <CLI/CLI.hpp>
-#include <cmath>
 
-#include "limcycle/cases/loader/case_numbers.hpp"
-#include "limcycle/cases/loader/loop_variation.hpp"
+#include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/message.hpp"
 #include "limcycle/cli/option_values.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
-#include "limcycle/cli/units_of.hpp"
+#include "limcycle/questions/margin.hpp"
+#include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/in_units.hpp"
 
@@ -22,40 +20,6 @@ struct MarginFlags : CommonFlags {
   std::vector<std::string> parameters;  ///< --parameter PATH, repeatable; empty: all
 };
 
-MarginParameter parameter_of(const Case& from, const CaseNumber& number) {
-  return {number.path, number.unit, number.value, number.path.starts_with("loop.friction."),
-          LoopVariation(from, "--parameter", number.path)};
-}
-
-/// The requested parameters, or all that a factor can change; those left out go into `notes`.
-std::vector<MarginParameter> parameters_of(const Case& from, const MarginFlags& flags,
-                                           std::vector<std::string>& notes) {
-  std::vector<MarginParameter> chosen;
-  for (const auto& path : flags.parameters) {
-    const CaseNumber number = number_at(from, "--parameter", path);
-    if (number.value == 0.0 || !std::isfinite(number.value))
-      throw InputError({.file = {},
-                        .line = 0,
-                        .override = {},
-                        .key = "--parameter " + path,
-                        .value = {},
-                        .rule = "is zero or absent: no factor changes it",
-                        .suggestion = {}});
-    chosen.push_back(parameter_of(from, number));
-  }
-  if (!chosen.empty()) return chosen;
-  std::string zero;
-  for (const auto& number : numbers_of(from)) {
-    if (number.follows || !std::isfinite(number.value)) continue;
-    if (number.value != 0.0)
-      chosen.push_back(parameter_of(from, number));
-    else
-      zero += (zero.empty() ? "" : ", ") + number.path;
-  }
-  if (!zero.empty()) notes.push_back("skipped, because the value is 0: " + zero);
-  return chosen;
-}
-
 int exit_code(const MarginReport& report) {
   const bool nothing = report.parameters.empty() && !report.balance;
   return !report.refused.empty() || report.status == Status::interrupted ||
@@ -67,23 +31,17 @@ int exit_code(const MarginReport& report) {
 int run(MarginFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
-  const LoopParts& parts = need_loop(from);
+  need_loop(from);
   const Units units = units_of(from);
   std::vector<std::string> notes;
-  const auto parameters = parameters_of(from, flags, notes);
+  const auto parameters = margin_parameters(from, "--parameter", flags.parameters, notes);
   Output output(flags, &from);
   output.check_file("--html", flags.html);
 
   MarginReport report;
   {
     Progress progress(flags.quiet, flags.verbose);
-    MarginOptions options;
-    options.factor = flags.factor;
-    options.predict = from.predict;
-    options.predict.stop = interrupted;
-    options.predict.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
-    catch_interrupts();
-    report = answer_of([&] { return margin(build_loop(parts), parameters, options); });
+    report = answer_of([&] { return ask_margin(from, parameters, flags.factor, asking_of(flags, progress)); });
   }
   report.notes.insert(report.notes.end(), notes.begin(), notes.end());
   const auto made = provenance(flags, &from);

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/decided.hpp"
 #include "limcycle/cli/from_page.hpp"
@@ -8,7 +9,8 @@
 #include "limcycle/cli/message.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
-#include "limcycle/cli/units_of.hpp"
+#include "limcycle/questions/predict.hpp"
+#include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/figures/picture.hpp"
 #include "limcycle/reports/html.hpp"
@@ -50,7 +52,7 @@ int run(PredictFlags flags) {
   sort_out(flags);
   const CaseWithPage loaded = load_case_or_page(flags, flags.from);
   const Case& from = loaded.from;
-  const LoopParts& parts = need_loop(from);
+  need_loop(from);
   const Units units = units_of(from);
   Output output(flags);
   output.keep_data(from);
@@ -61,11 +63,7 @@ int run(PredictFlags flags) {
   PredictReport report;
   {
     Progress progress(flags.quiet, flags.verbose);
-    PredictOptions options = from.predict;
-    options.stop = interrupted;
-    options.progress = [&](double fraction, std::string_view what) { progress.show(fraction, what); };
-    catch_interrupts();
-    report = answer_of([&] { return predict(build_loop(parts), options); });
+    report = answer_of([&] { return ask_predict(from, asking_of(flags, progress)); });
   }
   const auto made = provenance(flags, &from);
   const PredictReport shown = in_units(report, units);

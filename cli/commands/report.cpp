@@ -12,7 +12,7 @@
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/cli/report_parts.hpp"
-#include "limcycle/cli/units_of.hpp"
+#include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"

@@ -1,12 +1,12 @@
 #include <CLI/CLI.hpp>
 
+#include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/message.hpp"
-#include "limcycle/cli/need_memory.hpp"
 #include "limcycle/cli/output.hpp"
 #include "limcycle/cli/progress.hpp"
-#include "limcycle/cli/units_of.hpp"
+#include "limcycle/questions/simulate.hpp"
+#include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
@@ -20,52 +20,16 @@ struct SimulateFlags : CommonFlags {
   bool no_audit = false;  ///< --no-audit
 };
 
-/// The run, its energy balance, and its comparison with a second run at other tolerances, if wanted and time allowed.
-struct Answered {
-  Simulation run;
-  std::optional<Agreement> second;
-  std::optional<EnergyBalance> energy;
-};
-
-/// The samples, and documents of them, are in memory at the same time.
-void need_memory_for(const Case& from, const SimulateFlags& flags) {
-  const SimulateOptions& options = need_simulate(from);
-  if (options.sample == 0.0) return;
-  const double numbers = 2.0 + static_cast<double>(build_loop(*from.loop).states());
-  const double bytes_a_number = 8.0 + (flags.json.empty() ? 0.0 : 150.0) + (flags.csv.empty() ? 0.0 : 12.0);
-  need_memory("simulate.sample", options.duration / options.sample, 40.0 + numbers * bytes_a_number, "fewer samples");
-}
-
-Answered compute(const Case& from, const SimulateFlags& flags) {
+SimulateAnswer compute(const Case& from, const SimulateFlags& flags) {
   Progress progress(flags.quiet, flags.verbose);
-  const Loop loop = build_loop(*from.loop);
-  SimulateOptions options = need_simulate(from);
-  const double share = flags.no_check ? 1.0 : 0.4;
-  options.stop = interrupted;
-  options.progress = [&](double fraction) { progress.show(share * fraction, "simulation"); };
-  catch_interrupts();
-  std::optional<EnergyAudit> audit;
-  if (!flags.no_audit && has_energy(*from.loop)) {
-    audit.emplace(*from.loop, loop, options.rtol);
-    options.watch = [&](LoopField& field, March& march, const std::vector<Mode>& modes) {
-      audit->step(field, march, modes);
-    };
-  }
-  Answered result{simulate(loop, options), {}, {}};
-  if (audit) result.energy = audit->balance();
-  options.watch = {};
-  if (flags.no_check || result.run.status != Status::converged) return result;
-  options.progress = [&](double fraction) { progress.show(share + (1.0 - share) * fraction, "at other tolerances"); };
-  const Agreement second = agreement(loop, options, result.run);
-  if (second.status != Status::interrupted) result.second = second;
-  return result;
+  return ask_simulate(from, !flags.no_check, !flags.no_audit, asking_of(flags, progress));
 }
 
 int run(SimulateFlags flags) {
   // The result of a run is its samples: -o is their file, and the summary stays on stdout.
   if (flags.csv.empty()) flags.csv = std::exchange(flags.output, {});
   const Case from = load_case(flags);
-  need_memory_for(from, flags);
+  need_memory_for(from, {!flags.json.empty(), !flags.csv.empty()});
   Output output(flags, &from);
   const auto [result, second, energy] = compute(from, flags);
   const Units units = units_of(from);

@@ -87,6 +87,13 @@ std::vector<Description> what_if() {
        "the margin. Where a cycle ends at a fold, the fold itself is located.",
        {{"limcycle margin cases/relay-third-order.toml", "every number that is not 0"},
         {"limcycle margin cases/tutorial-servo.toml --parameter loop.friction.Fs --factor 3", "one number only"}}},
+      {"remedy",
+       change_group,
+       "Finds why a loop hunts, by taking one feature away at a time, and tries the known remedies: for each the value "
+       "nearest to the present at which no start hunts any more, confirmed by predictions on both sides, and what the "
+       "loop then costs in error, speed, margins and noise. --apply writes the case with one of them.",
+       {{"limcycle remedy cases/belt-squeal.toml --threads 2", "the cause, and all remedies"},
+        {"limcycle remedy cases/over-compensated.toml --apply gain-kp -o fixed.toml", "the case with one remedy"}}},
       {"continue",
        change_group,
        "Follows the limit cycles, stable and unstable, over a range of one number, around folds and to their ends. It "
@@ -121,6 +128,24 @@ std::vector<Description> what_if() {
 
 std::vector<Description> enough() {
   return {
+      {"identify",
+       trust_group,
+       "Fits the friction laws of [identify] to measured records: force against steady velocity, sliding with a "
+       "varying "
+       "velocity, small motions before sliding, break-away. It prints each number with its 95 % interval, names those "
+       "that the records do not determine, and chooses the simplest law that the records support. -o FILE.toml writes "
+       "the case with the fitted law, for `predict`, `sensitivity` and `report`; -o FILE.svg draws measured and fitted "
+       "forces.",
+       {{"limcycle identify cases/records/servo.toml -o fitted.toml",
+         "fit three laws, and write the case with the best"},
+        {"limcycle identify cases/records/servo.toml -o fit.svg", "measured and fitted forces as a picture"}}},
+      {"synthesize",
+       trust_group,
+       "Writes records that a rig with the friction law of the case would give, with noise and other faults of "
+       "measurement, and a case that `identify` fits to them. As the true numbers are known, it shows what such "
+       "records "
+       "can determine.",
+       {{"limcycle synthesize cases/pid-lugre.toml --noise 0.02 --seed 3 -o rig", "2 % noise of the force"}}},
       {"precision",
        trust_group,
        "Measures the accuracy and cost of every method on this case, against a verified reference. With --stability it "

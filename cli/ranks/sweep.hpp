@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/sweep.hpp"
 #include "limcycle/cli/command.hpp"
+#include "limcycle/questions/asking.hpp"
 #include "limcycle/reports/store/store.hpp"
 
 namespace limcycle {
@@ -15,13 +15,6 @@ struct SweepFlags : CommonFlags {
 };
 
 void add_sweep_flags(CLI::App& command, SweepFlags& flags);
-
-/// Rows of all points: NaN where not known.
-struct SweptRows {
-  std::vector<bool> known;
-  std::vector<double> rows;
-  Status status = Status::converged;  ///< or interrupted
-};
 
 /// Runs a sweep with a progress bar that shows the rate, into the store if --store names one, and catches Ctrl-C.
 /// `design`: all that defines its points and rows, except case, seed and program. With several ranks all compute, and

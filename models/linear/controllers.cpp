@@ -48,7 +48,8 @@ ControllerModel Pid::model() const {
   ControllerModel controller{sized(n), kd != 0.0 && !filtered ? kd : 0.0, {}};
   auto& [A, B, C, D] = controller.ss;
   D(0, 0) = kp;
-  if (integral) {  // state: integral of e
+  if (integral) {  // state: integral of e, what has leaked out taken off
+    A(0, 0) = -leak;
     B(0, 0) = 1.0;
     C(0, 0) = ki;
     controller.state_names.emplace_back("I");

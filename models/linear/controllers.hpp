@@ -85,18 +85,20 @@ struct NoController : ControllerParts {
   ControllerModel model() const;
 };
 
-/// u = kp e + ki int(e) + kd de/dt, the derivative filtered by 1/(tf s + 1) when tf > 0.
+/// u = kp e + ki I + kd de/dt, dI/dt = e - leak I, the derivative filtered by 1/(tf s + 1) when tf > 0. A leak bounds
+/// what the integral can reach: ki/leak times a constant error.
 struct Pid : ControllerParts {
-  double kp{}, ki{0.0}, kd{0.0}, tf{0.0};
+  double kp{}, ki{0.0}, kd{0.0}, tf{0.0}, leak{0.0};
   static constexpr std::string_view kind = "pid";
   static constexpr std::string_view equation =
-      "u = kp e + ki int(e) + kd de/dt; tf > 0: derivative filtered by 1/(tf s + 1)";
+      "u = kp e + ki I + kd de/dt, dI/dt = e - leak I; tf > 0: derivative filtered by 1/(tf s + 1)";
   static std::vector<Parameter<Pid, double>> parameters() {
     std::vector<Parameter<Pid, double>> table{
         {"kp", "N/m", "proportional gain", &Pid::kp, any_number},
         {"ki", "N/(m s)", "integral gain", &Pid::ki, any_number, false},
         {"kd", "N s/m", "derivative gain", &Pid::kd, any_number, false},
-        {"tf", "s", "time constant of the derivative filter", &Pid::tf, not_negative, false}};
+        {"tf", "s", "time constant of the derivative filter", &Pid::tf, not_negative, false},
+        {"leak", "1/s", "rate at which the integral forgets", &Pid::leak, not_negative, false}};
     append_table(table);
     return table;
   }

@@ -43,7 +43,7 @@ std::string check_text(const Provenance& provenance, const CheckSummary& summary
     text += line(i == 0 ? "blocks" : "", block.name + ": " + block.kind +
                                              (block.inputs.empty() ? "" : (block.touches ? " on " : " of ") + inputs));
   }
-  text += line("elements", fmt::format("{}", fmt::join(parts(summary), ", ")));
+  text += line("elements", summary.elements.empty() ? "none" : fmt::format("{}", fmt::join(parts(summary), ", ")));
   text += line("states", summary.states.empty() ? "none" : fmt::format("{}", fmt::join(summary.states, ", ")));
   if (summary.plant || !summary.blocks.empty()) {
     text += line("order", fmt::format("{} (linear part{})", summary.order,

@@ -48,7 +48,10 @@ std::string origin(const HtmlPage& page) {
   const auto entry = [](const std::string& name, const std::string& value) {
     return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html_escaped(value));
   };
-  std::string out = "<h2 id=\"origin\">Provenance</h2>\n<p>To reproduce it:</p>\n" + html_tag("pre", command);
+  std::string out = "<h2 id=\"origin\">Provenance</h2>\n";
+  // A case that was made in Python is in no file that a command could read; these two need none.
+  if (!from.file.empty() || page.command.starts_with("experiment ") || page.command == "claims")
+    out += "<p>To reproduce it:</p>\n" + html_tag("pre", command);
   if (!page.case_text.empty())
     out += "<p>The same prediction from this page alone, which holds the case:</p>\n" +
            html_tag("pre", "limcycle predict --from PAGE.html");

@@ -43,12 +43,12 @@ struct Bad {
 const Bad bad_values[] = {
     {"misspelt key", "sigma0", "sigm0", ":13: loop.friction.sigm0: unknown key; did you mean sigma0?"},
     {"unknown key", "kp = 3.0", "kp = 3.0\nspeed = 1",
-     ":8: loop.controller.speed: unknown key; known: kind, kp, ki, kd, tf, sample_time, computation_delay, "
+     ":8: loop.controller.speed: unknown key; known: kind, kp, ki, kd, tf, leak, sample_time, computation_delay, "
      "input_step, output_step, velocity_window, hold, friction_compensation, saturation, lag"},
     {"unknown section", "[search]", "[nonsense]",
      ":14: nonsense: unknown key; known: title, loop, diagram, units, search, df, simulate, predict, sensitivity, "
      "dissipativity, "
-     "claim"},
+     "claim, identify"},
     {"misspelt kind", "\"lugre\"", "\"lugree\"",
      ":9: loop.friction.kind = \"lugree\": unknown friction law; did you mean \"lugre\"?"},
     {"a key of another kind", "\"lugre\"", "\"karnopp\"",
@@ -149,7 +149,7 @@ TEST_CASE("files that are no case files") {
   refused("x = " + std::string(100000, '['), ":1: nested too deeply for a case");
   refused("x = 3\n",
           ":1: x: unknown key; known: title, loop, diagram, units, search, df, simulate, predict, sensitivity, "
-          "dissipativity, claim");
+          "dissipativity, claim, identify");
   check_refused(run({"check", scratch.file("")}), scratch.file("") + ": is a directory, not a case file");
   check_refused(run({"check", scratch.file("none.toml")}), scratch.file("none.toml") + ": no such file");
   check_refused(run({"check", "a\nb"}), "a\\x0Ab: no such file");

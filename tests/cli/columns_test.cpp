@@ -58,6 +58,7 @@ TEST_CASE("columns: every other question, on cases that are answered soon") {
   const Scratch scratch;
   for (const auto& name : some_of(Names{"relay-integrator.toml", "relay-third-order.toml", "backlash.toml"})) {
     check_page({"margin", shipped(name)});
+    check_page({"remedy", shipped(name), "--only", "gain-kp", "--only", "error-dead-zone"});
     check_page({"sensitivity", shipped(name), "--local"});
     check_page({"precision", shipped(name), "--no-stiffness"});
   }

@@ -68,6 +68,7 @@ TEST_CASE("interrupted: exit code 3 and a status in the document, whatever the c
       {"map", shipped("pid-lugre.toml"), "--x", "loop.controller.kp=1:5:200", "--y", "loop.controller.kd=1:9:200"},
       {"sensitivity", shipped("pid-lugre.toml"), "--samples", "65536"},
       {"margin", shipped("two-mass-drive.toml")},
+      {"remedy", shipped("two-mass-drive.toml")},
       {"continue", shipped("pid-lugre.toml"), "--parameter", "loop.controller.kd=1:50"},
       {"experiment", "all"}};
   for (const auto& command : commands) {

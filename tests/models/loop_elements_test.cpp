@@ -111,6 +111,19 @@ TEST_CASE("friction compensation of a mass on a belt reads the velocity against 
   CHECK(loop.B == (Eigen::Matrix2d() << 0.0, 0.0, 1.0, -1.0).finished());
 }
 
+TEST_CASE("pid: a leak bounds the integral, and without one it is the plain integral") {
+  for (const double leak : {0.0, 0.5, 20.0}) {
+    Pid controller = pid(3.0, 4.0, 6.0);
+    controller.tf = 0.01;
+    controller.leak = leak;
+    const ControllerModel model = controller.model();
+    for (const Complex s : {Complex(0.0, 0.3), Complex(0.2, 7.0)}) {
+      const Complex C = 3.0 + 4.0 / (s + leak) + 6.0 * s / (0.01 * s + 1.0);
+      CHECK(std::abs(model.ss.at(s)(0, 0) + model.D_rate * s - C) < 1e-12 * std::abs(C));
+    }
+  }
+}
+
 TEST_CASE("element on the error: the controller reads its output") {
   const Complex s(0.0, 3.0), G = 1.0 / (s * s);
   auto parts = servo_parts(coulomb(1.5, 1.0));

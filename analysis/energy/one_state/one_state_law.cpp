@@ -1,4 +1,5 @@
 #include "limcycle/analysis/energy/one_state/one_state_law.hpp"
+#include "limcycle/analysis/golden_maximum.hpp"
 
 #include <algorithm>
 #include <cmath>

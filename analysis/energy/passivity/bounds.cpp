@@ -1,4 +1,5 @@
 #include "limcycle/analysis/energy/passivity/bounds.hpp"
+#include "limcycle/analysis/golden_maximum.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -27,13 +27,15 @@ struct MarginSide {
     none,    ///< neither within the range examined
     unknown  ///< not decided; `why` gives what is known
   } what = What::unknown;
-  double value = 0.0;  ///< of the parameter, if hunting ends or begins
+  /// Of the parameter, if hunting ends or begins, or if the motion diverges before it begins; if unknown, the last one
+  /// at which it was seen to hunt, or 0.
+  double value = 0.0;
   double error = 0.0;  ///< relative error; NaN if only the last or first value with hunting is known
   std::string why;     ///< one sentence
   /// Event of the branch of cycles there, and the cycle; if it was followed to a fold or a change of stability.
   std::optional<BranchEvent::Type> event = {};
   std::optional<Cycle> cycle = {};
-  bool diverges = false;  ///< hunting ends because the motion grows without bound beyond
+  bool diverges = false;  ///< the motion grows without bound beyond: hunting ends there, or does not begin before
   bool found() const { return what == What::ends || what == What::begins; }
 };
 std::string_view to_string(MarginSide::What what);
@@ -51,10 +53,11 @@ struct ParameterMargin {
 
 /// Range of margin(), and options of the search for cycles.
 struct MarginOptions {
-  double factor = 10.0;     ///< range of the factor either way
-  double accuracy = 1e-7;   ///< relative, of the cycles that are followed
-  int scan_per_decade = 5;  ///< values at which a loop that rests is simulated
-  PredictOptions predict;   ///< search for cycles at the own values; stop and progress are used throughout
+  double factor = 10.0;              ///< range of the factor either way
+  double accuracy = 1e-7;            ///< relative, of the cycles that are followed
+  int scan_per_decade = 5;           ///< values at which a loop that rests is simulated
+  long steps_a_branch = 10'000'000;  ///< of the integrator; some minutes at most, if each map takes long
+  PredictOptions predict;            ///< search for cycles at the own values; stop and progress are used throughout
 };
 
 /// Results of margin().

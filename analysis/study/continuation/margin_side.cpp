@@ -16,9 +16,8 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Relative distances past a lost cycle at which simulations decide if the loop still hunts: farther if they do not
 /// decide, as close to a pitchfork, where the succeeding cycles are reached slowly.
 constexpr double beyond_lost[] = {1e-2, 3e-2, 0.1};
-constexpr double at_limit = 1e-9;            ///< relative: the scale of a branch is logarithmic
-constexpr int successors = 3;                ///< largest number of other cycles followed in turn
-constexpr long steps_a_branch = 10'000'000;  ///< some minutes at most, if each map takes long
+constexpr double at_limit = 1e-9;  ///< relative: the scale of a branch is logarithmic
+constexpr int successors = 3;      ///< largest number of other cycles followed in turn
 
 }  // namespace
 
@@ -39,7 +38,7 @@ SideSearch::Lost SideSearch::follow(const Cycle& cycle, double p, double limit) 
   continuing.first_step = 0.1;
   continuing.max_step = 0.6;
   continuing.max_points = 150;
-  continuing.max_steps = steps_a_branch;
+  continuing.max_steps = options_.steps_a_branch;
   continuing.stop = options_.predict.stop;
   continuing.progress = progress_;
   const Branch branch = continue_cycle(parameter_.family, cycle, p, continuing);
@@ -133,7 +132,7 @@ MarginSide SideSearch::beyond(const Lost& lost, std::optional<Cycle>& other, dou
   // continue as another.
   if (lost.event == BranchEvent::Type::fold)
     return found(What::ends, lost, lost.why + "; whether the loop hunts on another cycle beyond it was not determined");
-  return {What::unknown, 0.0, unknown,
+  return {What::unknown, lost.value, unknown,
           "the cycle is lost at " + short_number(lost.value, 5) + ": " + lost.why +
               "; whether the loop hunts beyond it was not determined"};
 }
@@ -182,15 +181,14 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
       return by_bisection(What::ends, p, limit_, starts_);
     if (lost.kind == Lost::Kind::border)
       return {What::none, 0.0, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
-    if (lost.kind == Lost::Kind::failed) return {What::unknown, 0.0, unknown, lost.why};
+    if (lost.kind == Lost::Kind::failed) return {What::unknown, lost.value, unknown, lost.why};
     std::optional<Cycle> other;
     MarginSide side = beyond(lost, other, p);
     if (!other) return side;
     cycle = std::move(*other);
     if (p == limit_) return {What::none, 0.0, 0.0, "it hunts at " + short_number(limit_, 5) + ", on another cycle"};
   }
-  return {What::unknown, 0.0, unknown,
-          "followed across several branches; the last was lost near " + short_number(p, 5)};
+  return {What::unknown, p, unknown, "followed across several branches; the last was lost near " + short_number(p, 5)};
 }
 
 std::optional<Cycle> SideSearch::before(const Lost& lost, double& at, bool& decided) {
@@ -255,8 +253,11 @@ MarginSide SideSearch::where_hunting_begins() {
               "none up to " + short_number(last, 5) + "; the case is not valid at " + short_number(p, 5)};
     const Reached reached = reached_at(p, {});
     if (reached.outcome == Outcome::divergence)
-      return {What::none, 0.0, 0.0,
-              "none up to " + short_number(last, 5) + "; at " + short_number(p, 5) + " the motion diverges"};
+      return {
+          What::none,   p,
+          unknown,      "none up to " + short_number(last, 5) + "; at " + short_number(p, 5) + " the motion diverges",
+          std::nullopt, std::nullopt,
+          true};
     if (reached.cycle) return back_from(*reached.cycle, p);
     if (reached.irregular) return by_bisection(What::begins, p, last, {});
     if (reached.outcome == Outcome::undecided && !open) open = p;

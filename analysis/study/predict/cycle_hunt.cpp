@@ -54,6 +54,7 @@ OutcomeOfStart CycleHunt::probe_from(const LoopState& start, std::string name, d
   const double floor = std::exchange(settle_.amplitude_floor, std::max(settle_.amplitude_floor, smallest_swing));
   OutcomeOfStart outcome = simulate(start, std::move(name));
   settle_.amplitude_floor = floor;
+  outcome.probe = true;
   if (is_news(outcome)) outcomes_.push_back(outcome);
   return outcome;
 }

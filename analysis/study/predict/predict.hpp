@@ -75,6 +75,7 @@ struct OutcomeOfStart {
   long steps = 0;               ///< of the integrator
   std::string by{};             ///< as in Settled
   IrregularMotion irregular{};  ///< likewise
+  bool probe = false;           ///< from a state that no user would choose (see CycleHunt::probe_from)
 };
 
 /// Work of a method, in the unit in which it is counted. Times are not given here: results do not depend on the time

@@ -53,8 +53,8 @@ const std::vector<CsvColumn> both{std::size_t{1}, std::size_t{2}};
 
 TEST_CASE("CSV: commas, semicolons, tabs and blanks separate, with any line ends, comments and a byte order mark") {
   const Rows expected{{1.0, -2.5}, {3e-4, 4.0}};
-  for (const char* text : {"1,-2.5\n3e-4,4\n", "1;-2.5\r\n3e-4;+4\r\n", "1\t-2.5\n3e-4\t4", "1  -2.5\n 3e-4   4 \n",
-                           "\xEF\xBB\xBF# comment\n\n% another\n1 , -2.5\n  \n3e-4 , 4\n",
+  for (const char* text : {"1,-2.5\n3e-4,4\n", "1;-2.5\r\n3e-4;+4\r\n", "1;-2,5\r\n3e-4;4,0", "1\t-2.5\n3e-4\t4",
+                           "1  -2.5\n 3e-4   4 \n", "\xEF\xBB\xBF# comment\n\n% another\n1 , -2.5\n  \n3e-4 , 4\n",
                            "time,force\n1,-2.5\n3e-4,4\n", "\"a, b\",\"c\"\n1,-2.5\n# between\n3e-4,4\n"})
     CHECK(rows_of(text, both) == expected);
 }
@@ -64,6 +64,10 @@ TEST_CASE("CSV: columns are named by the header or by number, in any order") {
   CHECK(rows_of(text, {std::string("force"), std::size_t{1}}) == Rows{{2.0, 0.0}, {5.0, 3.0}});
   CHECK_THAT(refusal(text, {std::string("forze")}),
              Contains("has no column \"forze\"") && Contains("did you mean force?"));
+  CHECK(rows_of(text, {std::string("time")}) == Rows{{0.0}, {3.0}});  // the unit need not be repeated
+  CHECK(rows_of("# a rig\n# force (N), time\n1,2\n", {std::string("time")}) == Rows{{2.0}});
+  CHECK_THAT(refusal("# force and time\n1,2\n", {std::string("time")}), Contains("has no header"));
+  CHECK_THAT(refusal("time,force,force [kN]\n0,1,1\n", {std::string("force")}), Contains("has two columns \"force\""));
   CHECK_THAT(refusal("1,2\n", {std::string("a")}), Contains("has no header: name the column \"a\" by its number"));
   CHECK_THAT(refusal(text, {std::size_t{4}}), Contains("has 3 columns separated by semicolons; column 4 is asked for"));
   CHECK_THAT(refusal("1:2:3\n", both), Contains("has 1 column separated by blanks; column 2 is asked for"));
@@ -74,7 +78,7 @@ TEST_CASE("CSV: what is no finite number is refused with its line and column") {
   CHECK_THAT(refusal("1,2\n3,nan\n", both), EndsWith(":2: \"nan\" in column 2 is not a finite number"));
   CHECK_THAT(refusal("1,2\n3,1e999\n", both), Contains("is not a finite number"));
   CHECK_THAT(refusal("1,2\n3,\n", both), EndsWith(":2: column 2 is empty"));
-  CHECK_THAT(refusal("1;2\n1,5;2\n", both), Contains("write a decimal point in place of the comma"));
+  CHECK_THAT(refusal("1;2\n1,234.5;2\n", both), Contains("\"1,234.5\" in column 1 is no number"));
   CHECK_THAT(refusal("1,2\n3,4,5\n", both), EndsWith(":2: has 3 fields, the first row has 2"));
   CHECK(refusal("1,2,x\n3,4,y\n", both).empty());  // a column that is not asked for may hold anything
 }

@@ -20,6 +20,10 @@ TEST_CASE("an error is one line: place, key, value, rule, suggestion") {
   CHECK(std::string(
             InputError({.file = {}, .line = 0, .override = {}, .key = "k", .value = {}, .rule = "r", .suggestion = {}})
                 .what()) == "k: r");
+  CHECK(std::string(
+            InputError(
+                {.file = {}, .line = 0, .override = {}, .key = "--flag", .value = "v", .rule = "r", .suggestion = {}})
+                .what()) == "--flag v: r");
   const InputError odd({.file = "a\nb",
                         .line = 1,
                         .override = {},

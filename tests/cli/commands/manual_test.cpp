@@ -11,10 +11,10 @@ using limcycle::test::squeezed;
 
 namespace {
 
-const std::vector<std::string> commands{"new",         "check",      "laws",      "predict",   "simulate",
-                                        "df",          "report",     "margin",    "continue",  "map",
-                                        "sensitivity", "status",     "precision", "adequate",  "dissipativity",
-                                        "claims",      "experiment", "manual",    "completion"};
+const std::vector<std::string> commands{"new",    "check",      "laws",     "predict",       "simulate", "df",
+                                        "report", "margin",     "remedy",   "continue",      "map",      "sensitivity",
+                                        "status", "precision",  "adequate", "dissipativity", "claims",   "experiment",
+                                        "manual", "completion", "identify", "synthesize"};
 
 std::string page(const std::string& name) {
   const auto ran = run(name.empty() ? std::vector<std::string>{"manual"} : std::vector<std::string>{"manual", name});

@@ -86,7 +86,7 @@ TEST_CASE("map: what cannot be a map is refused") {
   refused({"--x", "loop.controller.kd=1:50:2.5", "--y", y}, "whole number");
   refused({"--x", "loop.controller.kd=0:50:5:log", "--y", y}, "one sign");
   refused({"--x", "loop.controller.kdd=1:50:5", "--y", y}, "kd");
-  refused({"--x", y, "--y", y}, "same parameter");
+  refused({"--x", y, "--y", y}, "must be another parameter than --x");
   refused({"--x", "loop.controller.kd=1:50:5", "--y", y, "--methods", "describing-functoin"}, "describing-function");
   refused({"--x", "loop.controller.kd=1:50:5", "--y", y, "--resume"}, "--store");
 }

@@ -1,4 +1,7 @@
-#include "limcycle/cli/units_of.hpp"
+#include "limcycle/questions/units_of.hpp"
+
+#include <string_view>
+#include <variant>
 
 namespace limcycle {
 
@@ -19,7 +22,7 @@ Units units_of_diagram(const Diagram& diagram) {
 
 Units units_of_loop(const LoopParts& loop) {
   if (loop.diagram) return units_of_diagram(*loop.diagram);
-  const auto plant = kind_of(loop.plant);
+  const std::string_view plant = std::visit([]<class Kind>(const Kind&) { return Kind::kind; }, loop.plant);
   if (plant == "froude-pendulum") return {"rad", loop.friction ? "N" : "N m", loop.friction ? "m" : "rad"};
   if (const auto* named = std::get_if<StateSpacePlant>(&loop.plant); named != nullptr && loop.friction) {
     const PlantModel model = named->model();
@@ -33,10 +36,9 @@ Units units_of_loop(const LoopParts& loop) {
 
 Units units_of(const Case& from) {
   Units units = from.loop ? units_of_loop(*from.loop) : Units{};
-  if (from.y_unit) {
-    units.y = from.y_unit->symbol;
-    units.y_per_si = from.y_unit->per_si;
-  }
+  if (!from.y_unit || from.y_unit->symbol.empty()) return units;
+  units.y = from.y_unit->symbol;
+  units.y_per_si = from.y_unit->per_si;
   return units;
 }
 

@@ -1,14 +1,11 @@
-#include "limcycle/cli/commands/threshold.hpp"
+#include "limcycle/questions/threshold.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <stdexcept>
 
 #include "limcycle/analysis/study/continuation/margin.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
-#include "limcycle/cli/command.hpp"
-#include "limcycle/cli/interrupt.hpp"
 
 namespace limcycle {
 
@@ -25,30 +22,38 @@ std::vector<LoopNumber> loop_numbers(const Case& from) {
   return numbers;
 }
 
-std::vector<CaseNumber> threshold_numbers(const Case& from, const std::vector<std::string>& paths) {
+std::vector<CaseNumber> threshold_numbers(const Case& from, const std::string& argument,
+                                          const std::vector<std::string>& paths) {
   std::vector<CaseNumber> chosen;
   for (const auto& path : paths) {
-    chosen.push_back(number_at(from, "--threshold", path));
+    chosen.push_back(number_at(from, argument, path));
     if (chosen.back().value == 0.0 || !std::isfinite(chosen.back().value))
-      throw std::invalid_argument("--threshold " + path + " is zero or absent: no factor changes it");
+      throw InputError({.file = {},
+                        .line = 0,
+                        .override = {},
+                        .key = argument,
+                        .value = path,
+                        .rule = "is zero or absent: no factor changes it",
+                        .suggestion = {}});
   }
   return chosen;
 }
 
-ThresholdSensitivity threshold_of(const Case& from, const Loop& loop, const CaseNumber& number) {
+ThresholdSensitivity threshold_of(const Case& from, const Loop& loop, const CaseNumber& number,
+                                  const std::function<bool()>& stop) {
   MarginOptions options;
   options.predict = from.predict;
   options.predict.methods = {false, false, false};
   options.predict.nyquist = false;
   options.accuracy = 1e-9;  // derivatives need the fold itself
-  options.predict.stop = interrupted;
+  options.predict.stop = stop;
   const auto found = margin(loop,
                             {{number.path, number.unit, number.value, number.path.starts_with("loop.friction."),
-                              LoopVariation(from, "--threshold", number.path)}},
+                              LoopVariation(from, "threshold", number.path)}},
                             options);
   ThresholdSensitivity result{number.path, number.unit, number.value, false, false, 0.0, 0.0, {}, {}};
   if (found.parameters.empty()) {
-    result.why = interrupted() ? "it was interrupted" : "margins are not available for this loop";
+    result.why = stop && stop() ? "it was interrupted" : "margins are not available for this loop";
     return result;
   }
   const ParameterMargin& one = found.parameters.front();
@@ -69,7 +74,7 @@ ThresholdSensitivity threshold_of(const Case& from, const Loop& loop, const Case
   const auto own = std::ranges::find(numbers, number.path, &LoopNumber::path);
   if (own != numbers.end())
     result.numbers = threshold_sensitivities(build_loop(need_loop(*moved)), *side, numbers,
-                                             static_cast<std::size_t>(own - numbers.begin()), interrupted);
+                                             static_cast<std::size_t>(own - numbers.begin()), stop);
   return result;
 }
 

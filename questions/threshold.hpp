@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,12 @@ std::vector<CaseNumber> own_numbers(const Case& from);
 /// The same as numbers of its loop.
 std::vector<LoopNumber> loop_numbers(const Case& from);
 
-/// The numbers of `--threshold`. Throws InputError or std::invalid_argument if one does not exist or is zero.
-std::vector<CaseNumber> threshold_numbers(const Case& from, const std::vector<std::string>& paths);
+/// The numbers at these paths. Throws InputError (of `argument`, such as "--threshold") if one does not exist or is
+/// zero.
+std::vector<CaseNumber> threshold_numbers(const Case& from, const std::string& argument,
+                                          const std::vector<std::string>& paths);
 /// Value of one number at which hunting begins or ends, on the nearer side, and its derivatives by the others.
-ThresholdSensitivity threshold_of(const Case& from, const Loop& loop, const CaseNumber& number);
+ThresholdSensitivity threshold_of(const Case& from, const Loop& loop, const CaseNumber& number,
+                                  const std::function<bool()>& stop);
 
 }  // namespace limcycle

@@ -1,0 +1,76 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "limcycle/analysis/status.hpp"
+#include "limcycle/analysis/study/identify/parameter_space.hpp"
+
+namespace limcycle {
+
+/// Weighted differences between the forces of a law and those of the records, as a function of the coordinates of a
+/// ParameterSpace: compared rows over the noise of their record, then, for laws that stick, break-aways, |F| = Fs.
+class Misfit {
+ public:
+  /// Keeps references to the space and the records. `noise`: standard deviation of the force in each record, N.
+  Misfit(const ParameterSpace& space, const std::vector<PreparedRecord>& records, std::vector<double> noise);
+
+  Eigen::Index size() const { return size_; }
+  const ParameterSpace& space() const { return space_; }
+  const std::vector<PreparedRecord>& records() const { return records_; }
+  const std::vector<double>& noise() const { return noise_; }
+  /// First entry of a record, and of the break-aways behind all records.
+  Eigen::Index first_of(std::size_t record) const { return first_[record]; }
+
+  /// Only these records, or (empty) all; the entries of the others are 0.
+  void use(std::vector<bool> records) { used_ = std::move(records); }
+  /// Entries with weight 0 here do not count; empty: all count.
+  void weigh(Eigen::VectorXd weights) { weights_ = std::move(weights); }
+
+  /// Entries at u, and their derivatives by u if `slopes` is not null. False where the law has no answer.
+  bool at(const Eigen::VectorXd& u, Eigen::VectorXd& entries, Eigen::MatrixXd* slopes, double fineness = 1.0) const;
+  /// Evaluations of the law over all records so far, with and without derivatives.
+  long evaluations() const { return evaluations_; }
+
+ private:
+  bool has_break_aways() const { return size_ > first_.back(); }
+  bool uses(std::size_t record) const { return used_.empty() || used_[record]; }
+  void add_break_aways(const Element& law, Eigen::VectorXd& entries, Eigen::MatrixXd* by_values) const;
+
+  const ParameterSpace& space_;
+  const std::vector<PreparedRecord>& records_;
+  std::vector<double> noise_;
+  std::unique_ptr<FrictionResponse> response_;
+  std::vector<Eigen::Index> first_;
+  std::vector<bool> used_;
+  Eigen::VectorXd weights_;
+  Eigen::Index size_ = 0;
+  mutable long evaluations_ = 0;
+  mutable std::vector<double> forces_;
+  mutable Eigen::MatrixXd by_numbers_;
+};
+
+/// Coordinates at a minimum of the sum of squares.
+struct Fit {
+  Eigen::VectorXd u = {};
+  std::vector<std::size_t> held = {};  ///< bounds of the space that it lies on, see fit_within()
+  double sum_of_squares = infinite;
+  Status status = Status::max_iterations;
+  int iterations = 0;
+  double possible_decrease = infinite;  ///< of the sum, by a Gauss-Newton step from here
+};
+
+/// Coordinates that are varied, each by itself, or several that have one value.
+using Groups = std::vector<std::vector<Eigen::Index>>;
+Groups each_by_itself(const std::vector<Eigen::Index>& coordinates);
+
+/// Least squares by Levenberg and Marquardt's method within a trust region (GSL's multifit_nlinear, with the exact
+/// derivatives of Misfit), from `start`, over the coordinates in `groups`; the others keep their values.
+/// `stop` is asked between iterations. Status: converged, where a Gauss-Newton step could lower the sum by 1e-4 at most
+/// (by 0.04 if no step lowers it: a tenth of the way to the end of a 95 % interval, where it has risen by about 4);
+/// max_iterations; stalled; not_finite if the law has no answer at the start; interrupted.
+Fit fit(const Misfit& misfit, const Eigen::VectorXd& start, const Groups& groups, int most_iterations,
+        const std::function<bool()>& stop = {});
+
+}  // namespace limcycle

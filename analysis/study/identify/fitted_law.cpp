@@ -1,0 +1,179 @@
+#include "limcycle/analysis/study/identify/fitted_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "limcycle/analysis/study/identify/bounded_fit.hpp"
+#include "limcycle/analysis/study/identify/held_out.hpp"
+#include "limcycle/analysis/study/identify/intervals.hpp"
+#include "limcycle/analysis/study/identify/starts.hpp"
+
+namespace limcycle {
+namespace {
+
+/// Root mean square of the entries of each record, N.
+std::vector<double> errors_of(const Misfit& misfit, const Eigen::VectorXd& entries) {
+  std::vector<double> errors;
+  for (std::size_t r = 0; r < misfit.records().size(); ++r) {
+    const auto rows = std::ssize(misfit.records()[r].compared);
+    errors.push_back(misfit.noise()[r] * entries.segment(misfit.first_of(r), rows).norm() /
+                     std::sqrt(static_cast<double>(rows)));
+  }
+  return errors;
+}
+
+/// Standard deviation of the force in each record, as the fit leaves it. Records with few rows for the numbers of the
+/// law might be fitted exactly; they count as no more precise, for their size, than all others together.
+std::vector<double> noise_left(const Misfit& misfit, const Eigen::VectorXd& entries) {
+  constexpr Eigen::Index fewest_rows_a_number = 5;
+  const auto& records = misfit.records();
+  auto noise = errors_of(misfit, entries);
+  std::vector<bool> few;
+  for (const auto& record : records)
+    few.push_back(std::ssize(record.compared) < fewest_rows_a_number * misfit.space().size());
+  const bool all_few = std::ranges::find(few, false) == few.end();
+  double sum = 0.0, rows = 0.0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    if (few[r] && !all_few) continue;
+    const double n = static_cast<double>(records[r].compared.size());
+    sum += n * std::pow(noise[r] / records[r].largest_force, 2);
+    rows += n;
+  }
+  for (std::size_t r = 0; r < records.size(); ++r)
+    noise[r] = std::max(noise[r], records[r].largest_force * std::max(1e-9, few[r] ? std::sqrt(sum / rows) : 0.0));
+  return noise;
+}
+
+/// Parallel elements in the order in which they yield: the records do not tell them apart otherwise.
+Eigen::VectorXd in_order_of_yield(const ParameterSpace& space, const Eigen::VectorXd& values) {
+  std::vector<Eigen::Index> k, share;
+  for (std::size_t i = 0; i < space.numbers().size(); ++i) {
+    if (space.numbers()[i].name.starts_with("k[")) k.push_back(static_cast<Eigen::Index>(i));
+    if (space.is_share_of_sum(i)) share.push_back(static_cast<Eigen::Index>(i));
+  }
+  Eigen::VectorXd sorted = values;
+  if (k.empty() || k.size() != share.size()) return sorted;
+  std::vector<std::size_t> order(k.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return values(share[i]) / values(k[i]); });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    sorted(k[i]) = values(k[order[i]]);
+    sorted(share[i]) = values(share[order[i]]);
+  }
+  return sorted;
+}
+
+void add_records(const Misfit& misfit, const Eigen::VectorXd& u, IdentifiedLaw& into) {
+  Eigen::VectorXd entries, finer;
+  if (!misfit.at(u, entries, nullptr)) return;
+  into.march_error = misfit.at(u, finer, nullptr, 2.0) ? (finer - entries).cwiseAbs().maxCoeff() : NAN;
+  const auto errors = errors_of(misfit, entries);
+  double rows = 0.0;
+  into.bic = 0.0;
+  for (std::size_t r = 0; r < misfit.records().size(); ++r) {
+    const auto& record = misfit.records()[r];
+    RecordFit result;
+    result.error = errors[r];
+    std::vector<std::size_t> order(record.compared.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (record.kind == RecordKind::steady_velocity)
+      std::ranges::stable_sort(order, {}, [&](std::size_t i) { return record.compared[i].v; });
+    std::vector<double> left;
+    for (std::size_t i = 0; i < record.compared.size(); ++i) {
+      const double entry = misfit.noise()[r] * entries(misfit.first_of(r) + static_cast<Eigen::Index>(i));
+      result.forces.push_back(record.compared[i].F + entry);
+    }
+    for (const auto i : order) left.push_back(result.forces[i] - record.compared[i].F);
+    result.whiteness = whiteness(left);
+    const double n = static_cast<double>(record.compared.size()), noise = misfit.noise()[r];
+    into.bic += n * (2.0 * std::log(noise) + std::pow(errors[r] / noise, 2) - 1.0);
+    rows += n;
+    into.records.push_back(std::move(result));
+  }
+  into.bic += static_cast<double>(into.fitted) * std::log(rows);
+}
+
+}  // namespace
+
+LawFit::LawFit(const Element& kind, const std::vector<PreparedRecord>& records, const FreeChoice& choice,
+               std::function<bool()> stop)
+    : stop_(std::move(stop)), space_(kind, records, choice), records_(records), result_{.law = kind} {
+  result_.fitted = static_cast<std::size_t>(space_.size());
+  for (const auto& record : records_) noise_.push_back(0.01 * record.largest_force);
+  if (Misfit(space_, records_, noise_).size() <= space_.size()) {
+    result_.status = Status::undefined;
+    result_.notes.emplace_back("has more numbers than there are rows");
+    return;
+  }
+  fit_with_noise();
+  if (!std::isfinite(best_.sum_of_squares)) {
+    result_.status = stopped() ? Status::interrupted : Status::not_finite;
+    return;
+  }
+  answered_ = true;
+  refit();
+}
+
+void LawFit::fit_with_noise() {
+  constexpr int most_rounds = 4;
+  Eigen::VectorXd entries;
+  for (int round = 0; round < most_rounds; ++round) {
+    Misfit misfit(space_, records_, noise_);
+    best_ = round == 0 ? fit_from_starts(misfit, stop_)
+                       : fit_within(misfit, best_, felt_coordinates(misfit, best_.u), 60, stop_);
+    result_.evaluations += misfit.evaluations();
+    if (!std::isfinite(best_.sum_of_squares) || stopped() || !misfit.at(best_.u, entries, nullptr)) break;
+    const auto noise = noise_left(misfit, entries);
+    double change = 0.0;
+    for (std::size_t r = 0; r < noise.size(); ++r) change = std::max(change, std::abs(std::log(noise[r] / noise_[r])));
+    noise_ = noise;
+    if (change < 1e-3) break;
+  }
+  best_.u = space_.coordinates(in_order_of_yield(space_, space_.values(best_.u)));
+}
+
+void LawFit::refit() {
+  const Misfit misfit(space_, records_, noise_);
+  if (!stopped()) best_ = fit_within(misfit, best_, felt_coordinates(misfit, best_.u), 60, stop_);
+  result_.notes.clear();
+  result_.records.clear();
+  const auto bounds = space_.bounds();
+  for (const auto b : best_.held) result_.notes.push_back(bounds[b].note);
+  result_.status = stopped() ? Status::interrupted : best_.status;
+  result_.law = space_.law(space_.values(best_.u));
+  if (const auto broken = result_.law.validate()) {
+    result_.status = Status::stalled;
+    result_.notes.push_back("is no law with these numbers: " + std::string(broken->key) + " " + broken->rule);
+  }
+  add_records(misfit, best_.u, result_);
+  result_.held_out = held_out_error(misfit, best_);
+  result_.evaluations += misfit.evaluations();
+}
+
+IdentifiedLaw LawFit::with_intervals(bool profiled) {
+  constexpr int most_rounds = 4;
+  for (int round = 0; answered_; ++round) {
+    const Misfit misfit(space_, records_, noise_);
+    std::optional<Fit> better;
+    if (const auto at = with_slopes(misfit, best_)) {
+      add_numbers(*at, profiled, result_, better, stop_);
+      add_directions(*at, result_);
+    }
+    result_.evaluations += misfit.evaluations();
+    if (!better || stopped()) break;
+    if (round + 1 == most_rounds) {
+      result_.status = Status::stalled;
+      result_.notes.emplace_back("a better fit turned up with each profile, the last time too");
+      break;
+    }
+    best_ = *better;
+    refit();
+  }
+  if (stopped()) result_.status = Status::interrupted;
+  if (answered_ && !profiled)
+    result_.notes.emplace_back("its intervals are linear ones, since another law fits these records far better");
+  return result_;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,81 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limcycle/analysis/status.hpp"
+#include "limcycle/analysis/study/identify/parameter_space.hpp"
+#include "limcycle/analysis/study/identify/residuals.hpp"
+
+namespace limcycle {
+
+/// Laws to be fitted to records.
+struct IdentifyRequest {
+  std::vector<Element> laws;  ///< their numbers are not used
+  std::vector<FrictionRecord> records;
+  FreeChoice choice;
+};
+
+struct IdentifyOptions {
+  std::function<bool()> stop;
+  std::function<void(double, const std::string&)> progress;
+};
+
+/// A number of a fitted law, with its 95 % interval.
+struct IdentifiedNumber {
+  std::string name;  ///< "Fs", "k[0]"
+  std::string unit;
+  double value = 0.0;
+  std::optional<double> low, high;                ///< by profile likelihood
+  std::optional<double> linear_low, linear_high;  ///< by the derivatives at the fit
+  bool identifiable = false;
+};
+
+/// How a law fits one record.
+struct RecordFit {
+  double error = 0.0;  ///< root of the mean square of what is left over, N
+  Whiteness whiteness;
+  std::vector<double> forces;  ///< of the law, at the compared rows, N
+};
+
+/// A combination of numbers that the records do not determine: a weight for each, in the coordinates.
+struct Undetermined {
+  std::vector<std::pair<std::string, double>> direction;
+  bool powers = true;           ///< all coordinates are logarithms: the weights are powers in a product
+  double deviation = infinite;  ///< standard deviation along it, in the coordinates
+};
+
+struct IdentifiedLaw {
+  Element law;
+  std::vector<IdentifiedNumber> numbers = {};
+  std::size_t fitted = 0;             ///< free numbers
+  double bic = NAN;                   ///< see identify(); less is better
+  double held_out = NAN;              ///< see held_out_error()
+  Eigen::MatrixXd correlations = {};  ///< of the numbers with a coordinate, by derivatives; NaN where not determined
+  std::vector<std::string> correlated = {};  ///< their names
+  std::vector<Undetermined> undetermined = {};
+  std::vector<RecordFit> records = {};
+  double march_error = NAN;  ///< largest change of a force when the steps are halved, over its record's noise
+  long evaluations = 0;
+  Status status = Status::converged;
+  std::vector<std::string> notes = {};
+};
+
+struct IdentifyReport {
+  std::vector<PreparedRecord> records;
+  std::vector<IdentifiedLaw> laws;  ///< in the order of the request
+  std::optional<std::size_t> chosen;
+  Status status = Status::converged;
+};
+
+/// Fits each law to all records, by maximum likelihood for independent normal errors of the force, whose deviation is
+/// that of each record (pooled for records with fewer than five rows a number). Fits keep to the bounds of the laws,
+/// numbers >= 0 and Fs >= Fc. Chosen, once all laws are fitted: of the converged ones whose held-out error is within
+/// 1 % of the least, the one with the fewest fitted numbers; of two with as many, the one of the lesser BIC: the sum
+/// over records of n (ln s^2 + m/s^2 - 1), with the mean square m and the deviation s of the n errors, plus
+/// fitted ln(rows). Laws that need as many numbers as there are rows are not fitted, with a note. Throws
+/// std::invalid_argument for a record that cannot be used, or a key of the choice that none of the laws has.
+IdentifyReport identify(const IdentifyRequest& request, const IdentifyOptions& options = {});
+
+}  // namespace limcycle

@@ -1,0 +1,92 @@
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limcycle {
+
+/// Experiment that made a record.
+enum class RecordKind {
+  steady_velocity,  ///< rows are pairs of a constant velocity and the force there, in any order
+  lag,              ///< a body slides with a varying velocity, and slid long before the first row
+  pre_sliding,      ///< small motions from a relaxed contact
+  break_away        ///< a relaxed contact is loaded until the body slides
+};
+
+/// Names of the kinds, in the order of the enumerators.
+inline constexpr std::string_view record_kinds[] = {"steady-velocity", "lag", "pre-sliding", "break-away"};
+constexpr std::string_view to_string(RecordKind kind) { return record_kinds[static_cast<std::size_t>(kind)]; }
+
+/// Measured friction: the motion, which drives a law, and the friction force, which the law has to reproduce. Columns
+/// that were not measured are empty; `F` never is, and x or v is there (steady velocity: v, and t may be empty).
+struct FrictionRecord {
+  RecordKind kind = RecordKind::steady_velocity;
+  std::string name;               ///< for messages: the file
+  std::vector<double> t;          ///< s, rising
+  std::vector<double> x, v;       ///< m, m/s
+  std::vector<double> F;          ///< N, opposing the motion
+  double skip = 0.0;              ///< s from the first row, during which the force is not compared
+  double force_limit = INFINITY;  ///< N; rows with |F| at it or beyond are not compared (a saturated sensor)
+};
+
+/// Rows of a record that a law is compared with, at most.
+inline constexpr std::size_t most_compared = 4000;
+
+/// Piece of a measured motion on which the velocity does not change sign: v(s) = v0 + s (v1 + s v2) for 0 <= s <= 1,
+/// s = (time from its start)/duration.
+struct MotionPiece {
+  double duration = 0.0;                ///< s
+  double v0 = 0.0, v1 = 0.0, v2 = 0.0;  ///< m/s
+  std::ptrdiff_t sample = -1;           ///< of `compared` at its end; -1: none
+
+  double velocity(double s) const { return v0 + s * (v1 + s * v2); }
+  /// From s to the end, m.
+  double displacement(double s = 0.0) const {
+    return duration * ((1.0 - s) * v0 + (1.0 - s * s) / 2.0 * v1 + (1.0 - s * s * s) / 3.0 * v2);
+  }
+};
+
+/// Row that a law is compared with.
+struct ComparedRow {
+  std::size_t row = 0;  ///< of the record
+  double v = 0.0;       ///< m/s
+  double F = 0.0;       ///< N
+  double t = 0.0;       ///< s from the first row
+  double x = 0.0;       ///< m from the first row
+};
+
+/// Instant at which a resting body begins to slide: the force there, on the line through the rows before it.
+struct BreakAwayEvent {
+  double F = 0.0;       ///< N
+  bool forward = true;  ///< direction of the slip
+  double weight = 1.0;  ///< standard deviation of a row's force over that of F
+};
+
+/// Record as methods use it.
+struct PreparedRecord {
+  RecordKind kind = RecordKind::steady_velocity;
+  std::string name;
+  double v_start = 0.0;               ///< velocity at the first row, m/s
+  std::ptrdiff_t first_sample = -1;   ///< of `compared` at the first row; -1: none
+  std::vector<MotionPiece> pieces;    ///< empty for steady velocities
+  std::vector<ComparedRow> compared;  ///< in the order of the rows
+  std::vector<BreakAwayEvent> break_aways;
+  double largest_force = 0.0;           ///< |F| of the compared rows, N
+  double displacement = 0.0;            ///< largest |x - x(0)|, m; 0 for steady velocities
+  double duration = 0.0;                ///< s; 0 for steady velocities
+  double slowest = 0.0, fastest = 0.0;  ///< |v| > 0 of the compared rows, m/s
+  std::vector<std::string> notes;       ///< what was left out, a sentence each
+};
+
+/// Velocity between rows: the parabola through the measured velocities at both ends whose integral is the measured
+/// displacement. Without a velocity column the velocities are the slopes of parabolas through three positions; without
+/// a position column they are joined by straight lines. `rest_tells_nothing`: leave out rows at v = 0, where a law that
+/// is set-valued at rest states no force (for all laws of a list, which are compared on the same rows). Break-aways are
+/// those of a break-away record with measured velocities: after four compared rows at v = 0 exactly. Throws
+/// std::invalid_argument with a sentence if the record has too few rows, a column of another length, time that does not
+/// rise, no motion, or a velocity that contradicts the position. Cost: linear in the rows.
+PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing);
+
+}  // namespace limcycle

@@ -1,0 +1,147 @@
+#include "limcycle/analysis/study/remedy/cause.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "limcycle/analysis/energy/passivity/steady_slide.hpp"
+#include "limcycle/analysis/golden_maximum.hpp"
+#include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/remedy/without.hpp"
+
+namespace limcycle {
+namespace {
+
+/// Speed up to which the steady friction curve falls, m/s: a scan with six speeds a decade, then golden section; empty
+/// if it does not fall, or to the end of the scan.
+std::optional<double> falls_up_to(const Element& law) {
+  const double unit = law.scales().velocity;
+  if (!std::isfinite(unit)) return std::nullopt;
+  const auto force = [&](double v) {
+    const auto slide = steady_slide(law, v);
+    return slide ? slide->force : NAN;
+  };
+  constexpr int points = 31;
+  constexpr double from = 1e-2, a_decade = 6.0;
+  std::vector<double> speeds, forces;
+  for (int i = 0; i < points; ++i) {
+    speeds.push_back(unit * from * std::pow(10.0, i / a_decade));
+    forces.push_back(force(speeds.back()));
+    if (!std::isfinite(forces.back())) return std::nullopt;
+  }
+  const auto least = static_cast<std::size_t>(std::ranges::min_element(forces) - forces.begin());
+  if (least == 0 || least + 1 == forces.size()) return std::nullopt;
+  return golden_maximum([&](double v) { return -force(v); }, speeds[least - 1], speeds[least], speeds[least + 1], 40);
+}
+
+class CauseStudy {
+ public:
+  CauseStudy(const LoopParts& parts, const Judging& judging, const std::vector<Cycle>& cycles)
+      : parts_(parts), judging_(judging), cycles_(cycles) {}
+
+  Cause run() {
+    if (ends("without friction compensation", without_compensation(parts_)))
+      return decided(CauseKind::over_compensation,
+                     "The friction compensation is too strong: without it the loop does not hunt.");
+    if (ends("without dead time and sampling", without_delay(parts_)))
+      return decided(CauseKind::delay, "The loop reacts too late: without dead time and sampling it does not hunt.");
+    const bool integral = ends("without integral action", without_integral_action(parts_));
+    const bool falling = ends("with Fs lowered to Fc", without_falling_friction(parts_));
+    if (integral && falling)
+      return decided(CauseKind::integral_action_and_stiction,
+                     "The integral action pushes until the body breaks away from stiction, and it then slides too "
+                     "far: without integral action, or with Fs lowered to Fc, the loop does not hunt.");
+    if (falling)
+      return decided(CauseKind::negative_slope, "Friction falls as the speed rises" + falling_range() +
+                                                    ", which feeds the oscillation: with Fs lowered to Fc the loop "
+                                                    "does not hunt.");
+    if (ends("with a saturation in place of the relay", without_relay(parts_, relay_swing())))
+      return decided(CauseKind::relay,
+                     "The relay switches at full level however small the error: with a saturation that reaches this "
+                     "level at twice the amplitude of the cycle the loop does not hunt.");
+    if (ends("without limits of the command", without_limits(parts_)))
+      return decided(CauseKind::saturation, "The command is limited: without the limit the loop does not hunt.");
+    return decided(CauseKind::undecided, no_single_cause());
+  }
+
+ private:
+  Cause decided(CauseKind kind, std::string why) {
+    cause_.kind = kind;
+    cause_.why = std::move(why);
+    return std::move(cause_);
+  }
+
+  bool ends(const std::string& without, const std::optional<LoopParts>& parts) {
+    if (!parts || (judging_.predict.stop && judging_.predict.stop())) return false;
+    const Hunts answer = hunts(build_loop(*parts), judging_).hunts;
+    cause_.tests.push_back({without, answer});
+    return answer == Hunts::no || answer == Hunts::neutral;  // nothing feeds a centre
+  }
+
+  /// From the tests, as they came out.
+  std::string no_single_cause() const {
+    if (cause_.tests.empty()) return "The loop has no feature that could be taken away.";
+    std::string ending, going_on, open;
+    for (const Counterfactual& test : cause_.tests) {
+      const bool ends = test.hunts == Hunts::no || test.hunts == Hunts::neutral;
+      std::string& list = ends ? ending : test.hunts == Hunts::undecided ? open : going_on;
+      list += (list.empty() ? "" : ", ") + test.without +
+              (test.hunts == Hunts::diverges ? " (where it diverges)" : std::string());
+    }
+    std::string why = "No single known cause:";
+    if (!ending.empty()) why += " the loop does not hunt " + ending + (going_on.empty() && open.empty() ? "" : ";");
+    if (!going_on.empty()) why += " it does not come to rest " + going_on + (open.empty() ? "" : ";");
+    if (!open.empty()) why += " not decided: " + open;
+    return why + ".";
+  }
+
+  /// Amplitude of the input of the relay on the cycle; 0 if there is no relay or no cycle.
+  double relay_swing() const {
+    if (!parts_.diagram && !(parts_.element && parts_.element->kind() == "relay")) return 0.0;
+    const auto cycle = std::ranges::find(cycles_, std::optional<bool>(true), &Cycle::stable);
+    if (cycle == cycles_.end() || cycle->trace.input.empty()) return 0.0;
+    const auto [low, high] = std::ranges::minmax(cycle->trace.input);
+    return 0.5 * (high - low);
+  }
+
+  std::string falling_range() const {
+    const Subject subject = subject_of(parts_);
+    if (subject.element == nullptr || !subject.opposes) return {};
+    const auto speed = falls_up_to(*subject.element);
+    return speed ? " up to " + short_number(*speed, 3) + " m/s" : std::string();
+  }
+
+  const LoopParts& parts_;
+  const Judging& judging_;
+  const std::vector<Cycle>& cycles_;
+  Cause cause_;
+};
+
+}  // namespace
+
+std::string_view to_string(CauseKind kind) {
+  switch (kind) {
+    case CauseKind::integral_action_and_stiction:
+      return "integral-action-and-stiction";
+    case CauseKind::negative_slope:
+      return "negative-slope";
+    case CauseKind::delay:
+      return "delay";
+    case CauseKind::relay:
+      return "relay";
+    case CauseKind::over_compensation:
+      return "over-compensation";
+    case CauseKind::saturation:
+      return "saturation";
+    case CauseKind::undecided:
+      break;
+  }
+  return "undecided";
+}
+
+Cause cause_of(const LoopParts& parts, const Judging& judging, const std::vector<Cycle>& cycles) {
+  return CauseStudy(parts, judging, cycles).run();
+}
+
+}  // namespace limcycle

@@ -1,0 +1,90 @@
+#include "limcycle/analysis/study/remedy/hunts.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace limcycle {
+namespace {
+
+/// The first of the outcomes with this property, as a clause; empty if there is none.
+template <class Property>
+std::string clause_of(const PredictReport& found, const Property& property) {
+  const auto one = std::ranges::find_if(found.outcomes, property);
+  return one == found.outcomes.end() ? std::string() : one->start + ": " + one->why;
+}
+
+bool is_stable(const Cycle& cycle) { return cycle.stable == true; }
+
+void judge(HuntsAnswer& answer, const std::vector<std::string>& may_diverge) {
+  const PredictReport& found = answer.found;
+  const auto is = [](Outcome outcome) { return [=](const OutcomeOfStart& one) { return one.outcome == outcome; }; };
+  const auto decide = [&](Hunts hunts, std::string why) {
+    if (why.empty()) return false;
+    answer.hunts = hunts;
+    answer.why = std::move(why);
+    return true;
+  };
+  if (std::ranges::any_of(found.cycles, is_stable)) {
+    const std::string reached =
+        clause_of(found, [&](const OutcomeOfStart& one) { return one.cycle && is_stable(found.cycles[*one.cycle]); });
+    decide(Hunts::yes, reached.empty() ? "a stable cycle that no start reaches" : reached);
+    return;
+  }
+  if (decide(Hunts::yes, clause_of(found, is(Outcome::irregular)))) return;
+  if (found.status == Status::interrupted) {
+    decide(Hunts::undecided, "interrupted");
+    return;
+  }
+  const auto open = [](const OutcomeOfStart& one) {
+    return one.outcome == Outcome::undecided || one.outcome == Outcome::cycle;  // of a cycle that is not stable
+  };
+  if (decide(Hunts::undecided, clause_of(found, open))) return;
+  if (decide(Hunts::neutral, clause_of(found, is(Outcome::family)))) return;
+  // Between the starts, motions are followed on purpose to where they diverge.
+  const auto diverges = [&](const OutcomeOfStart& one) {
+    return one.outcome == Outcome::divergence && !one.probe &&
+           std::ranges::find(may_diverge, one.start) == may_diverge.end();
+  };
+  if (decide(Hunts::diverges, clause_of(found, diverges))) return;
+  decide(Hunts::no, "every start comes to rest or slides steadily");
+}
+
+}  // namespace
+
+std::string_view to_string(Hunts hunts) {
+  switch (hunts) {
+    case Hunts::no:
+      return "no";
+    case Hunts::yes:
+      return "yes";
+    case Hunts::neutral:
+      return "neutral";
+    case Hunts::diverges:
+      return "diverges";
+    case Hunts::undecided:
+      break;
+  }
+  return "undecided";
+}
+
+HuntsAnswer hunts(const Loop& loop, const Judging& judging) try {
+  PredictOptions options = judging.predict;
+  options.methods = {false, false, false};
+  options.nyquist = false;
+  options.progress = {};
+  HuntsAnswer answer;
+  answer.found = predict(loop, options);
+  judge(answer, judging.may_diverge);
+  return answer;
+} catch (const std::invalid_argument& refused) {
+  return {.hunts = Hunts::undecided, .why = std::string("could not be simulated: ") + refused.what()};
+}
+
+std::vector<std::string> diverging_starts(const PredictReport& found) {
+  std::vector<std::string> names;
+  for (const OutcomeOfStart& one : found.outcomes)
+    if (one.outcome == Outcome::divergence && !one.probe) names.push_back(one.start);
+  return names;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,175 @@
+#include "limcycle/analysis/study/remedy/remedy.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <numbers>
+
+#include "limcycle/analysis/on_threads.hpp"
+#include "limcycle/analysis/study/balance/output_per_input.hpp"
+#include "limcycle/analysis/study/predict/in_exact_time.hpp"
+#include "limcycle/analysis/study/remedy/linear_costs.hpp"
+#include "limcycle/analysis/study/remedy/remedy_order.hpp"
+#include "limcycle/analysis/study/remedy/remedy_search.hpp"
+#include "limcycle/analysis/study/remedy/rest_range.hpp"
+#include "limcycle/models/diagram/assemble.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr double before_remedies = 0.1;  ///< of the progress bar
+
+class RemedyStudy {
+ public:
+  RemedyStudy(const LoopParts& parts, const std::vector<RemedyCandidate>& candidates, const RemedyOptions& options)
+      : parts_(parts), candidates_(candidates), options_(options) {}
+
+  RemedyReport run() {
+    look_at_the_loop();
+    if (report_.hunts == Hunts::yes && !stopped()) {
+      tell(0.05, "cause");
+      report_.cause = cause_of(parts_, loop_.judging, loop_.cycles);
+      try_all();
+      order_remedies(report_.remedies, options_.weights);
+    }
+    if (stopped())
+      report_.status = Status::interrupted;
+    else if (report_.hunts == Hunts::undecided || std::ranges::any_of(report_.remedies, [](const Remedy& r) {
+               return !r.ends && r.candidate.why_not.empty();
+             }))
+      report_.status = Status::incomplete;
+    return std::move(report_);
+  }
+
+ private:
+  bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
+  void tell(double fraction, std::string_view what) const {
+    if (options_.predict.progress) options_.predict.progress(fraction, what);
+  }
+
+  void look_at_the_loop() {
+    tell(0.0, "the loop as it stands");
+    const Loop loop = build_loop(parts_);
+    HuntsAnswer answer = hunts(loop, {options_.predict});
+    report_.why = answer.why;
+    report_.hunts = answer.hunts;
+    loop_.judging.predict = options_.predict;
+    loop_.judging.predict.progress = {};
+    loop_.judging.predict.search = answer.found.search;  // the same starts for every loop that is judged
+    loop_.judging.may_diverge = diverging_starts(answer.found);
+    loop_.followable = in_exact_time(loop).has_value() &&
+                       std::ranges::any_of(answer.found.cycles, [](const Cycle& one) { return one.stable == true; });
+    measure_motion(loop, answer.found);
+    if (!answer.found.outcomes.empty()) report_.before = std::move(answer.found.outcomes.front().trace);
+    report_.step = start_displacements(output_per_input(loop), answer.found.search, 1).front();
+    report_.now = costs_of(parts_, report_.before, answer.hunts == Hunts::no);
+    loop_.cycles = std::move(answer.found.cycles);
+  }
+
+  /// Sizes of the motion, from the cycle or the motion without a period with the largest swing.
+  void measure_motion(const Loop& loop, const PredictReport& found) {
+    HuntingSizes sizes{0.0, 1.0, 1.0};
+    const auto consider = [&](double swing, double period) {
+      if (!(swing > sizes.displacement)) return;
+      sizes.displacement = swing;
+      sizes.frequency = 2.0 * std::numbers::pi / period;
+    };
+    for (const Cycle& cycle : found.cycles)
+      if (cycle.stable == true) consider(cycle.amplitude, cycle.period);
+    for (const OutcomeOfStart& one : found.outcomes)
+      if (one.outcome == Outcome::irregular) consider(one.irregular.half_range, one.irregular.mean_period);
+    sizes.force = loop.elements.back().scales().output;
+    const Subject subject = subject_of(parts_);
+    if (subject.element != nullptr && subject.opposes) {
+      const Extent holds = holding_forces(*subject.element);
+      if (holds.high - holds.low > 0.0) sizes.force = 0.5 * (holds.high - holds.low);
+    }
+    loop_.sizes = sizes;
+  }
+
+  void try_all() {
+    report_.remedies.resize(candidates_.size());
+    std::vector<double> done(candidates_.size(), 0.0);
+    std::mutex telling;
+    std::atomic<std::size_t> next = 0;
+    const auto progress_of = [&](std::size_t i, double fraction) {
+      const std::lock_guard lock(telling);
+      done[i] = std::max(done[i], fraction);
+      double sum = 0.0;
+      for (const double one : done) sum += one;
+      tell(before_remedies + (1.0 - before_remedies) * sum / static_cast<double>(done.size()), candidates_[i].name);
+    };
+    on_threads(thread_count(options_.threads), [&] {
+      for (std::size_t i = next++; i < candidates_.size(); i = next++) {
+        report_.remedies[i] = stopped()
+                                  ? Remedy{candidates_[i], std::nullopt, 0.0, {}, {}, "interrupted"}
+                                  : one(candidates_[i], [&](double fraction) { progress_of(i, 0.95 * fraction); });
+        progress_of(i, 1.0);
+      }
+    });
+  }
+
+  Remedy one(const RemedyCandidate& candidate, const std::function<void(double)>& progress) const {
+    if (!candidate.why_not.empty()) return {candidate, std::nullopt, 0.0, {}, {}, candidate.why_not};
+    Remedy remedy = RemedySearch(candidate, loop_, progress).run();
+    if (remedy.ends != true || stopped()) return remedy;
+    if (const auto parts = candidate.parts(remedy.value)) remedy.costs = costs_of(*parts, remedy.after, true);
+    remedy.costs.robust_share = robust_share(remedy);
+    return remedy;
+  }
+
+  /// `response`: of the loop, to the step.
+  RemedyCosts costs_of(const LoopParts& parts, const Trace& response, bool rests) const {
+    RemedyCosts costs;
+    const LinearCosts linear = linear_costs(parts, report_.step);
+    costs.linear_settling_time = linear.settling_time;
+    costs.linear_overshoot = linear.overshoot;
+    costs.phase_margin = linear.phase_margin;
+    costs.delay_margin = linear.delay_margin;
+    costs.peak_sensitivity = linear.peak_sensitivity;
+    costs.noise_gain = linear.noise_gain;
+    if (!uses_error(parts)) return costs;
+    if (!parts.diagram)
+      if (const auto range = rest_range(build_loop(parts)))
+        costs.steady_state_error = Extent{parts.reference - range->high, parts.reference - range->low};
+    if (rests && !response.y.empty()) {
+      const StepNumbers real = step_numbers(response.t, response.y, response.y.front());
+      costs.settling_time = real.settling_time;
+      costs.overshoot = real.overshoot;
+    }
+    return costs;
+  }
+
+  /// Empty if more than a tenth of the samples were not decided.
+  std::optional<double> robust_share(const Remedy& remedy) const {
+    if (!options_.sampled || options_.samples == 0) return std::nullopt;
+    Judging judging = loop_.judging;
+    judging.predict.starts = std::min(judging.predict.starts, 2);
+    judging.predict.load_step = false;
+    std::size_t rest = 0, decided = 0;
+    for (std::size_t k = 0; k < options_.samples; ++k) {
+      if (stopped()) return std::nullopt;
+      const auto parts = options_.sampled(remedy.candidate, remedy.value, k);
+      const Hunts here = parts ? hunts(build_loop(*parts), judging).hunts : Hunts::undecided;
+      if (here != Hunts::undecided) ++decided;
+      if (here == Hunts::no) ++rest;
+    }
+    if (10 * decided < 9 * options_.samples) return std::nullopt;
+    return static_cast<double>(rest) / static_cast<double>(decided);
+  }
+
+  const LoopParts& parts_;
+  const std::vector<RemedyCandidate>& candidates_;
+  const RemedyOptions& options_;
+  RemedyReport report_;
+  HuntingLoop loop_;
+};
+
+}  // namespace
+
+RemedyReport remedies(const LoopParts& parts, const std::vector<RemedyCandidate>& candidates,
+                      const RemedyOptions& options) {
+  return RemedyStudy(parts, candidates, options).run();
+}
+
+}  // namespace limcycle

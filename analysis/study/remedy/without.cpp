@@ -1,0 +1,190 @@
+#include "limcycle/analysis/study/remedy/without.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "limcycle/models/element/compensation.hpp"
+#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/saturation.hpp"
+
+namespace limcycle {
+namespace {
+
+/// What is done to each part of a loop; each returns true if it changed something.
+struct PartChange {
+  std::function<bool(Controller&)> controller = [](Controller&) { return false; };
+  std::function<bool(Plant&)> plant = [](Plant&) { return false; };
+  std::function<bool(Element&)> element = [](Element&) { return false; };
+  std::function<bool(BlockKind&)> block = [](BlockKind&) { return false; };
+};
+
+bool changed_slots(LoopParts& parts, const PartChange& change) {
+  bool any = change.controller(parts.controller);
+  any = change.plant(parts.plant) || any;
+  for (std::optional<Element>* slot : {&parts.element, &parts.friction, &parts.error})
+    if (*slot) any = change.element(**slot) || any;
+  return any;
+}
+
+bool changed_blocks(Diagram& diagram, const PartChange& change) {
+  bool any = false;
+  for (Block& block : diagram.blocks) {
+    if (auto* controller = std::get_if<Controller>(&block.what)) any = change.controller(*controller) || any;
+    if (auto* plant = std::get_if<Plant>(&block.what)) any = change.plant(*plant) || any;
+    if (auto* element = std::get_if<Element>(&block.what)) any = change.element(*element) || any;
+    any = change.block(block.what) || any;
+  }
+  return any;
+}
+
+std::optional<LoopParts> changed_parts(LoopParts parts, const PartChange& change) {
+  const bool any = parts.diagram ? changed_blocks(*parts.diagram, change) : changed_slots(parts, change);
+  if (!any || validate(parts)) return std::nullopt;
+  return parts;
+}
+
+/// Sets the members to `value`; true if one of them was another.
+template <class Owner>
+bool set_members(Owner& owner, std::initializer_list<double Owner::*> members, double value) {
+  bool any = false;
+  for (const auto member : members) any = std::exchange(owner.*member, value) != value || any;
+  return any;
+}
+
+ControllerParts& own_parts(Controller& controller) {
+  return std::visit([](auto& one) -> ControllerParts& { return one; }, controller);
+}
+
+bool end_delay(Plant& plant) {
+  return std::visit(
+      []<class P>(P& one) {
+        if constexpr (requires { one.delay; })
+          return std::exchange(one.delay, 0.0) != 0.0;
+        else
+          return false;
+      },
+      plant);
+}
+
+/// Lowers each number of the law to that of another key; true if one was larger.
+bool lower_to(Element& law, std::string_view key, std::string_view to) {
+  const auto high = law.number(key), low = law.number(to);
+  if (!high || !low || !(*high > *low)) return false;
+  law = law.with(key, *low);
+  return true;
+}
+
+/// A measured curve becomes level at its least force.
+bool flatten_table(Element& law) {
+  const auto& rows = law.parameters();
+  auto values = law.values();
+  bool any = false;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    auto* forces = std::get_if<std::vector<double>>(&values[i]);
+    if (forces == nullptr || rows[i].key != "forces" || forces->empty()) continue;
+    const double least = *std::ranges::min_element(*forces);
+    any = any || *std::ranges::max_element(*forces) > least;
+    std::ranges::fill(*forces, least);
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (rows[k].key == "Fs") values[k] = least;
+  }
+  if (any) law = law.with(values);
+  return any;
+}
+
+}  // namespace
+
+std::optional<LoopParts> without_integral_action(LoopParts parts) {
+  PartChange change;
+  change.controller = [](Controller& controller) {
+    if (auto* pid = std::get_if<Pid>(&controller)) return set_members(*pid, {&Pid::ki}, 0.0);
+    auto* cascade = std::get_if<Cascade>(&controller);
+    if (cascade == nullptr) return false;
+    cascade->anti_windup = {};
+    return set_members(*cascade, {&Cascade::position_ki, &Cascade::velocity_ki}, 0.0);
+  };
+  change.block = [](BlockKind& block) {
+    auto* linear = std::get_if<LinearBlock>(&block);
+    auto* integrator = linear == nullptr ? nullptr : std::get_if<Integrator>(linear);
+    return integrator != nullptr && set_members(*integrator, {&Integrator::gain}, 0.0);
+  };
+  return changed_parts(std::move(parts), change);
+}
+
+std::optional<LoopParts> without_falling_friction(LoopParts parts) {
+  PartChange change;
+  change.element = [](Element& element) {
+    if (!element.is_friction()) return false;
+    bool any = lower_to(element, "Fs", "Fc");
+    any = lower_to(element, "Fs_minus", "Fc_minus") || any;
+    return flatten_table(element) || any;
+  };
+  return changed_parts(std::move(parts), change);
+}
+
+std::optional<LoopParts> without_delay(LoopParts parts) {
+  PartChange change;
+  change.controller = [](Controller& controller) {
+    Sampling& sampling = own_parts(controller);
+    if (!sampling.is_on()) return false;
+    sampling = Sampling{};
+    if (auto* cascade = std::get_if<Cascade>(&controller)) cascade->position_every = 1.0;
+    return true;
+  };
+  change.plant = end_delay;
+  change.block = [](BlockKind& block) {
+    auto* linear = std::get_if<LinearBlock>(&block);
+    if (linear == nullptr || !std::holds_alternative<DelayBlock>(*linear)) return false;
+    *linear = Gain{1.0};
+    return true;
+  };
+  return changed_parts(std::move(parts), change);
+}
+
+std::optional<LoopParts> without_relay(LoopParts parts, double swing) {
+  PartChange change;
+  change.element = [swing](Element& element) {
+    const auto* relay = element.as<Relay<double>>();
+    if (relay == nullptr || !(swing > 0.0)) return false;
+    Saturation<double> smooth;
+    smooth.limit = relay->level;
+    smooth.slope = 0.5 * relay->level / swing;
+    element = Element(smooth);
+    return true;
+  };
+  return changed_parts(std::move(parts), change);
+}
+
+std::optional<LoopParts> without_compensation(LoopParts parts) {
+  PartChange change;
+  change.controller = [](Controller& controller) {
+    return std::exchange(own_parts(controller).friction_compensation, 0.0) != 0.0;
+  };
+  change.element = [](Element& element) {
+    auto* compensation = element.as<Compensation<double>>();
+    return compensation != nullptr && std::exchange(compensation->level, 0.0) != 0.0;
+  };
+  return changed_parts(std::move(parts), change);
+}
+
+std::optional<LoopParts> without_limits(LoopParts parts) {
+  constexpr double far = 1e9;  // times the limit: never reached
+  PartChange change;
+  change.controller = [](Controller& controller) {
+    bool any = std::isfinite(std::exchange(own_parts(controller).saturation, infinite));
+    auto* cascade = std::get_if<Cascade>(&controller);
+    if (cascade == nullptr) return any;
+    cascade->anti_windup = {};
+    return std::isfinite(std::exchange(cascade->limit, infinite)) || any;
+  };
+  change.element = [](Element& element) {
+    auto* saturation = element.as<Saturation<double>>();
+    if (saturation == nullptr) return false;
+    saturation->limit *= far;
+    return true;
+  };
+  return changed_parts(std::move(parts), change);
+}
+
+}  // namespace limcycle

@@ -1,0 +1,24 @@
+#pragma once
+#include <optional>
+
+#include "limcycle/models/loop.hpp"
+
+namespace limcycle {
+
+/// The same loop without one of its features; empty if it has none, or if the rest is not a valid loop.
+
+/// Integral action of PID and cascade controllers and of integrator blocks.
+std::optional<LoopParts> without_integral_action(LoopParts parts);
+/// Stiction and the falling part of the friction curve: Fs = Fc, or a measured curve at its least force.
+std::optional<LoopParts> without_falling_friction(LoopParts parts);
+/// Dead times of plants and blocks, and sampling.
+std::optional<LoopParts> without_delay(LoopParts parts);
+/// Relays: a saturation in their place that reaches the same level at twice `swing`, the amplitude of the relay's
+/// input.
+std::optional<LoopParts> without_relay(LoopParts parts, double swing);
+/// Friction compensation.
+std::optional<LoopParts> without_compensation(LoopParts parts);
+/// Limits of the command, and saturations.
+std::optional<LoopParts> without_limits(LoopParts parts);
+
+}  // namespace limcycle

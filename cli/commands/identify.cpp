@@ -1,0 +1,77 @@
+#include <CLI/CLI.hpp>
+
+#include "limcycle/cli/asking_of.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/message.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/questions/identify.hpp"
+#include "limcycle/reports/identify/identify.hpp"
+
+namespace limcycle {
+namespace {
+
+struct IdentifyFlags : CommonFlags {
+  std::string fitted;   ///< --fitted
+  std::string picture;  ///< --svg
+};
+
+/// What the fitted case does not hold, and what it holds although it is not known.
+void tell_of_fitted(const IdentifyFlags& flags, const Case& from, const IdentifiedLaw& law) {
+  std::string left_out, open;
+  for (const auto& one : from.overrides)
+    if (!one.starts_with("identify.")) left_out += (left_out.empty() ? "" : ", ") + one;
+  for (const auto& one : law.numbers)
+    if (!one.identifiable) open += (open.empty() ? "" : ", ") + one.name;
+  if (!left_out.empty()) tell(flags, "--set " + left_out + " is not in " + flags.fitted);
+  if (!open.empty()) tell(flags, flags.fitted + " has values that the records do not determine: " + open);
+}
+
+int run(IdentifyFlags flags) {
+  if (flags.fitted.empty() && flags.output.ends_with(".toml")) flags.fitted = std::exchange(flags.output, {});
+  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  const Case from = load_case(flags);
+  Output output(flags, &from);
+  output.check_file("--fitted", flags.fitted);
+  output.check_file("--svg", flags.picture);
+  if (from.identify)
+    for (const auto& record : from.identify->records) output.keep("a record", record.path);
+
+  IdentifyReport report;
+  {
+    Progress progress(flags.quiet, flags.verbose);
+    report = ask_identify(from, asking_of(flags, progress));
+  }
+  const auto made = provenance(flags, &from);
+  std::string fitted, no_fitted;
+  try {
+    if (!flags.fitted.empty()) fitted = fitted_text(from, report, flags.fitted == "-" ? from.file : flags.fitted);
+  } catch (const NoAnswer& reason) {
+    no_fitted = reason.what();
+  }
+  output.text(first_line(flags, report.status) + identify_text(from.title, report) +
+              (fitted.empty() ? "" : "\nThe case with the fitted law: " + flags.fitted + "\n"));
+  if (output.wants_json()) output.json(identify_json(made, report));
+  if (output.wants_csv()) output.csv(identify_csv(report));
+  if (!flags.picture.empty()) output.file(flags.picture, identify_picture(report));
+  if (!fitted.empty()) output.file(flags.fitted, fitted);
+  output.finish();
+  tell_cut_short(flags, report.status);
+  if (!no_fitted.empty()) throw NoAnswer(no_fitted);
+  if (!fitted.empty()) tell_of_fitted(flags, from, report.laws[*report.chosen]);
+  return report.chosen && report.status == Status::converged ? exit_done : exit_no_answer;
+}
+
+}  // namespace
+
+void add_identify(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<IdentifyFlags>();
+  CLI::App* command = add_command(program, action, "identify", "Fit friction laws to measured records", true, flags,
+                                  [flags] { return run(*flags); });
+  command->add_option("--fitted", flags->fitted, "Write the case with the fitted law to FILE (so does -o FILE.toml)")
+      ->type_name("FILE");
+  command->add_option("--svg", flags->picture, "Write measured and fitted forces to FILE (so does -o FILE.svg)")
+      ->type_name("FILE");
+}
+
+}  // namespace limcycle

@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "limcycle/analysis/study/identify/synthesize.hpp"
+#include "limcycle/cli/asking_of.hpp"
+#include "limcycle/cli/command.hpp"
+#include "limcycle/cli/message.hpp"
+#include "limcycle/cli/option_values.hpp"
+#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/progress.hpp"
+#include "limcycle/reports/identify/identify.hpp"
+#include "limcycle/reports/identify/synthesize.hpp"
+
+namespace limcycle {
+namespace {
+
+struct SynthesizeFlags : CommonFlags {
+  RigFaults faults;
+  bool force = false;  ///< --force
+};
+
+const Element& law_to_synthesize(const Case& from) {
+  const Element& law = df_element(from);
+  if (!law.is_friction())
+    throw InputError({.file = from.file,
+                      .line = 0,
+                      .override = {},
+                      .key = "loop.friction",
+                      .value = {},
+                      .rule = "is required by this command: records are of a friction law",
+                      .suggestion = {}});
+  return law;
+}
+
+/// The files that are written into the folder: records in the order of their kinds, then the case.
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto kind : record_kinds) files.push_back((std::filesystem::path(folder) / kind).string() + ".csv");
+  files.push_back((std::filesystem::path(folder) / "identify.toml").string());
+  return files;
+}
+
+void check_folder(const SynthesizeFlags& flags) {
+  if (flags.output.empty()) throw refusal("--output", "is required: the folder for the records and their case");
+  std::error_code failed;
+  if (std::filesystem::exists(flags.output, failed) && !std::filesystem::is_directory(flags.output, failed))
+    throw refusal("--output " + flags.output, "is no folder");
+  for (const auto& file : files_in(flags.output))
+    if (!flags.force && std::filesystem::exists(file, failed))
+      throw refusal("--output " + flags.output, "holds " + file + " already", "--force replaces it");
+}
+
+std::vector<FrictionRecord> synthesized(const SynthesizeFlags& flags, const Element& law) {
+  Progress progress(flags.quiet, flags.verbose);
+  const Asking asking = asking_of(flags, progress);
+  std::vector<FrictionRecord> records = synthesize(law, flags.faults, flags.seed, asking.stop);
+  if (records.empty()) throw NoAnswer("stopped before the records were complete, so that none is written");
+  return records;
+}
+
+int run(SynthesizeFlags flags) {
+  const Case from = load_case(flags);
+  if (from.identify) throw refusal("CASE", "has an [identify] section already");
+  const Element& law = law_to_synthesize(from);
+  check_folder(flags);
+  const auto records = synthesized(flags, law);
+  const auto files = files_in(flags.output);
+  SynthesizeReport report{law, flags.faults, {}, files.back()};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    names.push_back(records[i].name + ".csv");
+    report.records.push_back({records[i].kind, files[i], records[i].F.size()});
+  }
+  const std::string text = from.text + (from.text.ends_with('\n') ? "\n" : "\n\n") +
+                           identify_section(std::string(law.kind()), records, names);
+  read_case(text, report.case_file);  // files that it names may be out of reach there
+  std::error_code failed;
+  std::filesystem::create_directories(std::exchange(flags.output, {}), failed);
+  Output output(flags);
+  for (const auto& file : files) output.check_file("--output", file);
+  for (std::size_t i = 0; i < records.size(); ++i) output.file(files[i], record_csv(records[i]));
+  output.file(report.case_file, text);
+  output.text(synthesize_text(from.title, report));
+  if (output.wants_json()) output.json(synthesize_json(provenance(flags, &from), report));
+  if (output.wants_csv()) output.csv(synthesize_csv(report));
+  output.finish();
+  if (!from.overrides.empty()) tell(flags, "the values of --set are in the records, but not in " + report.case_file);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_synthesize(CLI::App& program, Action& action) {
+  const auto flags = std::make_shared<SynthesizeFlags>();
+  CLI::App* command = add_command(program, action, "synthesize",
+                                  "Write the records of a rig with the case's friction law, to test `identify`", true,
+                                  flags, [flags] { return run(*flags); });
+  const auto share = [&](const char* name, double& value, const char* meaning, double most) {
+    command->add_option(name, value, meaning)->type_name("X")->check(number_in(0.0, most))->capture_default_str();
+  };
+  share("--noise", flags->faults.noise, "Noise of the force, as a share of the record's largest force", 1.0);
+  share("--drift", flags->faults.drift, "Drift of the force over a record, as such a share", 1.0);
+  share("--ripple", flags->faults.ripple, "Ripple of the force over the position, as such a share", 1.0);
+  share("--jitter", flags->faults.jitter, "Jitter of the sampling, as a share of the sample time", 0.2);
+  share("--quantum", flags->faults.quantum, "Encoder step, m; then no velocity is recorded", 1.0);
+  command->add_flag("--force", flags->force, "Replace the files in FOLDER that it writes");
+}
+
+}  // namespace limcycle

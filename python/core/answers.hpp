@@ -1,0 +1,26 @@
+#pragma once
+#include "limcycle/python/core/answer.hpp"
+#include "limcycle/questions/dissipativity.hpp"
+#include "limcycle/questions/map.hpp"
+#include "limcycle/questions/remedy.hpp"
+#include "limcycle/questions/sensitivity.hpp"
+
+namespace limcycle::python {
+
+// One function a question. Each throws InputError for a wrong one, NoAnswer if a method cannot handle the numbers.
+
+Answer predict_answer(const Question& question);
+/// Describing functions over the grid of [df]. The arrays have its shape, amplitude x frequency x bias; NaN where the
+/// document has null.
+Answer df_answer(const Question& question);
+Answer simulate_answer(const Question& question, bool check, bool audit);
+Answer continue_answer(const Question& question, const std::string& path, double low, double high);
+Answer margin_answer(const Question& question, const std::vector<std::string>& paths, double factor);
+Answer map_answer(const Question& question, const MapAxis& x, const MapAxis& y, const std::vector<std::string>& methods,
+                  int starts);
+Answer sensitivity_answer(const Question& question, const SensitivityWishes& wishes);
+Answer dissipativity_answer(const Question& question, const DissipativityWishes& wishes);
+Answer remedy_answer(const Question& question, const RemedyWishes& wishes);
+Answer identify_answer(const Question& question);
+
+}  // namespace limcycle::python

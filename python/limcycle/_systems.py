@@ -1,0 +1,76 @@
+"""Linear systems of other packages as tables of a case file. Told by what they offer, so that none is needed."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Mapping
+
+from ._errors import CaseError
+from ._toml import plain
+
+
+def table_of(system: Any, path: str) -> Any:
+    """`system`: a dictionary, (num, den), (A, B, C, D), (zeros, poles, gain), or a system of python-control or SciPy."""
+    if system is None or isinstance(system, Mapping) or hasattr(system, "to_table"):
+        return system
+    if isinstance(system, (tuple, list)):
+        if len(system) == 2:
+            return _transfer_function(system[0], system[1], path)
+        if len(system) == 3:
+            return _zpk(system[0], system[1], system[2])
+        if len(system) == 4:
+            return _state_space(system[0], system[1], system[2], system[3], path)
+        raise CaseError(path, "", f"must be (num, den), (zeros, poles, gain) or (A, B, C, D), found {len(system)} parts")
+    if hasattr(system, "fresp") or hasattr(system, "frdata"):
+        raise CaseError(path, type(system).__name__, "is a frequency response without a model",
+                        'write its points to a CSV file and give {"kind": "frf", "file": ...}')
+    if getattr(system, "dt", None) not in (None, 0, 0.0, False):
+        raise CaseError(path, f"{type(system).__name__}(dt={system.dt})", "must be a continuous-time system",
+                        "a sampled controller is a continuous one with the key sample_time")
+    if all(hasattr(system, name) for name in "ABCD"):
+        return _state_space(system.A, system.B, system.C, system.D, path)
+    if hasattr(system, "num") and hasattr(system, "den"):
+        return _transfer_function(system.num, system.den, path)
+    if hasattr(system, "zeros") and hasattr(system, "gain") and not callable(system.zeros):
+        return _zpk(system.zeros, system.poles, system.gain)
+    raise CaseError(path, "", f"must be a dictionary or a linear system, found a {type(system).__name__}")
+
+
+def _numbers(values: Any) -> List[Any]:
+    values = plain(values)
+    return list(values) if isinstance(values, (list, tuple)) else [values]
+
+
+def _polynomial(values: Any, path: str) -> List[Any]:
+    """Coefficients, highest power first; python-control has them in a list of lists."""
+    values = _numbers(values)
+    while len(values) == 1 and isinstance(plain(values[0]), (list, tuple)):
+        values = _numbers(values[0])
+    values = [plain(one) for one in values]
+    if any(isinstance(one, (list, tuple)) for one in values):
+        raise CaseError(path, "", "must have one input and one output")
+    while len(values) > 1 and values[0] == 0:
+        values = values[1:]
+    return list(values)
+
+
+def _transfer_function(num: Any, den: Any, path: str) -> Dict[str, Any]:
+    return {"kind": "transfer-function", "numerator": _polynomial(num, path), "denominator": _polynomial(den, path)}
+
+
+def _zpk(zeros: Any, poles: Any, gain: Any) -> Dict[str, Any]:
+    return {"kind": "zpk", "zeros": _numbers(zeros), "poles": _numbers(poles), "gain": plain(gain)}
+
+
+def _rows(matrix: Any) -> List[List[Any]]:
+    return [_numbers(row) for row in _numbers(matrix)]
+
+
+def _state_space(A: Any, B: Any, C: Any, D: Any, path: str) -> Dict[str, Any]:
+    A, B, C, D = _rows(A), _rows(B), _rows(C), _rows(D)
+    if len(A) > 1 and len(B) == 1:  # a list is a column of B and a row of C
+        B = [[one] for one in B[0]]
+    if len(C) > 1 and all(len(row) == 1 for row in C) and len(C) == len(A):
+        C = [[row[0] for row in C]]
+    if any(len(row) != 1 for row in B) or len(C) != 1 or len(D) != 1 or len(D[0]) != 1:
+        raise CaseError(path, "", "must have one input and one output")
+    return {"kind": "state-space", "A": A, "B": B, "C": C, "D": D}

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/reports/figures/svg_parts.hpp"
+#include "limcycle/reports/identify/identify.hpp"
+#include "limcycle/reports/number.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr std::string_view identify_style =
+    "text{font:12px system-ui,sans-serif;fill:#59636e}.frame{fill:none;stroke:#8b949e;stroke-opacity:.5}"
+    ".dot{fill:#8b949e;fill-opacity:.55}.law{fill:none;stroke:#d9661f;stroke-width:2;stroke-linejoin:round}"
+    ".zero{stroke:#8b949e;stroke-opacity:.4;stroke-dasharray:3 3}.right{text-anchor:end}"
+    ".title{font-size:14px;font-weight:600}";
+constexpr double panel_width = 350.0, panel_height = 190.0, gap = 20.0, top = 60.0, below = 56.0;
+constexpr std::size_t most_points = 700;
+
+/// What a panel shows: the force over something.
+struct PanelCurve {
+  std::vector<double> x, measured, fitted;
+  std::string over;      ///< "velocity", with its unit
+  bool by_size = false;  ///< x is the logarithm of a speed
+};
+
+PanelCurve curve_of(const PreparedRecord& record, const RecordFit& fit) {
+  PanelCurve curve;
+  for (const auto& row : record.compared) curve.measured.push_back(row.F);
+  curve.fitted = fit.forces;
+  switch (record.kind) {
+    case RecordKind::pre_sliding:
+      for (const auto& row : record.compared) curve.x.push_back(row.x);
+      curve.over = "position, m";
+      break;
+    case RecordKind::break_away:
+      for (const auto& row : record.compared) curve.x.push_back(row.t);
+      curve.over = "time, s";
+      break;
+    case RecordKind::lag:
+      for (const auto& row : record.compared) curve.x.push_back(row.v);
+      curve.over = "velocity, m/s";
+      break;
+    case RecordKind::steady_velocity:
+      // Both directions over the speed, as the curve that a law has; its low speeds need a logarithm.
+      for (std::size_t i = 0; i < record.compared.size(); ++i) {
+        const double v = record.compared[i].v, sign = v < 0.0 ? -1.0 : 1.0;
+        curve.x.push_back(std::log10(std::abs(v)));
+        curve.measured[i] *= sign;
+        curve.fitted[i] *= sign;
+      }
+      curve.over = "speed, m/s (logarithmic); forces against the motion";
+      curve.by_size = true;
+      break;
+  }
+  return curve;
+}
+
+struct Frame {
+  double left, up, x_low, x_high, y_low, y_high;
+
+  double px(double x) const { return place(x, left, panel_width, x_low, x_high); }
+  double py(double y) const { return up + panel_height - place(y, 0.0, panel_height, y_low, y_high); }
+};
+
+Frame frame_of(const PanelCurve& curve, double left, double up) {
+  const auto [x_low, x_high] = std::ranges::minmax(curve.x);
+  double y_low = 0.0, y_high = 0.0;
+  for (const auto* values : {&curve.measured, &curve.fitted}) {
+    const auto [low, high] = std::ranges::minmax(*values);
+    y_low = std::min(y_low, low);
+    y_high = std::max(y_high, high);
+  }
+  const double x_margin = x_high > x_low ? 0.03 * (x_high - x_low) : 1.0, y_margin = 0.06 * (y_high - y_low);
+  return {left, up, x_low - x_margin, x_high + x_margin, y_low - y_margin, y_high + y_margin};
+}
+
+std::string panel(const PreparedRecord& record, const RecordFit& fit, double left, double up) {
+  const PanelCurve curve = curve_of(record, fit);
+  const Frame frame = frame_of(curve, left, up);
+  std::string out =
+      fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", left, up,
+                  panel_width, panel_height);
+  out += line_of(left, frame.py(0.0), left + panel_width, frame.py(0.0), "zero");
+  const std::size_t every = curve.x.size() / most_points + 1;
+  for (std::size_t i = 0; i < curve.x.size(); i += every)
+    out += fmt::format("<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.8\"/>\n", frame.px(curve.x[i]),
+                       frame.py(curve.measured[i]));
+  std::vector<std::size_t> order(curve.x.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  if (curve.by_size) std::ranges::stable_sort(order, {}, [&](std::size_t i) { return curve.x[i]; });
+  std::string d;
+  for (std::size_t i = 0; i < order.size(); i += curve.by_size ? 1 : every)
+    d += fmt::format("{}{:.1f},{:.1f}", d.empty() ? "M" : " L", frame.px(curve.x[order[i]]),
+                     frame.py(curve.fitted[order[i]]));
+  out += fmt::format("<path class=\"law\" d=\"{}\"/>\n", d);
+  out += words_at(left, up - 6.0, "",
+                  fmt::format("{}: error {} N; largest force {} N", to_string(record.kind), with_digits(fit.error, 2),
+                              with_digits(record.largest_force, 3)));
+  const auto edge = [&](double x) { return with_digits(curve.by_size ? std::pow(10.0, x) : x, 2); };
+  const auto [low, high] = std::ranges::minmax(curve.x);
+  out += words_at(left, up + panel_height + 15.0, "", edge(low));
+  out += words_at(left + panel_width, up + panel_height + 15.0, "right", edge(high));
+  out += words_at(left, up + panel_height + 31.0, "", curve.over);
+  return out;
+}
+
+}  // namespace
+
+std::string identify_picture(const IdentifyReport& report) {
+  const IdentifiedLaw* law = shown_law(report);
+  if (law == nullptr || law->records.empty())
+    return svg_picture(760, 36, "no law was fitted", identify_style, "No law was fitted", "");
+  std::string body =
+      words_at(10.0, 38.0, "", "dots: measured friction force; line: the fitted law, driven by the measured motion");
+  const std::size_t rows = (law->records.size() + 1) / 2;
+  for (std::size_t r = 0; r < law->records.size(); ++r)
+    body += panel(report.records[r], law->records[r], 10.0 + static_cast<double>(r % 2) * (panel_width + gap),
+                  top + static_cast<double>(r / 2) * (panel_height + below));
+  const std::string title = fmt::format("{}: error on rows that it was not fitted to, {} of the largest force",
+                                        law->law.kind(), as_percent(law->held_out));
+  return svg_picture(20.0 + 2.0 * panel_width + gap, top + static_cast<double>(rows) * (panel_height + below), title,
+                     identify_style, title, body);
+}
+
+}  // namespace limcycle

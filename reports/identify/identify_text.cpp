@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/reports/identify/identify.hpp"
+#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/units.hpp"
+
+namespace limcycle {
+namespace {
+
+constexpr double surely_not_white = 1e-3;
+
+std::string unit_of(const IdentifiedNumber& one) { return one.unit == "1" ? "" : one.unit; }
+
+/// The value with the digits that half its interval leaves.
+std::string value_text(const IdentifiedNumber& one) {
+  if (!one.identifiable) return "not determined";
+  const auto &low = one.low ? one.low : one.linear_low, &high = one.high ? one.high : one.linear_high;
+  const double half = high ? 0.5 * (*high - low.value_or(0.0)) : NAN;
+  return Units::attach(with_absolute_error(one.value, half), unit_of(one));
+}
+
+std::string interval_text(const IdentifiedNumber& one) {
+  if (!one.low && !one.high) return "-";
+  const double half = one.low && one.high ? 0.5 * (*one.high - *one.low) : 0.1 * std::abs(one.value);
+  const auto end = [&](const std::optional<double>& at) {
+    return at ? with_absolute_error(*at, 0.05 * half) : std::string("?");
+  };
+  return end(one.low) + " to " + end(one.high);
+}
+
+/// "linear: 1.2 to 1.4" where that interval differs from the other by more than a tenth of its half-width.
+std::string linear_text(const IdentifiedNumber& one) {
+  if (!one.identifiable || !one.low || !one.high || !one.linear_low || !one.linear_high) return "";
+  const double half = 0.5 * (*one.high - *one.low), allowed = 0.1 * half;
+  if (std::abs(*one.low - *one.linear_low) <= allowed && std::abs(*one.high - *one.linear_high) <= allowed) return "";
+  IdentifiedNumber linear = one;
+  linear.low = one.linear_low;
+  linear.high = one.linear_high;
+  return interval_text(linear);
+}
+
+std::string names_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+std::vector<std::string> not_determined(const IdentifiedLaw& law) {
+  std::vector<std::string> names;
+  for (const auto& one : law.numbers)
+    if (!one.identifiable) names.push_back(one.name);
+  return names;
+}
+
+std::string answer_text(const IdentifyReport& report) {
+  const IdentifiedLaw* law = shown_law(report);
+  if (law == nullptr)
+    return report.status == Status::interrupted ? "No law was fitted: the work was stopped." : "No law was fitted.";
+  const std::string kind(law->law.kind());
+  if (!report.chosen)
+    return std::string("No law is recommended: ") +
+           (report.status == Status::interrupted ? "the work was stopped before all fits were complete"
+                                                 : "no fit converged") +
+           ". The numbers below are those of " + kind + " as far as it came.";
+  std::string text;
+  if (report.laws.size() > 1)
+    text = fmt::format(
+        "The simplest law that these records support is {}, with {} numbers. Its error on rows that it "
+        "was not fitted to is {} of the largest force.",
+        kind, law->fitted, as_percent(law->held_out));
+  else
+    text = fmt::format("{} fits these records; its error on rows that it was not fitted to is {} of the largest force.",
+                       kind, as_percent(law->held_out));
+  if (const auto names = not_determined(*law); !names.empty())
+    text += fmt::format(" The records do not determine {}.", names_text(names));
+  const auto coloured = std::ranges::count_if(
+      law->records, [](const RecordFit& one) { return one.whiteness.probability < surely_not_white; });
+  if (coloured > 0)
+    text += fmt::format(
+        " In {} of {} records the residuals are not white: the law misses something there, and the "
+        "intervals are too narrow.",
+        coloured, law->records.size());
+  return text;
+}
+
+Table ranking(const IdentifyReport& report) {
+  Table table{{{"law", "", Align::left}, {"numbers", ""}, {"BIC", ""}, {"held-out error", ""}, {"", "", Align::left}},
+              {}};
+  double best = infinite;
+  for (const auto& law : report.laws) best = std::isfinite(law.bic) ? std::min(best, law.bic) : best;
+  for (std::size_t i = 0; i < report.laws.size(); ++i) {
+    const auto& law = report.laws[i];
+    const std::string bic = std::isfinite(law.bic) ? fmt::format("+{:.1f}", law.bic - best) : "-";
+    table.rows.push_back({std::string(law.law.kind()), std::to_string(law.fitted), bic == "+0.0" ? "least" : bic,
+                          as_percent(law.held_out),
+                          report.chosen == i                ? "chosen"
+                          : law.status == Status::converged ? ""
+                                                            : std::string(to_string(law.status))});
+  }
+  return table;
+}
+
+Table number_table(const IdentifiedLaw& law) {
+  Table table{{{"number", "", Align::left}, {"value", ""}, {"95 % interval", ""}}, {}};
+  const bool linear = std::ranges::any_of(law.numbers, [](const auto& one) { return !linear_text(one).empty(); });
+  if (linear) table.columns.push_back({"linearised", ""});
+  for (const auto& one : law.numbers) {
+    table.rows.push_back({one.name, value_text(one), interval_text(one)});
+    if (linear) table.rows.back().push_back(linear_text(one));
+  }
+  return table;
+}
+
+Table record_table(const IdentifyReport& report, const IdentifiedLaw& law) {
+  Table table{{{"record", "", Align::left}, {"rows", ""}, {"error", "N"}, {"of largest", ""}, {"white", ""}}, {}};
+  for (std::size_t r = 0; r < law.records.size(); ++r) {
+    const auto& record = report.records[r];
+    const auto& fit = law.records[r];
+    const double p = fit.whiteness.probability;
+    table.rows.push_back(
+        {std::string(to_string(record.kind)), std::to_string(record.compared.size()), with_digits(fit.error, 3),
+         as_percent(fit.error / record.largest_force),
+         p < surely_not_white ? fmt::format("no (p = {:.0e})", p) : fmt::format("yes (p = {:.2f})", p)});
+  }
+  return table;
+}
+
+/// "sigma0^0.70 sigma1^-0.70 (standard deviation: a factor of 12)".
+std::string direction_text(const Undetermined& one) {
+  const bool single = one.direction.size() == 1;
+  std::string product;
+  std::vector<std::string> names;
+  for (const auto& [name, weight] : one.direction) {
+    product += (product.empty() ? "" : " ") + (single ? name : fmt::format("{}^{:.2f}", name, weight));
+    names.push_back(name);
+  }
+  const std::string text = single || one.powers ? product : "a combination of " + names_text(names);
+  if (!std::isfinite(one.deviation)) return text + (single ? " (no row depends on it)" : " (no row depends on this)");
+  if (!one.powers) return text;
+  return text +
+         fmt::format(" (standard deviation: a factor of {})", with_digits(std::exp(std::min(one.deviation, 300.0)), 2));
+}
+
+std::string details(const IdentifyReport& report, const IdentifiedLaw& law) {
+  std::vector<std::string> notes;
+  for (const auto& one : law.undetermined) notes.push_back("not determined: " + direction_text(one));
+  for (Eigen::Index i = 0; i < law.correlations.rows(); ++i)
+    for (Eigen::Index k = 0; k < i; ++k)
+      if (std::abs(law.correlations(i, k)) > 0.95)
+        notes.push_back(fmt::format("{} and {} are correlated by {:.3f}", law.correlated[static_cast<std::size_t>(k)],
+                                    law.correlated[static_cast<std::size_t>(i)], law.correlations(i, k)));
+  for (const auto& note : law.notes) notes.push_back(note);
+  if (law.march_error > 0.1)
+    notes.push_back(fmt::format("the integration error is {} of the noise, more than it should be",
+                                with_digits(law.march_error, 2)));
+  for (const auto& record : report.records)
+    for (const auto& note : record.notes) notes.push_back(record.name + ": " + note);
+  return notes_text(notes);
+}
+
+}  // namespace
+
+const IdentifiedLaw* shown_law(const IdentifyReport& report) {
+  if (report.chosen) return &report.laws[*report.chosen];
+  const auto found = std::ranges::find_if(report.laws, [](const auto& law) { return !law.records.empty(); });
+  return found == report.laws.end() ? nullptr : &*found;
+}
+
+std::string identify_text(const std::string& title, const IdentifyReport& report) {
+  std::string out = wrapped(title) + "\n" + wrapped(answer_text(report));
+  if (report.laws.size() > 1) out += "\nLaws\n" + ranking(report).text();
+  if (const IdentifiedLaw* law = shown_law(report)) {
+    out += fmt::format("\nNumbers of {}\n", law->law.kind()) + number_table(*law).text();
+    out += "\nRecords\n" + record_table(report, *law).text();
+    out += details(report, *law);
+  }
+  if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
+  return out;
+}
+
+}  // namespace limcycle

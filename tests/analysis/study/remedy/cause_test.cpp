@@ -1,0 +1,96 @@
+#include "limcycle/analysis/study/remedy/cause.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "limcycle/analysis/study/remedy/without.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using limcycle::test::coulomb;
+using limcycle::test::lugre;
+using limcycle::test::relay;
+using limcycle::test::saturation;
+using limcycle::test::servo_parts;
+
+namespace {
+
+LoopParts through(Element element, std::vector<double> numerator, std::vector<double> denominator, double delay) {
+  LoopParts parts;
+  parts.plant = TransferFunction{std::move(numerator), std::move(denominator), delay};
+  parts.element = std::move(element);
+  return parts;
+}
+
+Cause cause_in(const LoopParts& parts) { return cause_of(parts, {}, hunts(build_loop(parts), {}).found.cycles); }
+CauseKind kind_of_cause(const LoopParts& parts) { return cause_in(parts).kind; }
+
+}  // namespace
+
+TEST_CASE("cause: integral action against stiction, for two laws and in other units") {
+  CHECK(kind_of_cause(servo_parts(lugre())) == CauseKind::integral_action_and_stiction);
+  LoopParts small = servo_parts(coulomb(1.5e-3, 1e-3));  // kg, N and N/m a thousandth: the same motion
+  small.plant = Mass{1e-3, 0.0, 0.0};
+  small.controller = test::pid(3e-3, 4e-3, 6e-3);
+  const Cause cause = cause_in(small);
+  CHECK(cause.kind == CauseKind::integral_action_and_stiction);
+  REQUIRE(cause.tests.size() == 2);
+  CHECK(cause.tests[0].hunts == Hunts::no);
+  CHECK(cause.tests[1].hunts == Hunts::no);
+}
+
+TEST_CASE("cause: the falling friction curve on a belt, with the speed up to which it falls") {
+  LoopParts parts;
+  parts.plant = Belt{1.0, 2.0, 0.0, 0.1};
+  parts.friction = lugre();
+  const Cause cause = cause_in(parts);
+  CHECK(cause.kind == CauseKind::negative_slope);
+  // F = 1 + exp(-(v/vs)^2)/2 + 0.4 v is least where exp(-x^2) x = 0.4 vs, x = v/vs = 2.986.
+  CHECK_THAT(cause.why, Catch::Matchers::Contains("up to 0.00299 m/s"));
+}
+
+TEST_CASE("cause: what is left of a belt without damping when friction no longer falls is a centre") {
+  LoopParts parts;
+  parts.plant = Belt{1.0, 2.0, 0.0, 0.1};
+  parts.friction = coulomb(1.5, 1.0);
+  const Cause cause = cause_in(parts);
+  CHECK(cause.kind == CauseKind::negative_slope);
+  CHECK(cause.tests.back().hunts == Hunts::neutral);
+}
+
+TEST_CASE("cause: the relay, the dead time and too strong a compensation") {
+  CHECK(kind_of_cause(through(relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0}, 0.0)) == CauseKind::relay);
+  CHECK(kind_of_cause(through(saturation(1.0), {5.0}, {1.0, 1.0}, 1.0)) == CauseKind::delay);
+  LoopParts parts;
+  parts.plant = Mass{1.0, 0.0, 0.0};
+  Pid pd = test::pid(100.0, 0.0, 10.0);
+  pd.friction_compensation = 1.3;
+  pd.lag = 0.05;
+  parts.controller = pd;
+  parts.friction = coulomb(1.0, 1.0);
+  CHECK(kind_of_cause(parts) == CauseKind::over_compensation);
+}
+
+TEST_CASE("cause: an unstable linear part is no single feature's fault") {
+  // 8/(s + 1)^3 is at the border of stability; at 10 a saturation makes a limit cycle of it.
+  const Cause cause = cause_in(through(saturation(1.0), {10.0}, {1.0, 3.0, 3.0, 1.0}, 0.0));
+  CHECK(cause.kind == CauseKind::undecided);
+  CHECK_FALSE(cause.why.empty());
+}
+
+TEST_CASE("cause: taking a feature away changes nothing else, and says where there is none") {
+  const LoopParts servo = servo_parts(lugre());
+  CHECK_FALSE(without_delay(servo));
+  CHECK_FALSE(without_limits(servo));
+  CHECK_FALSE(without_compensation(servo));
+  CHECK_FALSE(without_relay(servo, 1.0));
+  const auto pd = without_integral_action(servo);
+  REQUIRE(pd);
+  CHECK(std::get<Pid>(pd->controller).ki == 0.0);
+  CHECK(std::get<Pid>(pd->controller).kd == 6.0);
+  CHECK_FALSE(without_integral_action(*pd));
+  const auto level = without_falling_friction(servo);
+  REQUIRE(level);
+  CHECK(level->friction->number("Fs") == level->friction->number("Fc"));
+  CHECK(level->friction->number("sigma0") == servo.friction->number("sigma0"));
+  CHECK_FALSE(without_falling_friction(*level));
+}

@@ -1,0 +1,155 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "limcycle/analysis/energy/loop/stuck_set.hpp"
+#include "limcycle/analysis/study/remedy/linear_costs.hpp"
+#include "limcycle/analysis/study/remedy/rest_range.hpp"
+#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using limcycle::test::coulomb;
+using limcycle::test::lugre;
+using limcycle::test::pid;
+using limcycle::test::servo_parts;
+using Complex = std::complex<double>;
+
+namespace {
+
+LoopParts position_loop(double kp, double ki, double kd, double load = 0.0) {
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  parts.controller = pid(kp, ki, kd);
+  parts.load = load;
+  return parts;
+}
+
+DeadZone<double> dead_zone(double half_width) {
+  DeadZone<double> element;
+  element.half_width = half_width;
+  return element;
+}
+
+void check_range(const LoopParts& parts, double low, double high) {
+  const auto range = rest_range(build_loop(parts));
+  REQUIRE(range);
+  CHECK(range->low == Approx(low).margin(1e-9));
+  CHECK(range->high == Approx(high).margin(1e-9));
+}
+
+}  // namespace
+
+TEST_CASE("rest range: the stuck states of a linear loop, as stuck_set finds them") {
+  check_range(position_loop(3.0, 0.0, 6.0), -0.5, 0.5);       // Fs/kp
+  check_range(position_loop(3.0, 0.0, 6.0, 0.3), -0.4, 0.6);  // (load -+ Fs)/kp
+  check_range(position_loop(3.0, 4.0, 6.0), 0.0, 0.0);        // the integral stands still at e = 0 only
+  for (const double kp : {0.7, 3.0, 250.0}) {
+    const Loop loop = build_loop(position_loop(kp, 0.0, 6.0, -0.2));
+    const auto range = rest_range(loop);
+    const StuckSet stuck = stuck_set(loop, {.march = false, .stop = {}});
+    REQUIRE(range);
+    CHECK(range->low == Approx(stuck.output.low).epsilon(1e-9));
+    CHECK(range->high == Approx(stuck.output.high).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("rest range: a dead zone, a limit and a compensation widen it by what they hide") {
+  LoopParts parts = position_loop(3.0, 4.0, 6.0);
+  parts.error = dead_zone(0.1);
+  check_range(parts, -0.1, 0.1);  // wherever the integral sees nothing
+  parts.controller = pid(3.0, 0.0, 6.0);
+  check_range(parts, -0.6, 0.6);  // h + Fs/kp
+  parts = position_loop(3.0, 0.0, 6.0);
+  std::get<Pid>(parts.controller).saturation = 2.0;
+  check_range(parts, -0.5, 0.5);
+  std::get<Pid>(parts.controller).saturation = 1.0;  // too weak to break away: it rests anywhere
+  const auto anywhere = rest_range(build_loop(parts));
+  REQUIRE(anywhere);
+  CHECK(std::isinf(anywhere->low));
+  CHECK(std::isinf(anywhere->high));
+  parts = position_loop(3.0, 0.0, 6.0);
+  std::get<Pid>(parts.controller).friction_compensation = 0.6;
+  check_range(parts, -0.7, 0.7);  // at most (Fs + level)/kp
+}
+
+TEST_CASE("rest range: no answer where nothing rests or an element is of another kind") {
+  CHECK_FALSE(rest_range(test::belt(lugre())));  // it slides
+  CHECK_FALSE(rest_range(test::forward(test::relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0})));
+}
+
+TEST_CASE("linear costs: margins of a mass under PD control, in closed form") {
+  for (const double m : {1.0, 0.02}) {
+    LoopParts parts = position_loop(3.0 * m, 0.0, 6.0 * m);
+    parts.plant = Mass{m, 0.0, 0.0};
+    const LinearCosts costs = linear_costs(parts, 1.0);
+    REQUIRE(costs.stable);
+    const double kp = 3.0, kd = 6.0;  // |kp + j kd w| = w^2
+    const double w = std::sqrt(0.5 * (kd * kd + std::sqrt(kd * kd * kd * kd + 4.0 * kp * kp)));
+    const double phase = std::atan2(kd * w, kp);
+    CHECK(costs.phase_margin.value() == Approx(phase).epsilon(1e-9));
+    CHECK(costs.delay_margin.value() == Approx(phase / w).epsilon(1e-9));
+    CHECK(std::isinf(costs.noise_gain.value()));  // a derivative without a filter
+    // S = s^2/(s^2 + kd s + kp) does not exceed 1 for such damping.
+    CHECK(costs.peak_sensitivity.value() == Approx(1.0).epsilon(1e-4));
+    // Overdamped from rest: y = (s1 exp(s2 t) - s2 exp(s1 t))/(s1 - s2).
+    CHECK(costs.overshoot.value() == Approx(0.0).margin(1e-9));
+    const double root = std::sqrt(kd * kd / 4.0 - kp), s1 = -kd / 2.0 + root, s2 = -kd / 2.0 - root;
+    const double t = costs.settling_time.value();
+    const auto y = [&](double at) { return (s1 * std::exp(s2 * at) - s2 * std::exp(s1 * at)) / (s1 - s2); };
+    CHECK(std::abs(y(t)) == Approx(0.02).epsilon(0.01));
+  }
+}
+
+TEST_CASE("linear costs: sensitivity and noise gain of a filtered PID with a dead time, against a plain grid") {
+  LoopParts parts = position_loop(3.0, 4.0, 6.0);
+  auto& controller = std::get<Pid>(parts.controller);
+  controller.tf = 0.02;
+  controller.lag = 0.005;
+  const LinearCosts costs = linear_costs(parts, 1.0);
+  REQUIRE(costs.stable);
+  double peak = 0.0, noise = 0.0;
+  for (int i = 0; i <= 200000; ++i) {
+    const Complex s(0.0, 1e-3 * std::pow(10.0, 8.0 * i / 200000.0));
+    const Complex C = (3.0 + 4.0 / s + 6.0 * s / (0.02 * s + 1.0)) / (0.005 * s + 1.0), L = C / (s * s);
+    peak = std::max(peak, 1.0 / std::abs(1.0 + L));
+    noise = std::max(noise, std::abs(C / (1.0 + L)));
+  }
+  CHECK(costs.peak_sensitivity.value() == Approx(peak).epsilon(1e-6));
+  CHECK(costs.noise_gain.value() == Approx(noise).epsilon(1e-6));
+}
+
+TEST_CASE("linear costs: a sampled derivative passes noise up to half the sampling frequency only") {
+  LoopParts parts = position_loop(3.0, 0.0, 6.0);
+  std::get<Pid>(parts.controller).sample_time = 0.01;
+  const LinearCosts costs = linear_costs(parts, 1.0);
+  REQUIRE(costs.stable);
+  const Complex s(0.0, std::numbers::pi / 0.01), C = 3.0 + 6.0 * s, L = C / (s * s) * std::exp(-0.005 * s);
+  CHECK(costs.noise_gain.value() == Approx(std::abs(C / (1.0 + L))).epsilon(1e-6));
+}
+
+TEST_CASE("linear costs: an element that changes the gain leaves them unknown") {
+  LoopParts parts = position_loop(3.0, 0.0, 6.0);
+  auto half = dead_zone(0.1);
+  half.slope = 0.5;
+  parts.error = half;
+  CHECK_FALSE(linear_costs(parts, 1.0).stable);
+  CHECK_FALSE(linear_costs(parts, 1.0).phase_margin);
+}
+
+TEST_CASE(
+    "linear costs: of a loop that is unstable without friction nothing is given, nor of one without a controller") {
+  CHECK_FALSE(linear_costs(position_loop(3.0, 40.0, 6.0), 1.0).stable);  // ki m > kp kd
+  std::string why;
+  LoopParts belt;
+  belt.plant = Belt{1.0, 2.0, 0.0, 0.1};
+  belt.friction = lugre();
+  CHECK_FALSE(open_loop(belt, why));
+  CHECK(why == "there is no controller");
+}
+
+TEST_CASE("step numbers: the last time outside 2 % and the largest swing beyond zero") {
+  const StepNumbers numbers = step_numbers({5.0, 6.0, 7.0, 8.0, 9.0}, {2.0, -0.5, 0.1, 0.01, 0.0}, 2.0);
+  CHECK(numbers.settling_time == 2.0);
+  CHECK(numbers.overshoot == 0.25);
+  CHECK(step_numbers({}, {}, 1.0).overshoot == 0.0);
+}

@@ -1,0 +1,173 @@
+#include "limcycle/analysis/study/remedy/remedy.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "limcycle/tests/loops.hpp"
+
+using namespace limcycle;
+using limcycle::test::coulomb;
+using limcycle::test::servo_parts;
+
+namespace {
+
+/// One number of the controller.
+RemedyCandidate of_controller(const LoopParts& parts, double Pid::*number, Measure measure, RemedyCandidate::Way way) {
+  return {"test",
+          "loop.controller.test",
+          "1",
+          {},
+          std::get<Pid>(parts.controller).*number,
+          measure,
+          way,
+          [parts, number](double value) -> std::optional<LoopParts> {
+            LoopParts with = parts;
+            std::get<Pid>(with.controller).*number = value;
+            return with;
+          }};
+}
+
+RemedyCandidate leak_of(const LoopParts& parts) {
+  return of_controller(parts, &Pid::leak, Measure::rate, RemedyCandidate::Way::up);
+}
+
+RemedyOptions quick(int threads = 1) {
+  RemedyOptions options;
+  options.predict.methods = {false, false, false};
+  options.threads = threads;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("remedy: the leak of a servo, its edge confirmed by predict on both sides, in two units") {
+  std::vector<double> leaks, errors;
+  for (const double unit : {1.0, 1e-3}) {  // of length, with the forces unchanged
+    LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+    parts.plant = Mass{1.0 / unit, 0.0, 0.0};
+    parts.controller = test::pid(3.0 / unit, 4.0 / unit, 6.0 / unit);
+    const auto candidate = leak_of(parts);
+    const RemedyReport report = remedies(parts, {candidate}, quick());
+    CHECK(report.hunts == Hunts::yes);
+    CHECK(report.status == Status::converged);
+    REQUIRE(report.remedies.size() == 1);
+    const Remedy& remedy = report.remedies.front();
+    REQUIRE(remedy.ends == true);
+    REQUIRE(remedy.edges.size() == 1);
+    CHECK(remedy.value == remedy.edges[0]);
+    CHECK(remedy.edges[0] / remedy.beyond[0] > 1.0);
+    CHECK(remedy.edges[0] / remedy.beyond[0] < 1.002);
+    const auto has_cycle = [&](double value) {
+      const auto found = predict(build_loop(*candidate.parts(value)));
+      return std::ranges::any_of(found.cycles, [](const Cycle& one) { return one.stable == true; });
+    };
+    CHECK_FALSE(has_cycle(remedy.edges[0]));
+    CHECK(has_cycle(remedy.beyond[0]));
+    REQUIRE(remedy.costs.steady_state_error);  // Fs/(kp + ki/leak)
+    CHECK(remedy.costs.steady_state_error->high == Approx(1.5 * unit / (3.0 + 4.0 / remedy.value)).epsilon(1e-9));
+    CHECK(remedy.costs.settling_time.value() > 0.0);
+    CHECK(remedy.best);
+    CHECK_FALSE(report.now.settling_time);  // it hunts
+    leaks.push_back(remedy.value);
+    errors.push_back(remedy.costs.steady_state_error->high / unit);
+  }
+  CHECK(leaks[0] == Approx(leaks[1]).epsilon(3e-3));
+  CHECK(errors[0] == Approx(errors[1]).epsilon(3e-3));
+}
+
+TEST_CASE("remedy: too strong a compensation is cured at the level of the friction") {
+  LoopParts parts;
+  parts.plant = Mass{1.0, 0.0, 0.0};
+  Pid pd = test::pid(100.0, 0.0, 10.0);
+  pd.friction_compensation = 1.3;
+  pd.lag = 0.05;
+  parts.controller = pd;
+  parts.friction = coulomb(1.0, 1.0);
+  const std::vector<RemedyCandidate> candidates{
+      {"dither", "", "", "there is none here"},
+      of_controller(parts, &Pid::friction_compensation, Measure::force, RemedyCandidate::Way::both)};
+  const RemedyReport one = remedies(parts, candidates, quick(1)), two = remedies(parts, candidates, quick(2));
+  REQUIRE(one.remedies.size() == 2);
+  CHECK(one.remedies.front().value == Approx(1.0).epsilon(2e-3));  // Fc
+  // What does not apply comes last with its reason; the same for any number of threads.
+  CHECK(one.remedies.back().candidate.name == "dither");
+  CHECK(one.remedies.back().why == "there is none here");
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(one.remedies[i].value == two.remedies[i].value);
+    CHECK(one.remedies[i].costs.settling_time == two.remedies[i].costs.settling_time);
+    CHECK(one.remedies[i].why == two.remedies[i].why);
+  }
+}
+
+TEST_CASE("remedy: weights decide the order of those that end hunting") {
+  LoopParts parts;
+  parts.plant = Mass{1.0, 0.0, 0.0};
+  Pid pd = test::pid(100.0, 0.0, 10.0);
+  pd.friction_compensation = 1.3;
+  pd.lag = 0.05;
+  parts.controller = pd;
+  parts.friction = coulomb(1.0, 1.0);
+  const std::vector<RemedyCandidate> candidates{
+      of_controller(parts, &Pid::kp, Measure::stiffness, RemedyCandidate::Way::down),
+      of_controller(parts, &Pid::friction_compensation, Measure::force, RemedyCandidate::Way::down)};
+  for (const auto& [cost, weighed] : {std::pair(0, 0), {6, 1}}) {  // error; noise
+    RemedyOptions options = quick();
+    options.weights[static_cast<std::size_t>(cost)] = 1.0;
+    const RemedyReport report = remedies(parts, candidates, options);
+    REQUIRE(report.remedies[1].ends == true);
+    const auto& best = report.remedies[0].costs;
+    const auto& other = report.remedies[1].costs;
+    if (weighed == 0)
+      CHECK(best.steady_state_error->high < other.steady_state_error->high);
+    else
+      CHECK(best.noise_gain.value() < other.noise_gain.value());
+  }
+}
+
+TEST_CASE("remedy: what makes a start diverge that hunted is no cure, what diverged before may") {
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  std::get<Pid>(parts.controller).saturation = 4.0;  // from afar it diverges already
+  Judging judging;
+  judging.predict.search = SearchBox{1e-4, 100.0, 0.01, 100.0};
+  const HuntsAnswer before = hunts(build_loop(parts), judging);
+  CHECK(before.hunts == Hunts::yes);
+  judging.may_diverge = diverging_starts(before.found);
+  REQUIRE_FALSE(judging.may_diverge.empty());
+  CHECK(judging.may_diverge.size() < 5);
+  parts.friction = coulomb(1.0, 1.0);
+  CHECK(hunts(build_loop(parts), judging).hunts == Hunts::no);
+  std::get<Pid>(parts.controller).kd = 0.1;  // the linear part is unstable: more starts diverge
+  CHECK(hunts(build_loop(parts), judging).hunts == Hunts::diverges);
+}
+
+TEST_CASE("remedy: mirrored gains have the mirrored edge") {
+  std::vector<double> edges;
+  for (const double sign : {1.0, -1.0}) {  // y = -x, and all gains negative
+    LoopParts parts;
+    StateSpacePlant plant;
+    plant.A = Eigen::MatrixXd{{0.0, 1.0}, {0.0, 0.0}};
+    plant.B = Eigen::MatrixXd{{0.0}, {1.0}};
+    plant.C = Eigen::MatrixXd{{sign, 0.0}};
+    plant.C_friction = Eigen::MatrixXd{{1.0, 0.0}};
+    plant.C_velocity = Eigen::MatrixXd{{0.0, 1.0}};
+    parts.plant = plant;
+    parts.controller = test::pid(sign * 3.0, sign * 4.0, sign * 6.0);
+    parts.friction = coulomb(1.05, 1.0);
+    const RemedyReport report =
+        remedies(parts, {of_controller(parts, &Pid::ki, Measure::own, RemedyCandidate::Way::both)}, quick());
+    REQUIRE(report.remedies.size() == 1);
+    REQUIRE(report.remedies[0].ends == true);
+    edges.push_back(report.remedies[0].value);
+  }
+  CHECK(edges[0] == Approx(-edges[1]).epsilon(1e-3));
+}
+
+TEST_CASE("remedy: a loop that rests needs none, and a stop keeps what is known") {
+  const LoopParts parts = servo_parts(coulomb(1.0, 1.0));
+  const RemedyReport report = remedies(parts, {leak_of(parts)}, quick());
+  CHECK(report.hunts == Hunts::no);
+  CHECK(report.remedies.empty());
+  RemedyOptions stopped = quick();
+  stopped.predict.stop = [] { return true; };
+  CHECK(remedies(servo_parts(coulomb(1.5, 1.0)), {}, stopped).status == Status::interrupted);
+}
