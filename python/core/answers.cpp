@@ -298,7 +298,9 @@ Answer identify_answer(const Question& question) {
   const Sheet sheet = sheet_of(question, report->status);
   Answer answer = documents(sheet, report, identify_json, identify_csv, identify_text);
   answer.picture = [=] { return identify_picture(*report); };
-  answer.applied = [=](const std::string&) { return read_case(fitted_text(*sheet.from, *report, sheet.from->file), sheet.from->file); };
+  answer.applied = [=](const std::string&) {
+    return read_case(fitted_text(*sheet.from, *report, sheet.from->file), sheet.from->file);
+  };
   return answer;
 }
 

@@ -94,7 +94,8 @@ TEST_CASE("identify, synthesize: a case whose files would be out of reach is not
     data += std::to_string(0.1 * i) + "," + std::to_string(-1.0 / (0.01 * i * i)) + ",0.0\n";
   scratch.put("plant.csv", data);
   const std::string plant =
-      "[loop.plant]\nkind = \"frf\"\nfile = \"plant.csv\"\nfrequency = \"rad/s\"\nformat = \"re-im\"\n[loop.controller]\nkind = \"pid\"\nkp = 1.0\n";
+      "[loop.plant]\nkind = \"frf\"\nfile = \"plant.csv\"\nfrequency = \"rad/s\"\nformat = "
+      "\"re-im\"\n[loop.controller]\nkind = \"pid\"\nkp = 1.0\n";
   const auto refused = run({"synthesize", scratch.put("c.toml", rig_law + plant), "-o", scratch.file("rig")});
   CHECK(refused.code == 2);
   CHECK_THAT(refused.err, Contains("plant.csv"));

@@ -85,7 +85,8 @@ TEST_CASE("growth: without bound from afar, and none towards a bound or a cycle"
   CHECK_FALSE(grows([](int n) { return 1.0 / (1.0 + n); }));
 }
 
-TEST_CASE("settle: a body that creeps to the point where its forces balance comes to rest, and makes no cycle of roundings") {
+TEST_CASE(
+    "settle: a body that creeps to the point where its forces balance comes to rest, and makes no cycle of roundings") {
   // Too strong a compensation drives it on with level - Fc until the spring of the controller balances that: it arrives
   // after infinite time, and nothing but roundings would turn it.
   for (const double unit : {1.0, 1e-3}) {  // of length, with the forces unchanged
@@ -93,7 +94,8 @@ TEST_CASE("settle: a body that creeps to the point where its forces balance come
       Pid controller = pid(kp / unit, 0.0, 10.0 / unit);
       controller.friction_compensation = 1.3;
       controller.lag = 0.05;
-      const Settled settled = from(loop_of(Mass{1.0 / unit, 0.0, 0.0}, controller, coulomb(1.0, 1.0)), unit, 1e-9 * unit);
+      const Settled settled =
+          from(loop_of(Mass{1.0 / unit, 0.0, 0.0}, controller, coulomb(1.0, 1.0)), unit, 1e-9 * unit);
       INFO("kp = " << kp << ", unit = " << unit);
       CHECK(settled.outcome == Outcome::rest);
       CHECK(std::abs(settled.trace.y.back()) == Approx(0.3 * unit / kp).epsilon(1e-6));
