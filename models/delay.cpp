@@ -197,9 +197,9 @@ double pade_error(double w, double delay, int order) {
   return 2.0 * std::abs(std::sin(0.5 * turn - std::atan(g)));
 }
 
-TimeDomainLoop in_time_domain(const Loop& of, int pade_order) {
-  if (of.sampled) return {with_fits(*of.sampled), 0, 0};
-  const Loop loop = with_fits(of);
+TimeDomainLoop in_time_domain(const Loop& loop, int pade_order) {
+  if (loop.sampled) return {with_fits(*loop.sampled), 0, 0};
+  if (!loop.measured.empty()) return in_time_domain(with_fits(loop), pade_order);
   if (!(loop.delay > 0.0)) return {loop, 0, 0};
   const MatrixXd rows = delayed_rows(loop);
   if (rows.isZero(0.0)) return {without_delay(loop), 0, 0};

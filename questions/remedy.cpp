@@ -25,6 +25,7 @@ std::vector<RemedyCandidate> chosen_remedies(const Case& from, const std::string
                                              const std::vector<std::string>& names) {
   auto candidates = remedy_candidates(from);
   std::vector<std::string> known;
+  known.reserve(candidates.size());
   for (const auto& one : candidates) known.push_back(one.name);
   for (const auto& name : names)
     if (std::ranges::find(known, name) == known.end()) throw unknown(argument, name, "is not a remedy", known);

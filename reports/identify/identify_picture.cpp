@@ -15,7 +15,7 @@ constexpr std::string_view identify_style =
     ".dot{fill:#8b949e;fill-opacity:.55}.law{fill:none;stroke:#d9661f;stroke-width:2;stroke-linejoin:round}"
     ".zero{stroke:#8b949e;stroke-opacity:.4;stroke-dasharray:3 3}.right{text-anchor:end}"
     ".title{font-size:14px;font-weight:600}";
-constexpr double panel_width = 350.0, panel_height = 190.0, gap = 20.0, top = 60.0, below = 56.0;
+constexpr double record_width = 350.0, record_height = 190.0, gap = 20.0, top = 60.0, below = 56.0;
 constexpr std::size_t most_points = 700;
 
 /// What a panel shows: the force over something.
@@ -57,14 +57,14 @@ PanelCurve curve_of(const PreparedRecord& record, const RecordFit& fit) {
   return curve;
 }
 
-struct Frame {
+struct RecordFrame {
   double left, up, x_low, x_high, y_low, y_high;
 
-  double px(double x) const { return place(x, left, panel_width, x_low, x_high); }
-  double py(double y) const { return up + panel_height - place(y, 0.0, panel_height, y_low, y_high); }
+  double px(double x) const { return place(x, left, record_width, x_low, x_high); }
+  double py(double y) const { return up + record_height - place(y, 0.0, record_height, y_low, y_high); }
 };
 
-Frame frame_of(const PanelCurve& curve, double left, double up) {
+RecordFrame frame_of(const PanelCurve& curve, double left, double up) {
   const auto [x_low, x_high] = std::ranges::minmax(curve.x);
   double y_low = 0.0, y_high = 0.0;
   for (const auto* values : {&curve.measured, &curve.fitted}) {
@@ -78,11 +78,11 @@ Frame frame_of(const PanelCurve& curve, double left, double up) {
 
 std::string panel(const PreparedRecord& record, const RecordFit& fit, double left, double up) {
   const PanelCurve curve = curve_of(record, fit);
-  const Frame frame = frame_of(curve, left, up);
+  const RecordFrame frame = frame_of(curve, left, up);
   std::string out =
       fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", left, up,
-                  panel_width, panel_height);
-  out += line_of(left, frame.py(0.0), left + panel_width, frame.py(0.0), "zero");
+                  record_width, record_height);
+  out += line_of(left, frame.py(0.0), left + record_width, frame.py(0.0), "zero");
   const std::size_t every = curve.x.size() / most_points + 1;
   for (std::size_t i = 0; i < curve.x.size(); i += every)
     out += fmt::format("<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.8\"/>\n", frame.px(curve.x[i]),
@@ -100,9 +100,9 @@ std::string panel(const PreparedRecord& record, const RecordFit& fit, double lef
                               with_digits(record.largest_force, 3)));
   const auto edge = [&](double x) { return with_digits(curve.by_size ? std::pow(10.0, x) : x, 2); };
   const auto [low, high] = std::ranges::minmax(curve.x);
-  out += words_at(left, up + panel_height + 15.0, "", edge(low));
-  out += words_at(left + panel_width, up + panel_height + 15.0, "right", edge(high));
-  out += words_at(left, up + panel_height + 31.0, "", curve.over);
+  out += words_at(left, up + record_height + 15.0, "", edge(low));
+  out += words_at(left + record_width, up + record_height + 15.0, "right", edge(high));
+  out += words_at(left, up + record_height + 31.0, "", curve.over);
   return out;
 }
 
@@ -115,12 +115,14 @@ std::string identify_picture(const IdentifyReport& report) {
   std::string body =
       words_at(10.0, 38.0, "", "dots: measured friction force; line: the fitted law, driven by the measured motion");
   const std::size_t rows = (law->records.size() + 1) / 2;
-  for (std::size_t r = 0; r < law->records.size(); ++r)
-    body += panel(report.records[r], law->records[r], 10.0 + static_cast<double>(r % 2) * (panel_width + gap),
-                  top + static_cast<double>(r / 2) * (panel_height + below));
+  for (std::size_t r = 0; r < law->records.size(); ++r) {
+    const std::size_t row = r / 2, column = r % 2;
+    body += panel(report.records[r], law->records[r], 10.0 + static_cast<double>(column) * (record_width + gap),
+                  top + static_cast<double>(row) * (record_height + below));
+  }
   const std::string title = fmt::format("{}: error on rows that it was not fitted to, {} of the largest force",
                                         law->law.kind(), as_percent(law->held_out));
-  return svg_picture(20.0 + 2.0 * panel_width + gap, top + static_cast<double>(rows) * (panel_height + below), title,
+  return svg_picture(20.0 + 2.0 * record_width + gap, top + static_cast<double>(rows) * (record_height + below), title,
                      identify_style, title, body);
 }
 

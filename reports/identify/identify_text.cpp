@@ -139,7 +139,7 @@ std::string direction_text(const Undetermined& one) {
     product += (product.empty() ? "" : " ") + (single ? name : fmt::format("{}^{:.2f}", name, weight));
     names.push_back(name);
   }
-  const std::string text = single || one.powers ? product : "a combination of " + names_text(names);
+  std::string text = single || one.powers ? product : "a combination of " + names_text(names);
   if (!std::isfinite(one.deviation)) return text + (single ? " (no row depends on it)" : " (no row depends on this)");
   if (!one.powers) return text;
   return text +

@@ -57,7 +57,7 @@ std::string response_curve(const Trace& run, const ResponseAxes& axes, double le
     if (low != high) add(std::max(low, high));
     i = std::max(end, i + 1);
   }
-  return d.empty() ? d : "<path class=\"run\" d=\"" + d + "\"/>\n";
+  return d.empty() ? d : R"(<path class="run" d=")" + d + "\"/>\n";
 }
 
 }  // namespace

@@ -30,13 +30,14 @@ std::vector<double> noise_left(const Misfit& misfit, const Eigen::VectorXd& entr
   const auto& records = misfit.records();
   auto noise = errors_of(misfit, entries);
   std::vector<bool> few;
+  few.reserve(records.size());
   for (const auto& record : records)
     few.push_back(std::ssize(record.compared) < fewest_rows_a_number * misfit.space().size());
   const bool all_few = std::ranges::find(few, false) == few.end();
   double sum = 0.0, rows = 0.0;
   for (std::size_t r = 0; r < records.size(); ++r) {
     if (few[r] && !all_few) continue;
-    const double n = static_cast<double>(records[r].compared.size());
+    const auto n = static_cast<double>(records[r].compared.size());
     sum += n * std::pow(noise[r] / records[r].largest_force, 2);
     rows += n;
   }
@@ -80,6 +81,7 @@ void add_records(const Misfit& misfit, const Eigen::VectorXd& u, IdentifiedLaw& 
     if (record.kind == RecordKind::steady_velocity)
       std::ranges::stable_sort(order, {}, [&](std::size_t i) { return record.compared[i].v; });
     std::vector<double> left;
+    left.reserve(order.size());
     for (std::size_t i = 0; i < record.compared.size(); ++i) {
       const double entry = misfit.noise()[r] * entries(misfit.first_of(r) + static_cast<Eigen::Index>(i));
       result.forces.push_back(record.compared[i].F + entry);

@@ -23,7 +23,7 @@ void add_numbers(const FitWithSlopes& at, bool profiled, IdentifiedLaw& into, st
   if (!unknown.empty())
     into.notes.push_back("no fit converged where an interval should end, so that this end is unknown: " + unknown);
   if (profiled && stop && stop())
-    into.notes.push_back("its last intervals are linear ones, since the work was stopped");
+    into.notes.emplace_back("its last intervals are linear ones, since the work was stopped");
 }
 
 void add_directions(const FitWithSlopes& at, IdentifiedLaw& into) {

@@ -245,7 +245,7 @@ LinearCovariance linear_covariance(const Eigen::MatrixXd& slopes) {
 }
 
 double interval_rise(double sum_of_squares, Eigen::Index entries, Eigen::Index coordinates) {
-  const double freedom = static_cast<double>(std::max<Eigen::Index>(entries - coordinates, 1));
+  const auto freedom = static_cast<double>(std::max<Eigen::Index>(entries - coordinates, 1));
   const double t = gsl_cdf_tdist_Pinv(0.975, freedom);
   return t * t * std::max(sum_of_squares / freedom, 1e-6);  // an exact fit
 }

@@ -122,7 +122,7 @@ bool is_saturated(const FrictionRecord& record, std::size_t i) { return std::abs
 /// may be of the body that slides already.
 BreakAwayEvent extrapolated(const FrictionRecord& record, std::size_t last, std::size_t count, bool forward) {
   double mt = 0.0, mF = 0.0, tt = 0.0, tF = 0.0;
-  const double n = static_cast<double>(count);
+  const auto n = static_cast<double>(count);
   for (std::size_t i = last - count; i < last; ++i) {
     mt += record.t[i] / n;
     mF += record.F[i] / n;

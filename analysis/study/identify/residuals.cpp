@@ -15,7 +15,7 @@ Whiteness whiteness(std::span<const double> residuals) {
   for (const double one : residuals) power += (one - mean) * (one - mean);
   if (n < fewest || !(power > 0.0)) return result;
   double sum = 0.0;
-  const double count = static_cast<double>(n);
+  const auto count = static_cast<double>(n);
   for (std::size_t lag = 1; lag <= lags; ++lag) {
     double product = 0.0;
     for (std::size_t i = lag; i < n; ++i) product += (residuals[i] - mean) * (residuals[i - lag] - mean);

@@ -142,7 +142,7 @@ void add_faults(FrictionRecord& record, const RigFaults& faults, RandomStream ra
   for (const double F : record.F) largest = std::max(largest, std::abs(F));
   const bool moving = !record.t.empty();
   if (moving && faults.jitter > 0.0) add_jitter(record, faults.jitter, random);
-  const double n = static_cast<double>(record.F.size());
+  const auto n = static_cast<double>(record.F.size());
   const auto path = moving ? std::ranges::minmax(record.x) : std::ranges::minmax_result<double>{0.0, 0.0};
   for (std::size_t i = 0; i < record.F.size(); ++i) {
     double share = faults.noise * normal(random);

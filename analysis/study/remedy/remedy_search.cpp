@@ -13,7 +13,7 @@
 namespace limcycle {
 namespace {
 
-constexpr double reach = 100.0;  ///< factor on the present value, or on the size of an absent one, either way
+constexpr double widest_factor = 100.0;  ///< factor on the present value, or on the size of an absent one, either way
 constexpr int a_decade = 3;
 constexpr double narrow_enough = 1e-3;  ///< relative distance of the two sides of an edge
 constexpr long steps_a_branch = 1'500'000;
@@ -22,9 +22,11 @@ constexpr int digits = 4;  ///< of the values that are tried at an edge
 /// A value with few digits, not nearer to `other` than `value` is.
 double rounded_away(double value, double other) {
   if (value == 0.0 || !std::isfinite(value)) return value;
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - digits + 1);
-  const double in_units = value / unit;
-  return (value > other ? std::ceil(in_units) : std::floor(in_units)) * unit;
+  // A power of ten with a negative exponent is no binary number: divided by its inverse the result is the nearest.
+  const double places = digits - 1 - std::floor(std::log10(std::abs(value))), unit = std::pow(10.0, std::abs(places));
+  const double in_units = places > 0.0 ? value * unit : value / unit;
+  const double whole = value > other ? std::ceil(in_units) : std::floor(in_units);
+  return places > 0.0 ? whole / unit : whole * unit;
 }
 
 bool is_outward(double value, double from) { return std::abs(value) > std::abs(from); }
@@ -118,13 +120,13 @@ MarginParameter RemedySearch::parameter_from(double value) const {
           in_exact_time(LoopFamily([this](double at) { return loop_at(at); }))};
 }
 
-/// Follows the cycles at `value` to where the last of them ends, at most `reach` beyond the size.
+/// Follows the cycles at `value` to where the last of them ends, at most `widest_factor` beyond the size.
 std::optional<RemedySearch::Bracket> RemedySearch::followed_from(double value, const std::vector<Cycle>& cycles,
                                                                  bool up) {
   const MarginParameter parameter = parameter_from(value);
   MarginOptions options;
   options.predict = loop_.judging.predict;
-  options.factor = up ? reach * std::abs(size_ / value) : reach;
+  options.factor = up ? widest_factor * std::abs(size_ / value) : widest_factor;
   options.steps_a_branch = steps_a_branch;
   const MarginSide side = SideSearch(parameter, up, options, progress_).where_hunting_ends(cycles);
   if (side.what == MarginSide::What::unknown) {
@@ -182,7 +184,8 @@ std::optional<RemedySearch::Bracket> RemedySearch::followed(bool up) {
 
 /// Values outwards from one at which it hunts (or rests) to the first at which it does not.
 std::optional<RemedySearch::Bracket> RemedySearch::scanned(bool up, double from, Until until) {
-  const double end = up ? reach * size_ : size_ / reach, begin = from == 0.0 ? size_ / reach : from;
+  const double end = up ? widest_factor * size_ : size_ / widest_factor,
+               begin = from == 0.0 ? size_ / widest_factor : from;
   const int steps = std::max(1, static_cast<int>(std::ceil(a_decade * std::abs(std::log10(end / begin)))));
   double last = from;
   int diverging = 0, open = 0;
@@ -307,7 +310,8 @@ void RemedySearch::locate_far_edge(Remedy& remedy, const Bracket& near) {
     const MarginParameter parameter = parameter_from(near.rests);
     MarginOptions options;
     options.predict = loop_.judging.predict;
-    options.factor = std::max(1.01, up ? std::abs(reach * size_ / near.rests) : std::abs(near.rests * reach / size_));
+    options.factor = std::max(
+        1.01, up ? std::abs(widest_factor * size_ / near.rests) : std::abs(near.rests * widest_factor / size_));
     options.scan_per_decade = a_decade;
     options.steps_a_branch = steps_a_branch;
     const MarginSide side = SideSearch(parameter, up, options, progress_).where_hunting_begins();

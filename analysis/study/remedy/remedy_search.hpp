@@ -64,7 +64,7 @@ class RemedySearch {
   bool look_beyond(Bracket& bracket);
   void locate_far_edge(Remedy& remedy, const Bracket& near);
   Remedy nothing_found() const;
-  std::string number(double value, int digits = 3) const;
+  std::string number(double value, int shown = 3) const;
 
   const RemedyCandidate& candidate_;
   const HuntingLoop& loop_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "limcycle/analysis/study/remedy/remedy_order.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -75,7 +76,10 @@ TEST_CASE("remedy: the leak of a servo, its edge confirmed by predict on both si
   CHECK(errors[0] == Approx(errors[1]).epsilon(3e-3));
 }
 
-TEST_CASE("remedy: too strong a compensation is cured at the level of the friction") {
+namespace {
+
+/// A PD servo that hunts since it compensates more friction than there is.
+LoopParts over_compensated() {
   LoopParts parts;
   parts.plant = Mass{1.0, 0.0, 0.0};
   Pid pd = test::pid(100.0, 0.0, 10.0);
@@ -83,44 +87,50 @@ TEST_CASE("remedy: too strong a compensation is cured at the level of the fricti
   pd.lag = 0.05;
   parts.controller = pd;
   parts.friction = coulomb(1.0, 1.0);
-  const std::vector<RemedyCandidate> candidates{
-      {"dither", "", "", "there is none here"},
-      of_controller(parts, &Pid::friction_compensation, Measure::force, RemedyCandidate::Way::both)};
-  const RemedyReport one = remedies(parts, candidates, quick(1)), two = remedies(parts, candidates, quick(2));
-  REQUIRE(one.remedies.size() == 2);
-  CHECK(one.remedies.front().value == Approx(1.0).epsilon(2e-3));  // Fc
-  // What does not apply comes last with its reason; the same for any number of threads.
-  CHECK(one.remedies.back().candidate.name == "dither");
-  CHECK(one.remedies.back().why == "there is none here");
-  for (std::size_t i = 0; i < 2; ++i) {
-    CHECK(one.remedies[i].value == two.remedies[i].value);
-    CHECK(one.remedies[i].costs.settling_time == two.remedies[i].costs.settling_time);
-    CHECK(one.remedies[i].why == two.remedies[i].why);
-  }
+  return parts;
 }
 
-TEST_CASE("remedy: weights decide the order of those that end hunting") {
-  LoopParts parts;
-  parts.plant = Mass{1.0, 0.0, 0.0};
-  Pid pd = test::pid(100.0, 0.0, 10.0);
-  pd.friction_compensation = 1.3;
-  pd.lag = 0.05;
-  parts.controller = pd;
-  parts.friction = coulomb(1.0, 1.0);
-  const std::vector<RemedyCandidate> candidates{
-      of_controller(parts, &Pid::kp, Measure::stiffness, RemedyCandidate::Way::down),
-      of_controller(parts, &Pid::friction_compensation, Measure::force, RemedyCandidate::Way::down)};
-  for (const auto& [cost, weighed] : {std::pair(0, 0), {6, 1}}) {  // error; noise
-    RemedyOptions options = quick();
-    options.weights[static_cast<std::size_t>(cost)] = 1.0;
-    const RemedyReport report = remedies(parts, candidates, options);
-    REQUIRE(report.remedies[1].ends == true);
+}  // namespace
+
+TEST_CASE("remedy: too strong a compensation is cured at the level of the friction, and weights decide the order") {
+  const LoopParts parts = over_compensated();
+  RemedyReport report =
+      remedies(parts,
+               {of_controller(parts, &Pid::kp, Measure::stiffness, RemedyCandidate::Way::down),
+                of_controller(parts, &Pid::friction_compensation, Measure::force, RemedyCandidate::Way::both)},
+               quick(2));
+  REQUIRE(report.remedies.size() == 2);
+  REQUIRE(report.remedies[0].ends == true);
+  REQUIRE(report.remedies[1].ends == true);
+  const bool first = report.remedies[0].candidate.own == 1.3;
+  CHECK(report.remedies[first ? 0 : 1].value == Approx(1.0).epsilon(2e-3));  // Fc
+  for (const auto& [cost, by_error] : {std::pair(0, true), {6, false}}) {    // error; noise
+    CostWeights weights{};
+    weights[static_cast<std::size_t>(cost)] = 1.0;
+    order_remedies(report.remedies, weights);
     const auto& best = report.remedies[0].costs;
     const auto& other = report.remedies[1].costs;
-    if (weighed == 0)
+    if (by_error)
       CHECK(best.steady_state_error->high < other.steady_state_error->high);
     else
       CHECK(best.noise_gain.value() < other.noise_gain.value());
+  }
+}
+
+TEST_CASE("remedy: the same for any number of threads; what does not apply comes last with its reason") {
+  const LoopParts parts = over_compensated();
+  const std::vector<RemedyCandidate> candidates{
+      {"dither", "", "", "there is none here"},
+      of_controller(parts, &Pid::kp, Measure::stiffness, RemedyCandidate::Way::down),
+      of_controller(parts, &Pid::kd, Measure::damping, RemedyCandidate::Way::up)};
+  const RemedyReport one = remedies(parts, candidates, quick(1)), two = remedies(parts, candidates, quick(2));
+  REQUIRE(one.remedies.size() == 3);
+  CHECK(one.remedies.back().candidate.name == "dither");
+  CHECK(one.remedies.back().why == "there is none here");
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(one.remedies[i].value == two.remedies[i].value);
+    CHECK(one.remedies[i].costs.settling_time == two.remedies[i].costs.settling_time);
+    CHECK(one.remedies[i].why == two.remedies[i].why);
   }
 }
 
