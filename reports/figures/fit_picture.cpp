@@ -18,7 +18,7 @@ constexpr std::string_view fit_style =
     ".fit{fill:none;stroke:#2f81c7;stroke-width:2}.data{fill:#d9661f}"
     ".deviation{fill:none;stroke:#59636e;stroke-dasharray:4 3}";
 
-constexpr double left = 70.0, width = 660.0;
+constexpr double fit_left = 70.0, fit_width = 660.0;
 
 /// A panel over the logarithm of the frequency.
 class FitPanel {
@@ -29,23 +29,23 @@ class FitPanel {
     low_ = low;
     high_ = high;
   }
-  double x(double w) const { return place(std::log(w), left, width, std::log(from_), std::log(to_)); }
+  double x(double w) const { return place(std::log(w), fit_left, fit_width, std::log(from_), std::log(to_)); }
   double y(double value) const { return place(-value, top_, height_, -high_, -low_); }
 
   /// The frame, with lines at decades of the frequency and at `steps` of the scale.
   std::string frame(const std::string& name, const std::vector<std::pair<double, std::string>>& steps) const {
     std::string out =
-        fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", left,
-                    top_, width, height_);
+        fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", fit_left,
+                    top_, fit_width, height_);
     for (double decade = std::ceil(std::log10(from_)); decade <= std::log10(to_); decade += 1.0) {
       const double at = x(std::pow(10.0, decade));
       out += line_of(at, top_, at, top_ + height_, "grid");
     }
     for (const auto& [value, words] : steps) {
-      out += line_of(left, y(value), left + width, y(value), "grid");
-      out += words_at(left - 6.0, y(value) + 4.0, "end", words);
+      out += line_of(fit_left, y(value), fit_left + fit_width, y(value), "grid");
+      out += words_at(fit_left - 6.0, y(value) + 4.0, "end", words);
     }
-    return out + words_at(left, top_ - 5.0, "", name);
+    return out + words_at(fit_left, top_ - 5.0, "", name);
   }
 
   template <class Values>
@@ -144,9 +144,9 @@ std::string fit_picture(const MeasuredPlantAt& plant) {
                       decades(error_low, error_high)) +
           error.dots(data.frequency, distance);
   if (!deviation.empty()) body += error.curve(data.frequency, deviation, "deviation");
-  body += words_at(left, 578, "", with_digits(from, 4) + " rad/s") +
-          words_at(left + width, 578, "end", with_digits(to, 4) + " rad/s (log)") +
-          words_at(left, 598, "", "dots: data; line: fit");
+  body += words_at(fit_left, 578, "", with_digits(from, 4) + " rad/s") +
+          words_at(fit_left + fit_width, 578, "end", with_digits(to, 4) + " rad/s (log)") +
+          words_at(fit_left, 598, "", "dots: data; line: fit");
   return svg_picture(760, 606, plant.path + ": " + measured.data_in_words() + "; " + measured.fit_in_words(), fit_style,
                      fmt::format("{}: data, and the fit of order {}", plant.path, measured.fit().shape.order), body);
 }

@@ -117,7 +117,7 @@ TEST_CASE("remedy: too strong a compensation is cured at the level of the fricti
   }
 }
 
-TEST_CASE("remedy: the same for any number of threads; what does not apply comes last with its reason") {
+TEST_CASE("remedy: the same for any number of threads, and what does not apply comes last with its reason") {
   const LoopParts parts = over_compensated();
   const std::vector<RemedyCandidate> candidates{
       {"dither", "", "", "there is none here"},
