@@ -37,7 +37,8 @@ class FitPanel {
     std::string out =
         fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", fit_left,
                     top_, fit_width, height_);
-    for (double decade = std::ceil(std::log10(from_)); decade <= std::log10(to_); decade += 1.0) {
+    const int last = static_cast<int>(std::floor(std::log10(to_)));
+    for (int decade = static_cast<int>(std::ceil(std::log10(from_))); decade <= last; ++decade) {
       const double at = x(std::pow(10.0, decade));
       out += line_of(at, top_, at, top_ + height_, "grid");
     }
@@ -69,21 +70,22 @@ class FitPanel {
   double top_, height_, from_, to_, low_ = 0.0, high_ = 1.0;
 };
 
-/// Steps of a scale in powers of ten, ten at most, as exponents.
-std::vector<std::pair<double, std::string>> decades(double low, double high) {
+/// The multiples of `by` between two values, with their words.
+std::vector<std::pair<double, std::string>> multiples(double low, double high, int by, const auto& words) {
   std::vector<std::pair<double, std::string>> steps;
-  const double by = std::max(1.0, std::ceil((high - low) / 8.0));
-  for (double at = std::ceil(low / by) * by; at <= high; at += by)
-    steps.emplace_back(at, fmt::format("1e{}", static_cast<int>(at)));
+  for (int k = static_cast<int>(std::ceil(low / by)); k * by <= high; ++k) steps.emplace_back(k * by, words(k * by));
   return steps;
 }
 
+/// Steps of a scale in powers of ten, ten at most, as exponents.
+std::vector<std::pair<double, std::string>> decades(double low, double high) {
+  const int by = std::max(1, static_cast<int>(std::ceil((high - low) / 8.0)));
+  return multiples(low, high, by, [](int at) { return fmt::format("1e{}", at); });
+}
+
 std::vector<std::pair<double, std::string>> degrees(double low, double high) {
-  std::vector<std::pair<double, std::string>> steps;
-  const double by = std::max(1.0, std::ceil((high - low) / 540.0)) * 90.0;
-  for (double at = std::ceil(low / by) * by; at <= high; at += by)
-    steps.emplace_back(at, fmt::format("{}\xC2\xB0", static_cast<int>(at)));
-  return steps;
+  const int by = 90 * std::max(1, static_cast<int>(std::ceil((high - low) / 540.0)));
+  return multiples(low, high, by, [](int at) { return fmt::format("{}\xC2\xB0", at); });
 }
 
 struct Curves {
@@ -115,6 +117,7 @@ std::string fit_picture(const MeasuredPlantAt& plant) {
   const auto fit_at = [&](double w) {
     return response_of(measured.fit().model, w) * std::polar(1.0, -w * measured.delay());
   };
+  fitted.reserve(fine.size());
   for (const double w : fine) fitted.push_back(fit_at(w));
   for (std::size_t i = 0; i < data.size(); ++i)
     distance.push_back(std::log10(std::max(1e-16, std::abs(fit_at(data.frequency[i]) / data.response[i] - 1.0))));
