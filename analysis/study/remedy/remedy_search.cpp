@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/continuation/margin_side.hpp"
 #include "limcycle/analysis/study/predict/cycle_search.hpp"
@@ -27,6 +28,17 @@ double rounded_away(double value, double other) {
   const double in_units = places > 0.0 ? value * unit : value / unit;
   const double whole = value > other ? std::ceil(in_units) : std::floor(in_units);
   return places > 0.0 ? whole / unit : whole * unit;
+}
+
+/// The state for a loop with as many states but perhaps more elements, whose modes then begin anew; empty for others.
+std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from) {
+  LoopField field(loop);
+  if (field.size() != from.x.size()) return std::nullopt;
+  if (from.modes.size() == loop.elements.size()) return from;
+  LoopState state{from.x, {}};
+  field.start(state.x, 0.0);
+  state.modes = field.modes();
+  return state;
 }
 
 bool is_outward(double value, double from) { return std::abs(value) > std::abs(from); }
@@ -70,9 +82,10 @@ std::optional<Loop> RemedySearch::loop_at(double value) const {
 /// A cycle may be stable where no start of predict() comes upon it.
 Hunts RemedySearch::from_last_hunting(const Loop& loop, const SearchBox& box) {
   const Loop time = loop_in_time(loop, 0.0).treated.loop;
-  if (!hunting_ || hunting_->x.size() != displaced(time, 1.0).x.size()) return Hunts::no;
+  const auto from = hunting_ ? carried_to(time, *hunting_) : std::nullopt;
+  if (!from) return Hunts::no;
   const PredictOptions& options = loop_.judging.predict;
-  const Settled settled = settle(time, *hunting_, cycle_search(time, box, options.accuracy, options.stop));
+  const Settled settled = settle(time, *from, cycle_search(time, box, options.accuracy, options.stop));
   switch (settled.outcome) {
     case Outcome::rest:
     case Outcome::sliding:
@@ -163,8 +176,9 @@ std::optional<RemedySearch::Bracket> RemedySearch::followed_from_nothing() {
     const PredictOptions& options = loop_.judging.predict;
     const SettleOptions settling = cycle_search(*exact, *options.search, options.accuracy, options.stop);
     for (const Cycle& one : loop_.cycles) {
-      if (one.stable != true || one.start.x.size() != displaced(*exact, 1.0).x.size()) continue;
-      auto settled = settle(*exact, one.start, settling);
+      const auto from = one.stable == true ? carried_to(*exact, one.start) : std::nullopt;
+      if (!from) continue;
+      auto settled = settle(*exact, *from, settling);
       if (settled.shot && settled.shot->cycle.stable == true) cycles.push_back(std::move(settled.shot->cycle));
     }
     if (!cycles.empty()) hunting_ = cycles.front().start;
