@@ -4,6 +4,7 @@
 
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
+#include "limcycle/questions/threshold.hpp"
 
 namespace limcycle {
 namespace {
@@ -18,18 +19,7 @@ MarginParameter margin_parameter(const Case& from, const CaseNumber& number) {
 std::vector<MarginParameter> margin_parameters(const Case& from, const std::string& argument,
                                                const std::vector<std::string>& paths, std::vector<std::string>& notes) {
   std::vector<MarginParameter> chosen;
-  for (const auto& path : paths) {
-    const CaseNumber number = number_at(from, argument, path);
-    if (number.value == 0.0 || !std::isfinite(number.value))
-      throw InputError({.file = {},
-                        .line = 0,
-                        .override = {},
-                        .key = argument,
-                        .value = path,
-                        .rule = "is zero or absent: no factor changes it",
-                        .suggestion = {}});
-    chosen.push_back(margin_parameter(from, number));
-  }
+  for (const auto& number : threshold_numbers(from, argument, paths)) chosen.push_back(margin_parameter(from, number));
   if (!chosen.empty()) return chosen;
   std::string zero;
   for (const auto& number : numbers_of(from)) {

@@ -181,8 +181,10 @@ std::optional<RemedySearch::Bracket> RemedySearch::followed_from_nothing() {
       auto settled = settle(*exact, *from, settling);
       if (settled.shot && settled.shot->cycle.stable == true) cycles.push_back(std::move(settled.shot->cycle));
     }
-    if (!cycles.empty()) hunting_ = cycles.front().start;
-    if (!cycles.empty()) return followed_from(value, cycles, true);
+    if (!cycles.empty()) {
+      hunting_ = cycles.front().start;
+      return followed_from(value, cycles, true);
+    }
     if (judged(value, Care::quick) == Hunts::yes) return scanned(true, value, Until::rests);
   }
   return Bracket{1e-5 * size_, 0.0};  // it hunts at none of them: any will do

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/analysis/study/remedy/without.hpp"
+#include "limcycle/tests/analysis/study/remedy/over_compensated.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -60,14 +61,7 @@ TEST_CASE("cause: what is left of a belt without damping when friction no longer
 TEST_CASE("cause: the relay, the dead time and too strong a compensation") {
   CHECK(kind_of_cause(through(relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0}, 0.0)) == CauseKind::relay);
   CHECK(kind_of_cause(through(saturation(1.0), {5.0}, {1.0, 1.0}, 1.0)) == CauseKind::delay);
-  LoopParts parts;
-  parts.plant = Mass{1.0, 0.0, 0.0};
-  Pid pd = test::pid(100.0, 0.0, 10.0);
-  pd.friction_compensation = 1.3;
-  pd.lag = 0.05;
-  parts.controller = pd;
-  parts.friction = coulomb(1.0, 1.0);
-  CHECK(kind_of_cause(parts) == CauseKind::over_compensation);
+  CHECK(kind_of_cause(test::over_compensated()) == CauseKind::over_compensation);
 }
 
 TEST_CASE("cause: an unstable linear part is no single feature's fault") {

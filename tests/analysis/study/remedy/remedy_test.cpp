@@ -4,10 +4,12 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/analysis/study/remedy/remedy_order.hpp"
+#include "limcycle/tests/analysis/study/remedy/over_compensated.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
 using limcycle::test::coulomb;
+using limcycle::test::over_compensated;
 using limcycle::test::servo_parts;
 
 namespace {
@@ -75,22 +77,6 @@ TEST_CASE("remedy: the leak of a servo, its edge confirmed by predict on both si
   CHECK(leaks[0] == Approx(leaks[1]).epsilon(3e-3));
   CHECK(errors[0] == Approx(errors[1]).epsilon(3e-3));
 }
-
-namespace {
-
-/// A PD servo that hunts since it compensates more friction than there is.
-LoopParts over_compensated() {
-  LoopParts parts;
-  parts.plant = Mass{1.0, 0.0, 0.0};
-  Pid pd = test::pid(100.0, 0.0, 10.0);
-  pd.friction_compensation = 1.3;
-  pd.lag = 0.05;
-  parts.controller = pd;
-  parts.friction = coulomb(1.0, 1.0);
-  return parts;
-}
-
-}  // namespace
 
 TEST_CASE("remedy: too strong a compensation is cured at the level of the friction, and weights decide the order") {
   const LoopParts parts = over_compensated();
