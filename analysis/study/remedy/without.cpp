@@ -7,6 +7,7 @@
 #include "limcycle/models/element/compensation.hpp"
 #include "limcycle/models/element/relay.hpp"
 #include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/linear/integral_action.hpp"
 
 namespace limcycle {
 namespace {
@@ -93,21 +94,45 @@ bool flatten_table(Element& law) {
   return any;
 }
 
+bool is_siso(const StateSpaceBlock& block) { return block.B.cols() == 1 && block.C.rows() == 1; }
+
+/// True if the controller had integral action.
+bool end_integral(Controller& controller) {
+  if (auto* pid = std::get_if<Pid>(&controller)) return set_members(*pid, {&Pid::ki}, 0.0);
+  if (auto* cascade = std::get_if<Cascade>(&controller)) {
+    cascade->anti_windup = {};
+    return set_members(*cascade, {&Cascade::position_ki, &Cascade::velocity_ki}, 0.0);
+  }
+  std::optional<Rational> rest;
+  if (const auto* given = std::get_if<TransferFunctionController>(&controller))
+    rest = without_integral_action(Rational{given->numerator, given->denominator});
+  else if (const auto* matrices = std::get_if<StateSpaceController>(&controller))
+    rest = without_integral_action(rational_of(matrices->model().ss));
+  if (!rest) return false;
+  TransferFunctionController without;
+  static_cast<ControllerParts&>(without) = own_parts(controller);
+  without.numerator = std::move(rest->numerator);
+  without.denominator = std::move(rest->denominator);
+  controller = std::move(without);
+  return true;
+}
+
 }  // namespace
 
 std::optional<LoopParts> without_integral_action(LoopParts parts) {
   PartChange change;
-  change.controller = [](Controller& controller) {
-    if (auto* pid = std::get_if<Pid>(&controller)) return set_members(*pid, {&Pid::ki}, 0.0);
-    auto* cascade = std::get_if<Cascade>(&controller);
-    if (cascade == nullptr) return false;
-    cascade->anti_windup = {};
-    return set_members(*cascade, {&Cascade::position_ki, &Cascade::velocity_ki}, 0.0);
-  };
+  change.controller = end_integral;
   change.block = [](BlockKind& block) {
     auto* linear = std::get_if<LinearBlock>(&block);
-    auto* integrator = linear == nullptr ? nullptr : std::get_if<Integrator>(linear);
-    return integrator != nullptr && set_members(*integrator, {&Integrator::gain}, 0.0);
+    if (linear == nullptr) return false;
+    if (auto* integrator = std::get_if<Integrator>(linear)) return set_members(*integrator, {&Integrator::gain}, 0.0);
+    std::optional<Rational> rest;
+    if (const auto* block_of = std::get_if<ProperTransferFunction>(linear))
+      rest = without_integral_action(Rational{block_of->numerator, block_of->denominator});
+    else if (const auto* matrices = std::get_if<StateSpaceBlock>(linear); matrices != nullptr && is_siso(*matrices))
+      rest = without_integral_action(rational_of(matrices->model().ss));
+    if (rest) *linear = ProperTransferFunction{std::move(rest->numerator), std::move(rest->denominator)};
+    return rest.has_value();
   };
   return changed_parts(std::move(parts), change);
 }

@@ -7,7 +7,7 @@ namespace limcycle {
 
 /// The same loop without one of its features; empty if it has none, or if the rest is not a valid loop.
 
-/// Integral action of PID and cascade controllers and of integrator blocks.
+/// Integral action of controllers, of integrator blocks, and of blocks with a feed-through and a pole at the origin.
 std::optional<LoopParts> without_integral_action(LoopParts parts);
 /// Stiction and the falling part of the friction curve: Fs = Fc, or a measured curve at its least force.
 std::optional<LoopParts> without_falling_friction(LoopParts parts);

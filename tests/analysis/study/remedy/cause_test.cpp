@@ -1,5 +1,6 @@
 #include "limcycle/analysis/study/remedy/cause.hpp"
 
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include "limcycle/analysis/study/remedy/without.hpp"
@@ -87,4 +88,25 @@ TEST_CASE("cause: taking a feature away changes nothing else, and says where the
   CHECK(level->friction->number("Fs") == level->friction->number("Fc"));
   CHECK(level->friction->number("sigma0") == servo.friction->number("sigma0"));
   CHECK_FALSE(without_falling_friction(*level));
+}
+
+TEST_CASE("cause: integral action is seen in a controller however it is written") {
+  LoopParts servo = servo_parts(coulomb(1.5, 1.0));
+  TransferFunctionController polynomials;  // the PID with a derivative filter of 0.01 s
+  polynomials.numerator = {6.03, 3.04, 4.0};
+  polynomials.denominator = {0.01, 1.0, 0.0};
+  servo.controller = polynomials;
+  CHECK(kind_of_cause(servo) == CauseKind::integral_action_and_stiction);
+  StateSpaceController matrices;
+  const StateSpace own = polynomials.model().ss;
+  Eigen::MatrixXd T(2, 2);
+  T << 2.0, 1.0, -0.5, 3.0;
+  matrices.A = T * own.A * T.inverse();
+  matrices.B = T * own.B;
+  matrices.C = own.C * T.inverse();
+  matrices.D = own.D;
+  servo.controller = matrices;
+  const Cause cause = cause_in(servo);
+  CHECK(cause.kind == CauseKind::integral_action_and_stiction);
+  CHECK(cause.tests[0].without == "without integral action");
 }
