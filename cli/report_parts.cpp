@@ -15,6 +15,7 @@
 #include "limcycle/cli/map_of.hpp"
 #include "limcycle/cli/precision_of.hpp"
 #include "limcycle/questions/map.hpp"
+#include "limcycle/questions/predict.hpp"
 #include "limcycle/questions/threshold.hpp"
 
 namespace limcycle {
@@ -173,6 +174,7 @@ LoopReport report_parts(const Case& from, const ReportWishes& wishes, const Comm
   options.stop = interrupted;
   options.progress = [&](double fraction, std::string_view what) { progress.show(0.3 * fraction, what); };
   report.predict = answer_of([&] { return predict(loop, options); });
+  add_cause(report.predict, report.loop, options);
   const ReportQuestion ask{from, loop, wishes, flags, report.predict};
   const std::string left_out = "Left out by --quick.";
   progress.show(0.3, "sensitivity");

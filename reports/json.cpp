@@ -254,6 +254,7 @@ std::string predict_json(const Provenance& provenance, const PredictReport& repo
       {"amplitude", Json::array({number(report.search.amplitude_min), number(report.search.amplitude_max)})},
       {"frequency", Json::array({number(report.search.frequency_min), number(report.search.frequency_max)})}};
   top["absence"] = absence_json(report.absence);
+  top["cause"] = report.cause ? Json{{"kind", report.cause->kind}, {"why", report.cause->why}} : Json(nullptr);
   top["notes"] = report.notes;
   top["status"] = to_string(report.status);
   return text_of("predict", provenance, top);

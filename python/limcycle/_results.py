@@ -224,7 +224,7 @@ class Result(Record):
 
 
 class Prediction(Result):
-    """Of predict(): `cycles`, `predictions`, `missed`, `outcomes`, `absence`, `notes`."""
+    """Of predict(): `cycles`, `predictions`, `missed`, `outcomes`, `absence`, `cause`, `notes`."""
 
     cycles: List[Record]
     predictions: List[Record]

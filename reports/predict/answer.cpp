@@ -224,6 +224,7 @@ CycleAnswer answer(const PredictReport& report, const Units& units) {
     out.what_happens = report.cycles.empty() && report.outcomes.empty()
                            ? "Interrupted before verification in the time domain."
                            : "Interrupted; partial result: " + out.what_happens;
+  if (report.cause) out.what_happens += " " + report.cause->why + " limcycle remedy looks for changes that end it.";
   std::vector<std::string> methods;
   const auto add = [&](const std::string& method) {
     if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);

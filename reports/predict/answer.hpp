@@ -7,8 +7,8 @@
 
 namespace limcycle {
 
-/// The answer of a prediction in words: `what_happens` on the behaviour of the loop, `worth` one sentence for each
-/// method on the quality of its prediction.
+/// The answer of a prediction in words: `what_happens` on the behaviour of the loop, and why it hunts if that is known;
+/// `worth` one sentence for each method on the quality of its prediction.
 struct CycleAnswer {
   std::string what_happens;
   std::vector<std::string> worth;

@@ -101,6 +101,12 @@ struct NyquistPicture {
   std::vector<std::vector<std::complex<double>>> minus_inverse_N;
 };
 
+/// Why a loop hunts: see cause_of().
+struct HuntingCause {
+  std::string kind;  ///< "integral-action-and-stiction"
+  std::string why;   ///< one sentence
+};
+
 /// Results of predict(): cycles, predictions with verdicts, outcomes of simulations.
 struct PredictReport {
   SearchBox search;
@@ -114,8 +120,9 @@ struct PredictReport {
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: proof of absence, if any
   std::vector<std::string> notes;    ///< notes for the user: methods that do not apply, incomplete searches
   Status status = Status::converged;
-  double sample_time = 0.0;       ///< of a sampled controller, s; 0: it is continuous
-  std::vector<Effort> efforts{};  ///< of the methods that ran, without those of the outcomes
+  double sample_time = 0.0;             ///< of a sampled controller, s; 0: it is continuous
+  std::optional<HuntingCause> cause{};  ///< filled by those who ask for it; predict() leaves it empty
+  std::vector<Effort> efforts{};        ///< of the methods that ran, without those of the outcomes
 };
 
 /// Every limit cycle that the methods predict in the search box, the true behaviour from several starts and near every

@@ -81,7 +81,7 @@ class CauseStudy {
 
   /// From the tests, as they came out.
   std::string no_single_cause() const {
-    if (cause_.tests.empty()) return "The loop has no feature that could be taken away.";
+    if (cause_.tests.empty()) return "None of the known causes applies to this loop.";
     std::string ending, going_on, open;
     for (const Counterfactual& test : cause_.tests) {
       const bool ends = test.hunts == Hunts::no || test.hunts == Hunts::neutral;

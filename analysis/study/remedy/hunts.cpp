@@ -80,11 +80,13 @@ HuntsAnswer hunts(const Loop& loop, const Judging& judging) try {
   return {.hunts = Hunts::undecided, .why = std::string("could not be simulated: ") + refused.what()};
 }
 
-std::vector<std::string> diverging_starts(const PredictReport& found) {
-  std::vector<std::string> names;
+Judging judging_of_variants(const PredictOptions& predict, const PredictReport& found) {
+  Judging judging{predict};
+  judging.predict.progress = {};
+  judging.predict.search = found.search;
   for (const OutcomeOfStart& one : found.outcomes)
-    if (one.outcome == Outcome::divergence && !one.probe) names.push_back(one.start);
-  return names;
+    if (one.outcome == Outcome::divergence && !one.probe) judging.may_diverge.push_back(one.start);
+  return judging;
 }
 
 }  // namespace limcycle

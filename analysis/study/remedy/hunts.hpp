@@ -35,7 +35,7 @@ struct Judging {
 /// methods; status interrupted is undecided.
 HuntsAnswer hunts(const Loop& loop, const Judging& judging);
 
-/// Names of the starts that diverge.
-std::vector<std::string> diverging_starts(const PredictReport& found);
+/// For variants of a loop that was judged with `predict`: the same starts, and those may diverge that did.
+Judging judging_of_variants(const PredictOptions& predict, const PredictReport& found);
 
 }  // namespace limcycle

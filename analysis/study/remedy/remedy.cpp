@@ -53,10 +53,7 @@ class RemedyStudy {
     HuntsAnswer answer = hunts(loop, {options_.predict});
     report_.why = answer.why;
     report_.hunts = answer.hunts;
-    loop_.judging.predict = options_.predict;
-    loop_.judging.predict.progress = {};
-    loop_.judging.predict.search = answer.found.search;  // the same starts for every loop that is judged
-    loop_.judging.may_diverge = diverging_starts(answer.found);
+    loop_.judging = judging_of_variants(options_.predict, answer.found);
     loop_.followable = in_exact_time(loop).has_value() &&
                        std::ranges::any_of(answer.found.cycles, [](const Cycle& one) { return one.stable == true; });
     measure_motion(loop, answer.found);

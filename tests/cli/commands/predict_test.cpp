@@ -155,3 +155,21 @@ TEST_CASE("predict: a page that cannot be opened is refused before anything is c
   CHECK(ran.out.empty());
   CHECK_THAT(ran.err, Contains("--html /no/such/folder/page.html"));
 }
+
+TEST_CASE("predict: why the loop hunts, as remedy says it; nothing where it does not hunt") {
+  const auto ran = run({"predict", shipped("pid-lugre.toml"), "--json", "-"});
+  REQUIRE(ran.code == 0);
+  const Json cause = Json::parse(ran.out)["cause"];
+  CHECK(cause["kind"] == "integral-action-and-stiction");
+  const auto cure = run({"remedy", shipped("pid-lugre.toml"), "--only", "velocity-feedforward", "--json", "-"});
+  CHECK(Json::parse(cure.out)["cause"]["why"] == cause["why"]);
+  CHECK_THAT(squeezed(run({"predict", shipped("pid-lugre.toml")}).out),
+             Contains("amplitude 0.06390 m. From 5 of 6 starts") &&
+                 Contains(cause["why"].get<std::string>() + " limcycle remedy looks for changes that end it."));
+  const auto still = run({"predict", shipped("pid-lugre-no-stiction.toml"), "--json", "-"});
+  CHECK(Json::parse(still.out)["cause"].is_null());
+  // Its cycle is far outside the box: the first sentence says that it does not hunt there, and needs no reason.
+  const auto outside =
+      run({"predict", shipped("pid-lugre.toml"), "--set", "search.amplitude=[10.0,100.0]", "--json", "-"});
+  CHECK(Json::parse(outside.out)["cause"].is_null());
+}

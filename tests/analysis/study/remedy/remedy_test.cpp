@@ -127,7 +127,7 @@ TEST_CASE("remedy: what makes a start diverge that hunted is no cure, what diver
   judging.predict.search = SearchBox{1e-4, 100.0, 0.01, 100.0};
   const HuntsAnswer before = hunts(build_loop(parts), judging);
   CHECK(before.hunts == Hunts::yes);
-  judging.may_diverge = diverging_starts(before.found);
+  judging.may_diverge = judging_of_variants({}, before.found).may_diverge;
   REQUIRE_FALSE(judging.may_diverge.empty());
   CHECK(judging.may_diverge.size() < 5);
   parts.friction = coulomb(1.0, 1.0);
