@@ -18,17 +18,6 @@ using case_file::Value;
 
 constexpr Range no_number{infinite, -infinite};
 
-/// The value at a dotted path, or null.
-const Value* value_at(const Value& root, std::string_view path) {
-  const Value* at = &root;
-  while (at != nullptr && !path.empty()) {
-    const std::size_t dot = std::min(path.find('.'), path.size());
-    at = at->find(path.substr(0, dot));
-    path.remove_prefix(std::min(dot + 1, path.size()));
-  }
-  return at;
-}
-
 /// True if every part obeys its own rules.
 bool parts_are_valid(const LoopParts& parts) {
   return std::ranges::all_of(owned_parts(parts), [&](const OwnedPart& part) { return part.valid(parts); });
@@ -41,7 +30,7 @@ LoopVariation::LoopVariation(const Case& from, const std::string& flag, std::spa
   case_file::Document document = case_file::parse(from.text, from.file);
   for (const auto& override : from.overrides) case_file::apply_override(document, override);
   const auto written = [&](const std::string& path) {
-    return value_at(document.root, path) != nullptr || std::ranges::find(paths, path) != paths.end();
+    return document.root.at(path) != nullptr || std::ranges::find(paths, path) != paths.end();
   };
   numbers_.resize(paths.size());
   const auto found = [&](const std::string& path, const Range& range,
@@ -51,7 +40,7 @@ LoopVariation::LoopVariation(const Case& from, const std::string& flag, std::spa
   };
   for (const OwnedPart& part : owned_parts(parts_)) {
     const std::string& section = part.section;
-    const bool there = value_at(document.root, section) != nullptr;  // a loop without a controller has none to change
+    const bool there = document.root.at(section) != nullptr;  // a loop without a controller has none to change
     const auto& rows = part.rows(parts_);
     const auto values = part.values(parts_);
     for (std::size_t i = 0; i < rows.size(); ++i) {

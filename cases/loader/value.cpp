@@ -43,6 +43,16 @@ const Value* Value::find(std::string_view key) const {
   return found == table->end() ? nullptr : &found->value;
 }
 
+const Value* Value::at(std::string_view path) const {
+  const Value* value = this;
+  while (value != nullptr && !path.empty()) {
+    const std::size_t dot = std::min(path.find('.'), path.size());
+    value = value->find(path.substr(0, dot));
+    path.remove_prefix(std::min(dot + 1, path.size()));
+  }
+  return value;
+}
+
 std::string type_name(const Value& value) {
   return std::visit(
       Overload{[](bool) -> std::string { return "boolean"; }, [](std::int64_t) -> std::string { return "number"; },

@@ -30,6 +30,8 @@ struct Value {
 
   /// Entry of a table, or null (also when this is not a table).
   const Value* find(std::string_view key) const;
+  /// The value at a dotted path, or null.
+  const Value* at(std::string_view path) const;
 };
 
 struct Value::Entry {

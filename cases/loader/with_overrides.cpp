@@ -57,16 +57,6 @@ std::size_t value_end(const std::string& line, std::size_t begin) {
   return line.find_last_not_of(" \t", end - 1) + 1;
 }
 
-const Value* find_at(const Value& root, std::string_view path) {
-  const Value* at = &root;
-  while (at != nullptr && !path.empty()) {
-    const std::size_t dot = std::min(path.find('.'), path.size());
-    at = at->find(path.substr(0, dot));
-    path.remove_prefix(std::min(dot + 1, path.size()));
-  }
-  return at;
-}
-
 /// Writes one override into the lines; false if that cannot be done.
 bool write_override(std::vector<std::string>& lines, const std::string& override, const std::string& file,
                     const std::string& remark) {
@@ -76,7 +66,7 @@ bool write_override(std::vector<std::string>& lines, const std::string& override
   const std::string table = dot == std::string::npos ? "" : path.substr(0, dot), key = path.substr(dot + 1);
   const Document document = case_file::parse(joined_lines(lines), file);
   const std::string comment = remark.empty() ? "" : "  # " + remark;
-  if (const Value* old = find_at(document.root, path); old != nullptr && old->line > 0) {
+  if (const Value* old = document.root.at(path); old != nullptr && old->line > 0) {
     std::string& line = lines.at(static_cast<std::size_t>(old->line) - 1);
     const std::size_t begin = value_in(line, key);
     if (begin == std::string::npos) return false;
@@ -86,7 +76,7 @@ bool write_override(std::vector<std::string>& lines, const std::string& override
     if (line.find(remark) == std::string::npos) line += comment;
     return true;
   }
-  const Value* in = table.empty() ? &document.root : find_at(document.root, table);
+  const Value* in = table.empty() ? &document.root : document.root.at(table);
   const std::string added = key + " = " + value + comment;
   if (in == nullptr) {
     lines.insert(lines.end(), {"", "[" + table + "]", added});
