@@ -27,7 +27,7 @@ std::string change(double value, double own) {
 std::string cell(const MarginSide& side, double own) {
   switch (side.what) {
     case MarginSide::What::none:
-      return "none";
+      return side.value == 0.0 ? "none" : "none to " + with_digits(side.value, 3);
     case MarginSide::What::unknown:
       return "?";
     default:

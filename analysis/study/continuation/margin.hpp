@@ -27,8 +27,8 @@ struct MarginSide {
     none,    ///< neither within the range examined
     unknown  ///< not decided; `why` gives what is known
   } what = What::unknown;
-  /// Of the parameter, if hunting ends or begins, or if the motion diverges before it begins; if unknown, the last one
-  /// at which it was seen to hunt, or 0.
+  /// Of the parameter, if hunting ends or begins, or if the motion diverges before it begins; if none, the last one
+  /// that was examined; if unknown, the last one at which it was seen to hunt, or 0.
   double value = 0.0;
   double error = 0.0;  ///< relative error; NaN if only the last or first value with hunting is known
   std::string why;     ///< one sentence

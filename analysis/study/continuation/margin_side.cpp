@@ -180,13 +180,13 @@ MarginSide SideSearch::where_hunting_ends(const std::vector<Cycle>& cycles) {
     if (lost.kind == Lost::Kind::border && !stopped() && !stays(lost.last))
       return by_bisection(What::ends, p, limit_, starts_);
     if (lost.kind == Lost::Kind::border)
-      return {What::none, 0.0, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
+      return {What::none, limit_, 0.0, "it hunts all the way to " + short_number(limit_, 5)};
     if (lost.kind == Lost::Kind::failed) return {What::unknown, lost.value, unknown, lost.why};
     std::optional<Cycle> other;
     MarginSide side = beyond(lost, other, p);
     if (!other) return side;
     cycle = std::move(*other);
-    if (p == limit_) return {What::none, 0.0, 0.0, "it hunts at " + short_number(limit_, 5) + ", on another cycle"};
+    if (p == limit_) return {What::none, limit_, 0.0, "it hunts at " + short_number(limit_, 5) + ", on another cycle"};
   }
   return {What::unknown, p, unknown, "followed across several branches; the last was lost near " + short_number(p, 5)};
 }
@@ -249,7 +249,7 @@ MarginSide SideSearch::where_hunting_begins() {
     const double p = parameter_.value * std::pow(limit_ / parameter_.value, static_cast<double>(i) / steps);
     if (progress_) progress_(static_cast<double>(i) / (steps + 1));
     if (!parameter_.family(p))
-      return {What::none, 0.0, 0.0,
+      return {What::none, last, 0.0,
               "none up to " + short_number(last, 5) + "; the case is not valid at " + short_number(p, 5)};
     const Reached reached = reached_at(p, {});
     if (reached.outcome == Outcome::divergence)
@@ -267,7 +267,7 @@ MarginSide SideSearch::where_hunting_begins() {
     return {What::unknown, 0.0, unknown,
             "no cycle was reached up to " + short_number(last, 5) + ", but simulations at " + short_number(*open, 5) +
                 " did not decide"};
-  return {What::none, 0.0, 0.0, "it does not hunt up to " + short_number(last, 5)};
+  return {What::none, last, 0.0, "it does not hunt up to " + short_number(last, 5)};
 }
 
 }  // namespace limcycle
