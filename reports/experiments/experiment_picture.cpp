@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limcycle/reports/experiments/experiment.hpp"
+#include "limcycle/reports/figures/svg_axes.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 
@@ -26,67 +27,6 @@ constexpr std::string_view figures_style =
     ".c0{stroke:#2f81c7}.c1{stroke:#d9661f}.c2{stroke:#2e9e5b}.c3{stroke:#a05bc4}.c4{stroke:#c4a000}.c5{stroke:#d1477a}"
     ".c6{stroke:#3aa6a6}.c7{stroke:#8a6d3b}.c8{stroke:#7a8a99}.c9{stroke:#5b6ee1}";
 
-/// One axis with its ticks; small and large numbers are shown in units of a power of ten.
-class Scale {
- public:
-  explicit Scale(bool logarithmic) : logarithmic_(logarithmic) {}
-
-  void include(double value) {
-    if (!std::isfinite(value) || (logarithmic_ && !(value > 0.0))) return;
-    low_ = std::min(low_, value);
-    high_ = std::max(high_, value);
-  }
-  void settle() {
-    if (!(low_ <= high_)) low_ = high_ = logarithmic_ ? 1.0 : 0.0;
-    if (logarithmic_) {
-      if (high_ < 2.0 * low_) {
-        low_ /= 2.0;
-        high_ *= 2.0;
-      }
-      return;
-    }
-    // A nearly constant quantity is drawn as such, not as a picture of its rounding.
-    const double middle = 0.5 * (low_ + high_), least = middle != 0.0 ? 0.02 * std::abs(middle) : 1e-12;
-    const double half = std::max(0.5 * (high_ - low_), 0.5 * least) * 1.06;
-    low_ = middle - half;
-    high_ = middle + half;
-    const double size = std::max(std::abs(low_), std::abs(high_));
-    const int decade = static_cast<int>(std::floor(std::log10(size)));
-    if (decade < -2 || decade > 3) exponent_ = 3 * static_cast<int>(std::floor(decade / 3.0));
-  }
-  double share(double value) const {
-    return logarithmic_ ? std::log(value / low_) / std::log(high_ / low_) : (value - low_) / (high_ - low_);
-  }
-  std::vector<std::pair<double, std::string>> ticks() const {
-    std::vector<std::pair<double, std::string>> list;
-    if (logarithmic_) {
-      for (int k = static_cast<int>(std::ceil(std::log10(low_) - 1e-9)); std::pow(10.0, k) <= high_ * 1.0000001; ++k)
-        list.emplace_back(std::pow(10.0, k), fmt::format("{:g}", std::pow(10.0, k)));
-      const std::size_t stride = (list.size() + 3) / 4;
-      std::vector<std::pair<double, std::string>> few;
-      for (std::size_t i = 0; i < list.size(); i += std::max<std::size_t>(stride, 1)) few.push_back(list[i]);
-      return few;
-    }
-    const double raw = (high_ - low_) / 3.5, ten = std::pow(10.0, std::floor(std::log10(raw)));
-    const double step = raw < 1.5 * ten ? ten : raw < 3.5 * ten ? 2.0 * ten : raw < 7.5 * ten ? 5.0 * ten : 10.0 * ten;
-    const double unit = std::pow(10.0, exponent_);
-    for (double k = std::ceil(low_ / step); k * step <= high_; ++k)
-      list.emplace_back(k * step, fmt::format("{:.6g}", k == 0.0 ? 0.0 : k * step / unit));
-    return list;
-  }
-  /// "x (1e-6 m)"
-  std::string label(const std::string& name, const std::string& unit) const {
-    const std::string power = exponent_ == 0 ? "" : fmt::format("1e{}", exponent_);
-    const std::string both = power + (power.empty() || unit.empty() ? "" : " ") + unit;
-    return both.empty() ? name : name + " (" + both + ")";
-  }
-
- private:
-  bool logarithmic_;
-  double low_ = infinite, high_ = -infinite;
-  int exponent_ = 0;
-};
-
 /// Names of the curves of all panels, each once, in order; empty if there are too many for a legend.
 std::vector<std::string> legend_of(const ExperimentFigure& figure) {
   std::vector<std::string> names;
@@ -101,14 +41,7 @@ std::size_t colour_of(const std::vector<std::string>& legend, const Curve& curve
   return (at == legend.end() ? place : static_cast<std::size_t>(at - legend.begin())) % colours;
 }
 
-struct Frame {
-  double left, top;
-  Scale x, y;
-  double px(double value) const { return left + panel_width * x.share(value); }
-  double py(double value) const { return top + panel_height * (1.0 - y.share(value)); }
-};
-
-std::string path_of(const Frame& frame, const Curve& curve) {
+std::string path_of(const AxesFrame& frame, const Curve& curve) {
   std::string d;
   bool pen_up = true;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -123,24 +56,10 @@ std::string path_of(const Frame& frame, const Curve& curve) {
   return d;
 }
 
-std::string ticks_of(const Frame& frame) {
-  std::string out;
-  for (const auto& [value, text] : frame.x.ticks())
-    out += fmt::format(
-        "<line class=\"tick\" x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\"/><text x=\"{0:.1f}\" "
-        "y=\"{3:.1f}\" text-anchor=\"middle\">{4}</text>\n",
-        frame.px(value), frame.top, frame.top + panel_height, frame.top + panel_height + 12.0, text);
-  for (const auto& [value, text] : frame.y.ticks())
-    out += fmt::format(
-        "<line class=\"tick\" x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{2:.1f}\" y2=\"{1:.1f}\"/><text x=\"{3:.1f}\" "
-        "y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
-        frame.left, frame.py(value), frame.left + panel_width, frame.left - 4.0, frame.py(value) + 4.0, text);
-  return out;
-}
-
 std::string panel_svg(const ExperimentFigure& figure, const FigurePanel& panel, const std::vector<std::string>& legend,
                       double left, double top) {
-  Frame frame{left + left_margin, top + top_margin, Scale(figure.logarithmic), Scale(false)};
+  AxesFrame frame{left + left_margin, top + top_margin,          panel_width,
+                  panel_height,       Scale(figure.logarithmic), Scale(false)};
   for (const auto& curve : panel.curves)
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i])) continue;
@@ -149,9 +68,7 @@ std::string panel_svg(const ExperimentFigure& figure, const FigurePanel& panel, 
     }
   frame.x.settle();
   frame.y.settle();
-  std::string out = ticks_of(frame);
-  out += fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\"/>\n", frame.left,
-                     frame.top, panel_width, panel_height);
+  std::string out = frame.markup();
   out += fmt::format(
       "<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text><text x=\"{:.1f}\" y=\"{:.1f}\" "
       "text-anchor=\"end\">{}</text><text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",

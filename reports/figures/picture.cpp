@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/reports/figures/svg_axes.hpp"
 #include "limcycle/reports/figures/thin.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
@@ -14,36 +15,11 @@ namespace limcycle {
 namespace {
 
 constexpr std::string_view prediction_style =
-    "text{font:12px system-ui,sans-serif;fill:#59636e}.frame{fill:none;stroke:#8b949e;stroke-opacity:.5}"
     ".one{fill:none;stroke:#2f81c7;stroke-width:2}.two{fill:none;stroke:#d9661f;stroke-width:2}"
-    ".stuck{fill:none;stroke:#d9661f;stroke-width:6;stroke-linecap:round}.title{font-size:14px;font-weight:600}";
-
-struct Panel {
-  double left, top, width, height;
-  double x_from = 0.0, x_to = 1.0, y_from = 0.0, y_to = 1.0;
-
-  void fit(const std::vector<double>& x, const std::vector<double>& y) {
-    const auto [x_low, x_high] = std::minmax_element(x.begin(), x.end());
-    const auto [y_low, y_high] = std::minmax_element(y.begin(), y.end());
-    const auto margin = [](double low, double high) { return high > low ? 0.06 * (high - low) : 1.0; };
-    x_from = *x_low, x_to = *x_high > *x_low ? *x_high : *x_low + 1.0;
-    y_from = *y_low - margin(*y_low, *y_high), y_to = *y_high + margin(*y_low, *y_high);
-  }
-  std::string place(double x, double y) const {
-    return fmt::format("{:.1f},{:.1f}", left + width * (x - x_from) / (x_to - x_from),
-                       top + height * (1.0 - (y - y_from) / (y_to - y_from)));
-  }
-  std::string frame(const std::string& name, const std::string& below) const {
-    return fmt::format(
-        "<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n"
-        "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
-        left, top, width, height, left, top - 5.0, html_escaped(name), left + width, top + height + 14.0,
-        html_escaped(below));
-  }
-};
+    ".stuck{fill:none;stroke:#d9661f;stroke-width:6;stroke-linecap:round}";
 
 /// The samples of a curve that `keep` selects, joined if they are adjacent.
-std::string path(const Panel& panel, const std::string& kind, const std::vector<double>& x,
+std::string path(const AxesFrame& frame, const std::string& kind, const std::vector<double>& x,
                  const std::vector<double>& y, const std::vector<bool>& keep = {}) {
   std::string d;
   bool drawing = false;
@@ -52,15 +28,19 @@ std::string path(const Panel& panel, const std::string& kind, const std::vector<
       drawing = false;
       continue;
     }
-    d += (drawing ? " L" : " M") + panel.place(x[i], y[i]);
+    d += fmt::format("{}{:.1f},{:.1f}", drawing ? " L" : " M", frame.px(x[i]), frame.py(y[i]));
     drawing = true;
   }
   return d.empty() ? "" : fmt::format("<path class=\"{}\" d=\"{}\"/>\n", kind, d.substr(1));
 }
 
-std::string range_of(const std::vector<double>& values, const std::string& unit) {
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return with_digits(*low, 3) + " to " + Units::attach(with_digits(*high, 3), unit);
+/// A frame about curves; time has no room at its ends.
+AxesFrame about(AxesFrame frame, const std::vector<double>& x, const std::vector<double>& y, bool of_time) {
+  frame.x.include(x);
+  frame.y.include(y);
+  frame.x.settle(!of_time);
+  frame.y.settle();
+  return frame;
 }
 
 Trace picked(const Trace& from, const std::vector<std::size_t>& index) {
@@ -102,20 +82,14 @@ std::string panels(const Cycle& cycle, const Units& units) {
     two.y.push_back(once.y[i]);
     two.output.push_back(once.output[i]);
   }
-  const std::string time = fmt::format("0 to {} s", with_digits(two.t.back(), 3));
-  Panel above{10, 50, 430, 105}, below{10, 190, 430, 105}, right{460, 50, 290, 245};
-  above.fit(two.t, two.y);
-  below.fit(two.t, two.output);
-  right.fit(once.y, once.rate);
-  const double margin = 0.06 * (right.x_to - right.x_from);
-  right.x_from -= margin, right.x_to += margin;
-  const std::string rate = units.y.empty() ? "1/s" : units.y + "/s";
-  const std::string y = name_of_y(once);
-  return above.frame(y + ": " + range_of(once.y, units.y), "") + path(above, "one", two.t, two.y) +
-         below.frame(
-             (units.force.empty() ? "element's output: " : "friction force: ") + range_of(once.output, units.force),
-             time) +
-         path(below, "two", two.t, two.output) + right.frame("dy/dt: " + range_of(once.rate, rate), y) +
+  const AxesFrame above = about({54, 50, 390, 100}, two.t, two.y, true),
+                  below = about({54, 206, 390, 100}, two.t, two.output, true),
+                  right = about({508, 50, 242, 256}, once.y, once.rate, false);
+  const std::string rate = units.y.empty() ? "1/s" : units.y + "/s", y = name_of_y(once), t = above.x.label("t", "s");
+  const std::string output = units.force.empty() ? "output of the element" : "friction force";
+  return above.markup() + above.names(t, above.y.label(y, units.y)) + path(above, "one", two.t, two.y) +
+         below.markup() + below.names(t, below.y.label(output, units.force)) + path(below, "two", two.t, two.output) +
+         right.markup() + right.names(right.x.label(y, units.y), right.y.label("dy/dt", rate)) +
          path(right, "one", once.y, once.rate) + path(right, "stuck", once.y, once.rate, marks);
 }
 
@@ -127,8 +101,8 @@ std::string predict_picture(const PredictReport& report, const Units& units) {
   const Cycle* cycle = drawable(report);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 760 {0}\" width=\"760\" height=\"{0}\" role=\"img\" "
-      "aria-label=\"{1}\">\n<style>{2}</style>\n<text class=\"title\" x=\"10\" y=\"20\">{3}</text>\n{4}</svg>\n",
-      cycle ? 315 : 36, words, prediction_style, first, cycle ? panels(*cycle, units) : "");
+      "aria-label=\"{1}\">\n<style>{2}{3}</style>\n<text class=\"title\" x=\"10\" y=\"20\">{4}</text>\n{5}</svg>\n",
+      cycle ? 340 : 36, words, axes_style, prediction_style, first, cycle ? panels(*cycle, units) : "");
 }
 
 }  // namespace limcycle

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "limcycle/reports/figures/svg_axes.hpp"
 #include "limcycle/reports/figures/svg_parts.hpp"
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
@@ -13,43 +14,40 @@ namespace limcycle {
 namespace {
 
 constexpr std::string_view response_style =
-    "text{font:12px system-ui,sans-serif;fill:#59636e}.frame{fill:none;stroke:#8b949e;stroke-opacity:.5}"
-    ".zero{stroke:#8b949e;stroke-dasharray:4 4}.run{fill:none;stroke:#2f81c7;stroke-width:1.5}"
-    ".title{font-size:14px;font-weight:600}";
-constexpr double panel_width = 330.0, panel_height = 170.0, panel_top = 52.0, panel_left = 20.0, panel_gap = 20.0;
+    ".zero{stroke:#8b949e;stroke-dasharray:4 4}.run{fill:none;stroke:#2f81c7;stroke-width:1.5}";
+constexpr double panel_width = 300.0, panel_height = 170.0, panel_top = 68.0, panel_left = 48.0, panel_gap = 56.0;
 
-/// The axes that both panels share: time from 0, and y.
-struct ResponseAxes {
-  double duration = 0.0, low = 0.0, high = 0.0;
-};
+double length_of(const Trace& run) { return run.t.empty() ? 0.0 : run.t.back() - run.t.front(); }
 
-/// Until the slower of the two has settled, at most the shorter of both runs if one of them hunts for ever.
-ResponseAxes axes_of(const RemedyReport& report, const Remedy& remedy) {
-  const auto length = [](const Trace& run) { return run.t.empty() ? 0.0 : run.t.back() - run.t.front(); };
-  ResponseAxes axes;
-  const double settled = remedy.costs.settling_time.value_or(length(remedy.after));
-  axes.duration = std::min(std::max(length(report.before), length(remedy.after)),
-                           std::max(3.0 * settled, 0.25 * length(report.before)));
+/// The axes that both panels share. Time goes until the slower of the two has settled, at most the shorter of both runs
+/// if one of them hunts for ever.
+AxesFrame shared_axes(const RemedyReport& report, const Remedy& remedy, double per_si) {
+  AxesFrame frame{panel_left, panel_top, panel_width, panel_height};
+  const double settled = remedy.costs.settling_time.value_or(length_of(remedy.after));
+  const double duration = std::min(std::max(length_of(report.before), length_of(remedy.after)),
+                                   std::max(3.0 * settled, 0.25 * length_of(report.before)));
+  frame.x.include({0.0, duration});
+  frame.y.include(0.0);
   for (const Trace* run : {&report.before, &remedy.after})
-    for (std::size_t i = 0; i < run->t.size() && run->t[i] - run->t.front() <= axes.duration; ++i) {
-      axes.low = std::min(axes.low, run->y[i]);
-      axes.high = std::max(axes.high, run->y[i]);
-    }
-  return axes;
+    for (std::size_t i = 0; i < run->t.size() && run->t[i] - run->t.front() <= duration; ++i)
+      frame.y.include(run->y[i] * per_si);
+  frame.x.settle(false);
+  frame.y.settle();
+  return frame;
 }
 
 /// One run as a polyline of some hundred points: the extremes of each column of the picture.
-std::string response_curve(const Trace& run, const ResponseAxes& axes, double left) {
-  const auto at = [&](std::size_t i) {
-    return fmt::format("{:.1f},{:.1f}", place(run.t[i] - run.t.front(), left, panel_width, 0.0, axes.duration),
-                       panel_top + panel_height - place(run.y[i], 0.0, panel_height, axes.low, axes.high));
-  };
+std::string response_curve(const Trace& run, const AxesFrame& frame, double per_si) {
+  const double from = run.t.empty() ? 0.0 : run.t.front(), right = frame.left + frame.width + 1e-6;
   std::string d;
-  const auto add = [&](std::size_t i) { d += (d.empty() ? "M" : " L") + at(i); };
-  for (std::size_t i = 0; i < run.t.size() && run.t[i] - run.t.front() <= axes.duration;) {
-    const double until = run.t[i] + axes.duration / panel_width;
+  const auto add = [&](std::size_t i) {
+    d += fmt::format("{}{:.1f},{:.1f}", d.empty() ? "M" : " L", frame.px(run.t[i] - from), frame.py(run.y[i] * per_si));
+  };
+  const auto is_inside = [&](std::size_t i) { return i < run.t.size() && frame.px(run.t[i] - from) <= right; };
+  for (std::size_t i = 0; is_inside(i);) {
+    const double until = frame.px(run.t[i] - from) + 1.0;
     std::size_t low = i, high = i, end = i;
-    for (; end < run.t.size() && run.t[end] <= until; ++end) {
+    for (; is_inside(end) && frame.px(run.t[end] - from) <= until; ++end) {
       if (run.y[end] < run.y[low]) low = end;
       if (run.y[end] > run.y[high]) high = end;
     }
@@ -63,28 +61,22 @@ std::string response_curve(const Trace& run, const ResponseAxes& axes, double le
 }  // namespace
 
 std::string remedy_picture(const RemedyReport& report, const Remedy& remedy, const Units& units) {
-  if (report.before.t.empty() || remedy.after.t.empty()) return {};
-  const ResponseAxes axes = axes_of(report, remedy);
-  if (!(axes.duration > 0.0) || !(axes.high > axes.low)) return {};
+  if (!(length_of(report.before) > 0.0) || !(length_of(remedy.after) > 0.0)) return {};
+  AxesFrame frame = shared_axes(report, remedy, units.y_per_si);
   std::string body;
   const std::array<std::pair<std::string, const Trace*>, 2> panels{
       {{"as it stands", &report.before}, {"with " + remedy.candidate.name, &remedy.after}}};
-  for (std::size_t k = 0; k < panels.size(); ++k) {
-    const double left = panel_left + static_cast<double>(k) * (panel_width + panel_gap);
-    const double zero = panel_top + panel_height - place(0.0, 0.0, panel_height, axes.low, axes.high);
-    body += words_at(left, panel_top - 8.0, "", html_escaped(panels[k].first));
-    body += fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", left,
-                        panel_top, panel_width, panel_height);
-    body += line_of(left, zero, left + panel_width, zero, "zero");
-    body += response_curve(*panels[k].second, axes, left);
-    body += words_at(
-        left, panel_top + panel_height + 16.0, "",
-        fmt::format("t 0 to {} s, y {} to {}", with_digits(axes.duration, 3), with_digits(axes.low * units.y_per_si, 3),
-                    Units::attach(with_digits(axes.high * units.y_per_si, 3), units.y)));
+  for (const auto& [name, run] : panels) {
+    const double zero = frame.py(0.0);
+    body += words_at(frame.left, panel_top - 24.0, "", html_escaped(name)) + frame.markup() +
+            frame.names(frame.x.label("t", "s"), frame.y.label("y", units.y)) +
+            line_of(frame.left, zero, frame.left + frame.width, zero, "zero") +
+            response_curve(*run, frame, units.y_per_si);
+    frame.left += panel_width + panel_gap;
   }
   const std::string label = "Step response as it stands and with " + remedy.candidate.name;
-  return svg_picture(2.0 * panel_width + panel_gap + 2.0 * panel_left, panel_top + panel_height + 28.0, label,
-                     response_style, label, body);
+  return svg_picture(frame.left - panel_gap + 12.0, panel_top + panel_height + 34.0, label,
+                     std::string(axes_style) + std::string(response_style), label, body);
 }
 
 std::string remedy_page(const RemedyReport& report, const Provenance& provenance, const std::string& case_text,
