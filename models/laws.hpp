@@ -2,6 +2,7 @@
 #include <type_traits>
 
 #include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/clamped_pi.hpp"
 #include "limcycle/models/element/compensation.hpp"
 #include "limcycle/models/element/cubic.hpp"
 #include "limcycle/models/element/dead_zone.hpp"
@@ -12,6 +13,7 @@
 #include "limcycle/models/element/relay.hpp"
 #include "limcycle/models/element/sampled.hpp"
 #include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/window.hpp"
 #include "limcycle/models/friction/bristle/bouc_wen.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
@@ -51,7 +53,7 @@ struct KindList {
 using FrictionLaws = KindList<Coulomb, Stribeck, StribeckTable, Karnopp, Quinn, Kikuuwe, Awrejcewicz, Wojewoda, Dahl,
                               BoucWen, LuGre, LuGreTable, LuGreSpline, ElastoPlastic, Leuven, Jenkins, MaxwellSlip,
                               Iwan, Gms, GmsTable, Xiong, TwoState, NonDrift>;
-using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic>;
+using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic, ClampedPi, Window>;
 using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
 using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity, Sampled>;
 

@@ -128,9 +128,10 @@ std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
   if (controller.D_rate != 0.0 && !does_not_reach(plant.C_y, plant.B_u))
     return BrokenRule{"loop.controller.tf",
                       "must be > 0: the plant has relative degree 1 and kd differentiates its output"};
-  if (const auto* cascade = std::get_if<Cascade>(&parts.controller))
-    if (const auto broken = cascade->broken_together())
-      return BrokenRule{"loop.controller." + broken->key, broken->rule};
+  std::optional<BrokenRule> together;
+  if (const auto* cascade = std::get_if<Cascade>(&parts.controller)) together = cascade->broken_together();
+  if (const auto* pid = std::get_if<Pid>(&parts.controller)) together = pid->broken_together();
+  if (together) return BrokenRule{"loop.controller." + together->key, together->rule};
   if (auto broken = validate_error(parts, controller.D_rate)) return broken;
   return validate_sampling(parts, plant);
 }
@@ -138,6 +139,11 @@ std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
 std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {
   bool nonlinear = false;
   for (const Block& block : diagram.blocks) {
+    if (const auto* controller = std::get_if<Controller>(&block.what))
+      if (const auto* pid = std::get_if<Pid>(controller); pid != nullptr && pid->holds_integral_back())
+        return BrokenRule{block.path + (pid->integral_limit < infinite ? ".integral_limit" : ".integral_band"),
+                          "is not for a block of a diagram: let the integral be a block of its own, of kind "
+                          "clamped-pi, or window and integrator"};
     if (const auto* plant = std::get_if<Plant>(&block.what)) {
       nonlinear = nonlinear || std::holds_alternative<FroudePendulum>(*plant);
       if (const auto* froude = std::get_if<FroudePendulum>(plant); froude && froude->clearance > 0.0)

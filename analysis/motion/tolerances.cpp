@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "limcycle/analysis/motion/sampling.hpp"
+#include "limcycle/models/element/clamped_pi.hpp"
 #include "limcycle/models/element/cubic.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/transfer.hpp"
@@ -187,6 +188,26 @@ MatrixXd working_loop(const Loop& loop) {
   return loop.A + loop.A_delayed + loop.B * solve_columns_fully_pivoted(closed, C);
 }
 
+namespace {
+
+/// working_loop() on some states, with the integrals of clamped PI controllers, which are states of elements, below
+/// them.
+MatrixXd with_integrals(const Loop& loop, const MatrixXd& working, const std::vector<Index>& seen) {
+  const Index n = std::ssize(seen);
+  MatrixXd all = working(seen, seen);
+  for (std::size_t k = 0; k < loop.elements.size(); ++k) {
+    const auto* pi = loop.elements[k].as<ClampedPi<double>>();
+    if (pi == nullptr) continue;
+    const Index own = all.rows();
+    all.conservativeResizeLike(MatrixXd::Zero(own + 1, own + 1));
+    all.col(own).head(n) = loop.B(seen, static_cast<Index>(k));
+    all.row(own).head(n) = pi->ki * loop.ports[k].C(seen);
+  }
+  return all;
+}
+
+}  // namespace
+
 std::vector<double> pole_moduli(const Loop& loop) {
   if (loop.continuous) return pole_moduli(*loop.continuous);
   std::vector<double> found;
@@ -195,7 +216,7 @@ std::vector<double> pole_moduli(const Loop& loop) {
   const auto seen = seen_states(loop, tangent);
   if (!seen.empty()) add_moduli(tangent(seen, seen), found);
   if (const MatrixXd working = working_loop(loop); working.allFinite() && working != loop.A + loop.A_delayed)
-    add_moduli(working(seen, seen), found);
+    add_moduli(with_integrals(loop, working, seen), found);
   if (found.empty() && !loop.elements.empty())
     if (const double own = frequency_of_scales(loop); own > 0.0) found.push_back(own);
   std::ranges::sort(found);

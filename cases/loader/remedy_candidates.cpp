@@ -32,7 +32,7 @@ class Candidates {
   std::vector<RemedyCandidate> all() {
     dead_zone();
     leak();
-    not_written("integrator-clamp", "there is no limit of the integral itself, only one of the command");
+    hold_back("integrator-clamp", "integral_limit", Measure::force);
     not_written("integrator-reset", "there is no integrator that is reset");
     gain("gain-kp", {"kp", "position_kp"}, "proportional gain", Measure::stiffness);
     integral_gain();
@@ -41,7 +41,7 @@ class Candidates {
     not_written("impulse-compensation", "there is no controller that sends impulses");
     not_written("dither",
                 "a limit cycle is sought in a loop without periodic inputs; `simulate` takes a sine as force");
-    not_written("integral-band", "there is no integral that acts only within a band of the error");
+    hold_back("integral-band", "integral_band", Measure::displacement);
     feedforward();
     of_plant("damping", {"loop.plant.damping", "loop.friction.sigma2"}, Measure::damping);
     of_plant("stiffness", {"loop.plant.stiffness"}, Measure::stiffness);
@@ -51,7 +51,7 @@ class Candidates {
  private:
   void add(RemedyCandidate candidate) {
     if (candidate.why_not.empty()) try {
-        const Case with = case_with_remedy(from_, candidate, candidate.own == 0.0 ? 1.0 : candidate.own);
+        const Case with = case_with_remedy(from_, candidate, candidate.is_absent() ? 1.0 : candidate.own);
         candidate.parts = [variation = LoopVariation(with, "remedy", candidate.parameter)](double value) {
           return variation.parts({&value, 1});
         };
@@ -115,6 +115,16 @@ class Candidates {
     not_there("integrator-leak", ki != nullptr && ki->value == 0.0
                                      ? "there is no integral action"
                                      : "the controller has no integral that can leak: kind \"pid\" has");
+  }
+
+  /// A limit or a band of the integral of a PID, which is infinite where it is absent.
+  void hold_back(const std::string& name, const std::string& key, Measure measure) {
+    const auto* pid = std::get_if<Pid>(&parts_.controller);
+    if (parts_.diagram) return not_there(name, "in a diagram the integral is a block of its own");
+    if (pid == nullptr) return not_there(name, "the controller has no integral of that kind: kind \"pid\" has");
+    if (pid->ki == 0.0) return not_there(name, "there is no integral action");
+    const CaseNumber* number = at("loop.controller." + key);
+    add({name, number->path, number->unit, {}, number->value, measure, Way::down});
   }
 
   void dead_zone() {

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "limcycle/models/diagram/controller_blocks.hpp"
+#include "limcycle/models/element/clamped_pi.hpp"
 #include "limcycle/models/element/sampled.hpp"
 #include "limcycle/models/element/saturation.hpp"
 #include "limcycle/models/linear/discrete.hpp"
@@ -16,6 +17,7 @@ SignalSum scaled(SignalSum sum, double factor) {
 void add(SignalSum& sum, const SignalSum& other) { sum.insert(sum.end(), other.begin(), other.end()); }
 
 bool holds_back(const Cascade& cascade) { return cascade.anti_windup.index == Cascade::back_calculation; }
+bool clamps(const Cascade& cascade) { return cascade.anti_windup.index == Cascade::clamp; }
 
 SignalSum velocity_error(const Cascade& cascade, Term position, Term velocity) {
   velocity.factor = -1.0;
@@ -66,9 +68,17 @@ SignalSum sampled_error(std::vector<Block>& blocks, const Cascade& cascade, Sign
   return velocity_error(cascade, {1.0, "position", ""}, v);
 }
 
-/// The velocity loop as a continuous one, its integral held back by what the limit takes off.
+/// The velocity loop as a continuous one, its integral clamped, or held back by what the limit takes off.
 SignalSum velocity_loop(std::vector<Block>& blocks, const Cascade& cascade, const SignalSum& error, double kp) {
   const std::string path = "loop.controller";
+  if (clamps(cascade)) {
+    ClampedPi<double> pi;
+    pi.kp = kp;
+    pi.ki = cascade.velocity_ki;
+    pi.limit = cascade.limit;
+    blocks.push_back({"limited", path + ".limit", Element(pi), {error}});
+    return {{1.0, "limited", ""}};
+  }
   SignalSum command = scaled(error, kp);
   if (cascade.velocity_ki != 0.0) {
     command.push_back({cascade.velocity_ki, "integral", ""});
@@ -97,6 +107,7 @@ SignalSum sampled_velocity_loop(std::vector<Block>& blocks, const Cascade& casca
   element.output_quantum = cascade.output_step;
   element.limit = cascade.limit;
   if (holds_back(cascade)) element.hold_back = {cascade.sample_time / cascade.velocity_kp};
+  if (clamps(cascade)) element.clamped = 1.0;
   blocks.push_back({"controller", "loop.controller", Element(element), {std::move(error)}});
   return {{1.0, "controller", ""}};
 }

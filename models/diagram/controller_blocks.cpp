@@ -1,6 +1,8 @@
 #include "limcycle/models/diagram/controller_blocks.hpp"
 
+#include "limcycle/models/element/clamped_pi.hpp"
 #include "limcycle/models/element/sampled.hpp"
+#include "limcycle/models/element/window.hpp"
 #include "limcycle/models/linear/discrete.hpp"
 
 namespace limcycle {
@@ -21,6 +23,27 @@ ControllerModel model_behind_window(const Controller& controller, const Sampling
     return slower.model();
   }
   return model_of(controller);
+}
+
+/// The integral of a PID as blocks of its own, behind the rest of it.
+SignalSum through_held_integral(std::vector<Block>& blocks, const Pid& pid, SignalSum e) {
+  const std::string path = "loop.controller";
+  Pid rest = pid;
+  rest.ki = 0.0;
+  blocks.push_back({"controller", path, Controller(rest), {e}});
+  if (pid.integral_limit < infinite) {
+    ClampedPi<double> integral;
+    integral.ki = pid.ki;
+    integral.limit = pid.integral_limit;
+    blocks.push_back({"integral", path + ".integral_limit", Element(integral), {std::move(e)}});
+    return {{1.0, "controller", ""}, {1.0, "integral", ""}};
+  }
+  Window<double> window;
+  window.half_width = pid.integral_band;
+  blocks.push_back({"integral_band", path + ".integral_band", Element(window), {std::move(e)}});
+  blocks.push_back({"integral", path, LinearBlock(Integrator{1.0, pid.leak}), {{{1.0, "integral_band", ""}}}});
+  blocks.back().states = {"I"};
+  return {{1.0, "controller", ""}, {pid.ki, "integral", ""}};
 }
 
 }  // namespace
@@ -61,6 +84,8 @@ Block averaged_block(std::string name, std::string path, ControllerModel model, 
 SignalSum through_controller(std::vector<Block>& blocks, const Controller& controller, SignalSum e, Clock clock) {
   if (const auto* cascade = std::get_if<Cascade>(&controller))
     return through_cascade(blocks, *cascade, std::move(e), clock);
+  if (const auto* pid = std::get_if<Pid>(&controller); pid != nullptr && pid->holds_integral_back())
+    return through_held_integral(blocks, *pid, std::move(e));
   const std::string name = "controller", path = "loop.controller";
   const Sampling& sampling = sampling_of(controller);
   switch (clock) {

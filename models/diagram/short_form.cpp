@@ -39,12 +39,24 @@ Diagram short_form(const LoopParts& parts, Clock clock) {
   return diagram;
 }
 
+namespace {
+
+/// The same with every integral among the linear states, as scales and starts of a sampled loop need them.
+LoopParts with_linear_integral(LoopParts parts) {
+  if (auto* cascade = std::get_if<Cascade>(&parts.controller)) cascade->anti_windup = {};
+  return parts;
+}
+
+}  // namespace
+
 Loop assemble(const LoopParts& parts) {
   if (parts.diagram) return assemble(expanded(*parts.diagram), parts.reference, parts.load);
-  const auto form = [&](Clock clock) { return assemble(short_form(parts, clock), parts.reference, parts.load); };
-  if (!sampling_of(parts.controller).is_on() || !uses_error(parts)) return form(Clock::continuous);
-  Loop sampled = form(Clock::sampled), loop = form(Clock::averaged);
-  sampled.continuous = std::make_shared<const Loop>(form(Clock::continuous));
+  const auto form = [](const LoopParts& of, Clock clock) {
+    return assemble(short_form(of, clock), of.reference, of.load);
+  };
+  if (!sampling_of(parts.controller).is_on() || !uses_error(parts)) return form(parts, Clock::continuous);
+  Loop sampled = form(parts, Clock::sampled), loop = form(parts, Clock::averaged);
+  sampled.continuous = std::make_shared<const Loop>(form(with_linear_integral(parts), Clock::continuous));
   loop.sampled = std::make_shared<const Loop>(std::move(sampled));
   return loop;
 }

@@ -126,8 +126,8 @@ concept NeedsRate = requires {
   requires E::output_needs_rate;
 };
 
-/// Optional: in each mode the output and the guards are affine in (x, v, drive, z) and the rate of the state is
-/// constant, so that a loop of such elements only is integrated exactly, with matrix exponentials.
+/// Optional: in each mode the output, the guards and the rate of the state are affine in (x, v, drive, z), the rate in
+/// x and z alone, so that a loop of such elements only is integrated exactly, with matrix exponentials.
 template <class E>
 concept PiecewiseAffine = requires {
   requires E::piecewise_affine;

@@ -12,7 +12,8 @@ namespace limcycle {
 /// these ticks, its output held in between (zero-order hold) and put out `computation_delay` after each reading:
 ///   e_k = input at k sample_time, rounded to a multiple of input_quantum;
 ///   u_k = C X_k + D e_k, limited to +-limit, then rounded to a multiple of output_quantum;
-///   X_(k+1) = A X_k + B e_k + hold_back (limited u_k - u_k).
+///   X_(k+1) = A X_k + B e_k + hold_back (limited u_k - u_k), with clamped != 0 X_k while u_k is beyond the limit and
+///   e_k has its sign (conditional integration).
 /// A, B, C: matrices of the order n in rows (n^2, n, n numbers); a quantum of 0 does not round. hold_back (n numbers,
 /// or none): what the limit takes off the states (back-calculation). The last `memory` of X are past inputs.
 ///
@@ -23,7 +24,7 @@ namespace limcycle {
 template <class S>
 struct Sampled {
   S sample_time{}, computation_delay{0.0}, input_quantum{0.0}, output_quantum{0.0}, limit{infinite}, every{1.0},
-      memory{0.0}, D{};
+      memory{0.0}, clamped{0.0}, D{};
   std::vector<S> A, B, C, hold_back;
 
   static constexpr std::string_view kind = "sampled";
@@ -44,6 +45,7 @@ struct Sampled {
         {"limit", "1", "of the output", &Sampled::limit, {0.0, infinite, true, false}, false},
         {"every", "1", "ticks of the clock from one reading to the next", &Sampled::every, {1.0, infinite}, false},
         {"memory", "1", "past inputs among the states, the last of them", &Sampled::memory, not_negative, false},
+        {"clamped", "1", "1: the states stand still at the limit", &Sampled::clamped, {0.0, 1.0}, false},
         {"hold_back", "1", "change of the states by what the limit takes off", &Sampled::hold_back, any_number, false},
         {"D", "1", "feed-through", &Sampled::D, any_number},
         {"A", "1", "state matrix, row by row", &Sampled::A},
@@ -148,7 +150,8 @@ struct Sampled {
     }
     const T limited = u > as<T>(limit) ? as<T>(limit) : u < -as<T>(limit) ? -as<T>(limit) : u;
     for (std::size_t i = 0; i < hold_back.size(); ++i) next[i] += as<T>(hold_back[i]) * (limited - u);
-    std::ranges::copy(next, z.begin() + first_own);
+    const bool pushes = value_of(limited - u) * value_of(e) < 0.0;
+    if (!(clamped > 0.0 && pushes)) std::ranges::copy(next, z.begin() + first_own);
     if (counts()) z[ticks()] = T(value_of(every) - 1.0);
     u = rounded(limited, output_quantum);
     if (!delays()) {

@@ -42,6 +42,17 @@ ControllerModel NoController::model() const {
   return controller;
 }
 
+std::optional<BrokenRule> Pid::broken_together() const {
+  if (!holds_integral_back()) return std::nullopt;
+  const bool limits = integral_limit < infinite;
+  const std::string key = limits ? "integral_limit" : "integral_band";
+  if (limits && integral_band < infinite) return BrokenRule{"integral_band", "cannot stand beside integral_limit"};
+  if (ki == 0.0) return BrokenRule{key, "needs ki: there is no integral"};
+  if (limits && leak > 0.0) return BrokenRule{key, "cannot stand beside leak, which bounds the integral too"};
+  if (is_on()) return BrokenRule{key, "is not for a sampled controller yet"};
+  return std::nullopt;
+}
+
 ControllerModel Pid::model() const {
   const bool integral = ki != 0.0, filtered = kd != 0.0 && tf > 0.0;
   const Eigen::Index n = (integral ? 1 : 0) + (filtered ? 1 : 0);
@@ -69,8 +80,6 @@ std::optional<BrokenRule> Cascade::broken_together() const {
   if (position_every != std::floor(position_every) || position_every > slowest_position)
     return BrokenRule{"position_every", "must be a whole number of samples, at most 1000000"};
   if (position_every > 1.0 && !is_on()) return BrokenRule{"position_every", "needs sample_time"};
-  if (anti_windup.index == clamp)
-    return BrokenRule{"anti_windup", R"(cannot be "clamp" yet: "back-calculation" is there, and "none")"};
   if (anti_windup.index == 0) return std::nullopt;
   if (!std::isfinite(limit)) return BrokenRule{"anti_windup", "needs a limit"};
   if (velocity_ki == 0.0) return BrokenRule{"anti_windup", "needs velocity_ki: there is no integral to hold back"};

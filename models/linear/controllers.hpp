@@ -86,9 +86,11 @@ struct NoController : ControllerParts {
 };
 
 /// u = kp e + ki I + kd de/dt, dI/dt = e - leak I, the derivative filtered by 1/(tf s + 1) when tf > 0. A leak bounds
-/// what the integral can reach: ki/leak times a constant error.
+/// what the integral can reach: ki/leak times a constant error. Two other ways to hold the integral back, one at a
+/// time: ki I stops at +-integral_limit (see ClampedPi), or I grows only while |e| is within integral_band (see
+/// Window).
 struct Pid : ControllerParts {
-  double kp{}, ki{0.0}, kd{0.0}, tf{0.0}, leak{0.0};
+  double kp{}, ki{0.0}, kd{0.0}, tf{0.0}, leak{0.0}, integral_limit{infinite}, integral_band{infinite};
   static constexpr std::string_view kind = "pid";
   static constexpr std::string_view equation =
       "u = kp e + ki I + kd de/dt, dI/dt = e - leak I; tf > 0: derivative filtered by 1/(tf s + 1)";
@@ -98,11 +100,23 @@ struct Pid : ControllerParts {
         {"ki", "N/(m s)", "integral gain", &Pid::ki, any_number, false},
         {"kd", "N s/m", "derivative gain", &Pid::kd, any_number, false},
         {"tf", "s", "time constant of the derivative filter", &Pid::tf, not_negative, false},
-        {"leak", "1/s", "rate at which the integral forgets", &Pid::leak, not_negative, false}};
+        {"leak", "1/s", "rate at which the integral forgets", &Pid::leak, not_negative, false},
+        {"integral_limit", "N", "where ki I stops", &Pid::integral_limit, {0.0, infinite, true, false}, false},
+        {"integral_band",
+         "m",
+         "largest |e| at which I grows",
+         &Pid::integral_band,
+         {0.0, infinite, true, false},
+         false}};
     append_table(table);
     return table;
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
+  /// True if the integral is no linear part: then the blocks of through_controller() make it.
+  bool holds_integral_back() const { return integral_limit < infinite || integral_band < infinite; }
+  /// The rule that these numbers break together.
+  std::optional<BrokenRule> broken_together() const;
+  /// Without integral_limit and integral_band.
   ControllerModel model() const;
 };
 
@@ -146,7 +160,7 @@ struct StateSpaceController : ControllerParts {
 ///   w = position_kp e + position_ki int(e) + velocity_feedforward dr/dt   (the velocity commanded),
 ///   u = velocity_kp (w - v) + velocity_ki x,  limited to +-limit,
 ///   dx/dt = w - v + anti-windup;  back-calculation: (limited u - u)/velocity_kp, time constant
-///   velocity_kp/velocity_ki.
+///   velocity_kp/velocity_ki;  clamp: dx/dt = 0 while u is beyond the limit and w - v has its sign (see ClampedPi).
 /// On a computer the velocity loop runs at every sample, the position loop at each `position_every`th.
 /// acceleration_feedforward multiplies d2r/dt2, which is zero for a constant reference and for a ramp.
 /// Back-calculation: Astrom and Hagglund (1995), PID Controllers, ch. 3.5.
@@ -157,7 +171,8 @@ struct Cascade : ControllerParts {
   static constexpr std::string_view kind = "cascade";
   static constexpr std::string_view equation =
       "w = position_kp e + position_ki int(e) + velocity_feedforward dr/dt;  u = velocity_kp (w - v) + velocity_ki x, "
-      "limited to +-limit;  dx/dt = w - v, with back-calculation + (limited u - u)/velocity_kp;  v = dy/dt";
+      "limited to +-limit;  dx/dt = w - v, with back-calculation + (limited u - u)/velocity_kp, with clamp 0 where it "
+      "would push further beyond the limit;  v = dy/dt";
   static constexpr std::string_view ways[] = {"none", "clamp", "back-calculation"};
   static constexpr int clamp = 1, back_calculation = 2;
   static std::vector<Parameter<Cascade, double>> parameters() {

@@ -54,10 +54,34 @@ TEST_CASE("a cascade: what holds its integral back needs a limit and an integral
   CHECK_THAT(cascade("velocity_ki = 4.0\nanti_windup = \"back-calculation\"\n"),
              StartsWith("a.toml:12: loop.controller.anti_windup") && Contains("needs a limit"));
   CHECK_THAT(cascade("limit = 3.0\nanti_windup = \"back-calculation\"\n"), Contains("needs velocity_ki"));
-  CHECK_THAT(cascade("velocity_ki = 4.0\nlimit = 3.0\nanti_windup = \"clamp\"\n"), Contains("cannot be \"clamp\" yet"));
+  CHECK(cascade("velocity_ki = 4.0\nlimit = 3.0\nanti_windup = \"clamp\"\n").empty());
+  CHECK_THAT(cascade("limit = 3.0\nanti_windup = \"clamp\"\n"), Contains("needs velocity_ki"));
   CHECK_THAT(cascade("acceleration_feedforward = 1.0\n[simulate]\nduration = 1.0\n"
                      "reference = {kind = \"sine\", amplitude = 1.0, frequency = 1.0}\n"),
              Contains("simulate.reference") && Contains("acceleration_feedforward is not simulated"));
+}
+
+TEST_CASE("a PID: one way to hold its integral back at a time, and in a diagram blocks of their own") {
+  const auto pid = [](const std::string& more) {
+    return message(
+        "[loop.plant]\nkind = \"mass\"\nmass = 1.0\n[loop.friction]\nkind = \"coulomb\"\nFc = 1.0\n"
+        "[loop.controller]\nkind = \"pid\"\nkp = 2.0\n" +
+        more);
+  };
+  CHECK(pid("ki = 1.0\nintegral_limit = 2.0\n").empty());
+  CHECK(pid("ki = 1.0\nleak = 0.1\nintegral_band = 2.0\n").empty());
+  CHECK_THAT(pid("integral_limit = 2.0\n"),
+             StartsWith("a.toml:10: loop.controller.integral_limit") && Contains("needs ki"));
+  CHECK_THAT(pid("ki = 1.0\nintegral_limit = 0.0\n"), Contains("must be > 0"));
+  CHECK_THAT(pid("ki = 1.0\nintegral_band = 2.0\nintegral_limit = 2.0\n"), Contains("cannot stand beside"));
+  CHECK_THAT(pid("ki = 1.0\nleak = 0.1\nintegral_limit = 2.0\n"), Contains("cannot stand beside leak"));
+  CHECK_THAT(pid("ki = 1.0\nsample_time = 0.01\nintegral_band = 2.0\n"), Contains("not for a sampled controller"));
+  CHECK_THAT(
+      message("[diagram]\noutput = \"axis.y\"\n[[diagram.block]]\nname = \"axis\"\nkind = \"mass\"\nmass = 1.0\n"
+              "input = \"c\"\n[[diagram.block]]\nname = \"c\"\nkind = \"pid\"\nkp = 1.0\nki = 1.0\n"
+              "integral_limit = 2.0\ninput = \"r - axis.y\"\n[[diagram.block]]\nname = \"f\"\nkind = \"coulomb\"\n"
+              "Fc = 1.0\non = \"axis\"\n"),
+      Contains("clamped-pi"));
 }
 
 TEST_CASE("a ramp as reference") {

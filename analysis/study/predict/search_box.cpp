@@ -4,6 +4,7 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/models/element/clamped_pi.hpp"
 #include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/element/saturation.hpp"
 #include "limcycle/models/linear/dense.hpp"
@@ -18,11 +19,17 @@ double widest_swing(const Loop& loop) {
   return gravity ? 2.0 / output_per_input(loop) : infinite;
 }
 
+/// Largest output of an element that limits the command; 0 for another.
+double limit_of(const Element& element) {
+  const bool limits = element.as<Saturation<double>>() != nullptr || element.as<ClampedPi<double>>() != nullptr;
+  return limits ? element.scales().output : 0.0;
+}
+
 /// Gain of an element for swings far beyond its own size, or within its limit; 0: it has none.
 double gain_beyond(const Element& element) { return element.as<Quantizer<double>>() != nullptr ? 1.0 : 0.0; }
 double gain_within(const Element& element) {
-  const auto* limit = element.as<Saturation<double>>();
-  return limit ? limit->slope : gain_beyond(element);
+  if (limit_of(element) > 0.0) return element.working_gain().first;
+  return gain_beyond(element);
 }
 
 /// The loop with elements before the main one replaced by their gain.
@@ -70,8 +77,7 @@ double reach(const Loop& loop, double slow, double fast) {
   const Loop beyond_limits = with_gains(loop, gain_beyond);
   const double open = largest_response(beyond_limits, level, 0.1 * slow, fast);
   double limit = 0.0;
-  for (std::size_t k = 0; k + 1 < loop.elements.size(); ++k)
-    if (const auto* element = loop.elements[k].as<Saturation<double>>()) limit = std::max(limit, element->limit);
+  for (std::size_t k = 0; k + 1 < loop.elements.size(); ++k) limit = std::max(limit, limit_of(loop.elements[k]));
   if (limit == 0.0 || !loop.ports.back().rubs) return open;
   const double beyond = largest_response(beyond_limits, std::max(level, limit), slow, fast);
   return std::min(open, std::max(beyond, largest_response(with_gains(loop, gain_within), level, 0.1 * slow, fast)));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "limcycle/analysis/motion/field/affine_flow.hpp"
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
@@ -79,6 +80,8 @@ struct HeldCascade : HeldMass {
     const double next = std::clamp(asked, -law.limit, law.limit);
     if (law.anti_windup.index == Cascade::back_calculation)
       velocity_integral += law.sample_time * (next - asked) / law.velocity_kp;
+    if (law.anti_windup.index == Cascade::clamp && next != asked && asked * (wanted - speed) > 0.0)
+      velocity_integral -= law.sample_time * (wanted - speed);
     move(law.computation_delay);
     command = next;
     move(law.sample_time - law.computation_delay);
@@ -172,6 +175,48 @@ TEST_CASE("sampled cascade with dry friction: the position is that of the closed
       std::vector<double>(static_cast<std::size_t>(law.velocity_window), rounded_to(law.input_step, y0))};
   check_samples(loop, sampled_state(loop, Eigen::Vector4d(y0, 0.0, 0.0, 0.0)), held, law.sample_time, 1500,
                 law.input_step > 0.0);
+}
+
+TEST_CASE("clamped cascade: sample for sample, and the continuous one is its limit at first order") {
+  Cascade law;
+  law.position_kp = 1.5;
+  law.velocity_kp = 6.0;
+  law.velocity_ki = 40.0;
+  law.limit = 2.2;
+  law.anti_windup.index = Cascade::clamp;
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  const double y0 = 2.7123;
+  const auto held = [&] { return HeldCascade{{1.5, 1.0, y0, 0.0, 0.0}, law, 0, 0.0, 0.0, 0.0, {}}; };
+  law.sample_time = 0.01;
+  parts.controller = law;
+  const Loop sampled = in_time_domain(build_loop(parts), 1).loop;
+  check_samples(sampled, sampled_state(sampled, Eigen::Vector3d(y0, 0.0, 0.0)), held(), law.sample_time, 800, true);
+
+  law.sample_time = 0.0;
+  parts.controller = law;
+  const Loop loop = build_loop(parts);
+  for (const StepperKind kind : {StepperKind::exact, StepperKind::rodas5p}) {
+    LoopField field(loop);
+    State start(static_cast<std::size_t>(field.size()), 0.0);
+    start[0] = y0;
+    field.start(start, 0.0);
+    March march(field, kind, loop_weights(loop, 1e-9));
+    march.begin(start, 0.0);
+    for (const double t : {0.6, 1.9, 2.6, 4.0}) {
+      while (march.t() < t) REQUIRE(march.step(t) == Status::converged);
+      double apart[2];
+      for (int k = 0; k < 2; ++k) {
+        law.sample_time = k == 0 ? 2e-4 : 1e-4;
+        HeldCascade reference = held();
+        for (int i = 0; i < static_cast<int>(std::lround(t / law.sample_time)); ++i) reference.period();
+        apart[k] = reference.y - field.y(march.x());
+      }
+      CAPTURE(static_cast<int>(kind), t, apart[0], apart[1]);
+      CHECK(std::abs(apart[1]) < 2e-3);
+      CHECK(std::abs(apart[0] - 2.0 * apart[1]) < 0.2 * std::abs(apart[1]) + 1e-6);
+    }
+    if (kind == StepperKind::exact) CHECK(AffineFlow::applies(loop));
+  }
 }
 
 TEST_CASE("sampled element: it reads at every n-th tick, and a limit is taken off its states") {

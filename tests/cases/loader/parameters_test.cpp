@@ -172,9 +172,9 @@ void check_choice(const Parameter<Owner, double>& parameter) {
 }
 
 /// Parameters that a loop rejects although they exist: tested with that rule.
-constexpr std::string_view elsewhere[] = {"clearance",   "elements",          "anti_windup",
-                                          "sample_time", "computation_delay", "input_step",
-                                          "output_step", "velocity_window",   "position_every"};
+constexpr std::string_view elsewhere[] = {"clearance",         "elements",       "anti_windup",  "sample_time",
+                                          "computation_delay", "input_step",     "output_step",  "velocity_window",
+                                          "position_every",    "integral_limit", "integral_band"};
 
 template <class Owner>
 void check_owner() {
