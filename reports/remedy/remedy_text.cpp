@@ -23,7 +23,7 @@ std::string number_of_remedy(const RemedyCandidate& candidate, double value, int
 std::string in_words(const Remedy& remedy, const Units& units) {
   const RemedyCandidate& candidate = remedy.candidate;
   const std::string to = number_of_remedy(candidate, remedy.value, 4, units);
-  if (candidate.own == 0.0) return fmt::format("set {} to {}", candidate.parameter, to);
+  if (candidate.is_absent()) return fmt::format("set {} to {}", candidate.parameter, to);
   return fmt::format("{} {} from {} to {}", std::abs(remedy.value) > std::abs(candidate.own) ? "raise" : "lower",
                      candidate.parameter, number_of_remedy(candidate, candidate.own, 4, units), to);
 }
@@ -81,7 +81,7 @@ Table remedy_table(const RemedyReport& report, const Units& units) {
     if (one.ends != true) continue;
     const auto cell = [&](double value, int digits) { return number_of_remedy(one.candidate, value, digits, units); };
     table.rows.push_back({one.candidate.name, short_path(one.candidate.parameter),
-                          one.candidate.own == 0.0 ? "-" : cell(one.candidate.own, 4), cell(one.value, 4),
+                          one.candidate.is_absent() ? "-" : cell(one.candidate.own, 4), cell(one.value, 4),
                           one.edges.size() > 1 ? cell(one.edges[1], 4) : "-", one.best ? "*" : ""});
   }
   return table;

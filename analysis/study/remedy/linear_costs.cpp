@@ -47,6 +47,7 @@ std::optional<Loop> linear_loop(LoopParts parts) {
           controller.limit = infinite;
           controller.anti_windup = {};
         }
+        if constexpr (std::is_same_v<C, Pid>) controller.integral_limit = controller.integral_band = infinite;
       },
       parts.controller);
   if (validate(parts)) return std::nullopt;

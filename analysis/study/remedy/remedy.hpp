@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -20,10 +21,12 @@ struct RemedyCandidate {
   std::string parameter;  ///< path of its number, "loop.error.half_width"; may be empty if it does not apply
   std::string unit;
   std::string why_not;  ///< reason why it does not apply to this loop, a clause; empty: it does
-  double own = 0.0;     ///< the present value; 0: absent
+  double own = 0.0;     ///< the present value; 0 or infinite: absent, it would begin there
   Measure measure = Measure::own;
   enum class Way { up, down, both } way = Way::up;
   std::function<std::optional<LoopParts>(double)> parts = {};  ///< the loop with that value; empty: not valid
+
+  bool is_absent() const { return own == 0.0 || std::isinf(own); }
 };
 
 /// What a loop costs its user. Empty: not known.

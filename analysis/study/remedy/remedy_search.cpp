@@ -4,142 +4,45 @@
 #include <array>
 #include <cmath>
 
-#include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/continuation/margin_side.hpp"
 #include "limcycle/analysis/study/predict/cycle_search.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
-#include "limcycle/analysis/study/predict/loop_in_time.hpp"
 
 namespace limcycle {
 namespace {
 
 constexpr double widest_factor = 100.0;  ///< factor on the present value, or on the size of an absent one, either way
 constexpr int a_decade = 3;
-constexpr double narrow_enough = 1e-3;  ///< relative distance of the two sides of an edge
 constexpr long steps_a_branch = 1'500'000;
-constexpr int digits = 4;  ///< of the values that are tried at an edge
-
-/// A value with few digits, not nearer to `other` than `value` is.
-double rounded_away(double value, double other) {
-  if (value == 0.0 || !std::isfinite(value)) return value;
-  // A power of ten with a negative exponent is no binary number: divided by its inverse the result is the nearest.
-  const double places = digits - 1 - std::floor(std::log10(std::abs(value))), unit = std::pow(10.0, std::abs(places));
-  const double in_units = places > 0.0 ? value * unit : value / unit;
-  const double whole = value > other ? std::ceil(in_units) : std::floor(in_units);
-  return places > 0.0 ? whole / unit : whole * unit;
-}
-
-/// The state for a loop with as many states but perhaps more elements, whose modes then begin anew; empty for others.
-std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from) {
-  LoopField field(loop);
-  if (field.size() != from.x.size()) return std::nullopt;
-  if (from.modes.size() == loop.elements.size()) return from;
-  LoopState state{from.x, {}};
-  field.start(state.x, 0.0);
-  state.modes = field.modes();
-  return state;
-}
 
 bool is_outward(double value, double from) { return std::abs(value) > std::abs(from); }
 
 }  // namespace
 
-double HuntingSizes::of(Measure measure) const {
-  switch (measure) {
-    case Measure::displacement:
-      return displacement;
-    case Measure::force:
-      return force;
-    case Measure::stiffness:
-      return force / displacement;
-    case Measure::damping:
-      return force / (displacement * frequency);
-    case Measure::rate:
-      return frequency;
-    case Measure::own:
-      break;
-  }
-  return 1.0;
-}
-
 RemedySearch::RemedySearch(const RemedyCandidate& candidate, const HuntingLoop& loop,
                            std::function<void(double)> progress)
     : candidate_(candidate),
       loop_(loop),
-      size_(candidate.own != 0.0 ? candidate.own : loop.sizes.of(candidate.measure)),
-      progress_(std::move(progress)) {}
+      size_(candidate.is_absent() ? loop.sizes.of(candidate.measure) : candidate.own),
+      progress_(std::move(progress)),
+      edge_(candidate, loop) {}
 
 std::string RemedySearch::number(double value, int shown) const {
   return short_number(value, shown) + (candidate_.unit == "1" ? "" : " " + candidate_.unit);
 }
 
-std::optional<Loop> RemedySearch::loop_at(double value) const {
-  const auto parts = candidate_.parts(value);
-  return parts ? std::optional(build_loop(*parts)) : std::nullopt;
-}
-
-/// A cycle may be stable where no start of predict() comes upon it.
-Hunts RemedySearch::from_last_hunting(const Loop& loop, const SearchBox& box) {
-  const Loop time = loop_in_time(loop, 0.0).treated.loop;
-  const auto from = hunting_ ? carried_to(time, *hunting_) : std::nullopt;
-  if (!from) return Hunts::no;
-  const PredictOptions& options = loop_.judging.predict;
-  const Settled settled = settle(time, *from, cycle_search(time, box, options.accuracy, options.stop));
-  switch (settled.outcome) {
-    case Outcome::rest:
-    case Outcome::sliding:
-      return Hunts::no;
-    case Outcome::cycle:
-      if (!settled.shot || settled.shot->cycle.stable != true) return Hunts::undecided;
-      hunting_ = settled.shot->cycle.start;
-      return Hunts::yes;
-    case Outcome::irregular:
-      return Hunts::yes;
-    case Outcome::divergence:
-      return Hunts::diverges;
-    case Outcome::family:
-      return Hunts::neutral;
-    case Outcome::undecided:
-      break;
-  }
-  return Hunts::undecided;
-}
-
-Hunts RemedySearch::judged(double value, Care care) {
-  const auto loop = loop_at(value);
-  if (!loop) return Hunts::undecided;
-  Hunts last = Hunts::no;
-  const SearchBox& box = *loop_.judging.predict.search;
-  if (care == Care::quick) {
-    last = from_last_hunting(*loop, box);
-    if (last != Hunts::no) return last;
-  }
-  Judging judging = loop_.judging;
-  if (care == Care::quick) {
-    judging.predict.starts = std::min(judging.predict.starts, 2);
-    judging.predict.load_step = false;
-  }
-  HuntsAnswer answer = hunts(*loop, judging);
-  for (const Cycle& one : answer.found.cycles)
-    if (one.stable == true) hunting_ = one.start;
-  if (care == Care::quick || answer.hunts != Hunts::no) return answer.hunts;
-  if (!answer.found.outcomes.empty()) run_ = std::move(answer.found.outcomes.front().trace);
-  return from_last_hunting(*loop, box);
-}
-
 MarginParameter RemedySearch::parameter_from(double value) const {
   return {candidate_.parameter, candidate_.unit, value, false,
-          in_exact_time(LoopFamily([this](double at) { return loop_at(at); }))};
+          in_exact_time(LoopFamily([this](double at) { return edge_.loop_at(at); }))};
 }
 
 /// Follows the cycles at `value` to where the last of them ends, at most `widest_factor` beyond the size.
-std::optional<RemedySearch::Bracket> RemedySearch::followed_from(double value, const std::vector<Cycle>& cycles,
-                                                                 bool up) {
+std::optional<Bracket> RemedySearch::followed_from(double value, const std::vector<Cycle>& cycles, bool up) {
   const MarginParameter parameter = parameter_from(value);
   MarginOptions options;
   options.predict = loop_.judging.predict;
-  options.factor = up ? widest_factor * std::abs(size_ / value) : widest_factor;
+  options.factor = widest_factor * std::abs(up ? size_ / value : value / size_);
   options.steps_a_branch = steps_a_branch;
   const MarginSide side = SideSearch(parameter, up, options, progress_).where_hunting_ends(cycles);
   if (side.what == MarginSide::What::unknown) {
@@ -156,22 +59,27 @@ std::optional<RemedySearch::Bracket> RemedySearch::followed_from(double value, c
     seen_.push_back("beyond " + number(side.value) + " the motion diverges");
     return std::nullopt;
   }
-  const double outward = up ? 1.0 : -1.0;
-  Bracket bracket{side.value, side.value};
-  if (side.cycle) hunting_ = side.cycle->start;
-  const double apart = std::isnan(side.error) ? 0.12 : std::clamp(2.0 * side.error, 0.25 * narrow_enough, 0.1);
-  bracket.hunts *= 1.0 - outward * apart;
-  bracket.rests *= 1.0 + outward * apart;
-  return bracket;
+  return around(side, up, true);
 }
 
-/// A number that is absent: from the smallest of some values at which the loop hunts as it does without it.
-std::optional<RemedySearch::Bracket> RemedySearch::followed_from_nothing() {
-  for (const double share : {1e-2, 1e-3, 1e-4, 1e-5}) {
-    const double value = share * size_;
-    const auto loop = loop_at(value);
+/// About the value of a side, by its error.
+Bracket RemedySearch::around(const MarginSide& side, bool up, bool rests_beyond) {
+  if (side.cycle) edge_.hunting = side.cycle->start;
+  const double apart = std::isnan(side.error) ? 0.1 : std::clamp(2.0 * side.error, 0.25 * narrow_enough, 0.1);
+  const double low = side.value * (1.0 - apart), high = side.value * (1.0 + apart);
+  return up == rests_beyond ? Bracket{high, low} : Bracket{low, high};
+}
+
+/// A number that is absent: from the first of some values, ever nearer to where it begins, at which the loop hunts as
+/// it does without it.
+std::optional<Bracket> RemedySearch::followed_from_nothing(bool up) {
+  constexpr double farthest = 1e-5;
+  const auto value_at = [&](double share) { return up ? share * size_ : size_ / share; };
+  for (const double share : {1e-2, 1e-3, 1e-4, farthest}) {
+    const double value = value_at(share);
+    const auto loop = edge_.loop_at(value);
     const auto exact = loop ? in_exact_time(*loop) : std::nullopt;
-    if (!exact || stopped()) return std::nullopt;
+    if (!exact || edge_.stopped()) return std::nullopt;
     std::vector<Cycle> cycles;
     const PredictOptions& options = loop_.judging.predict;
     const SettleOptions settling = cycle_search(*exact, *options.search, options.accuracy, options.stop);
@@ -182,34 +90,34 @@ std::optional<RemedySearch::Bracket> RemedySearch::followed_from_nothing() {
       if (settled.shot && settled.shot->cycle.stable == true) cycles.push_back(std::move(settled.shot->cycle));
     }
     if (!cycles.empty()) {
-      hunting_ = cycles.front().start;
-      return followed_from(value, cycles, true);
+      edge_.hunting = cycles.front().start;
+      return followed_from(value, cycles, up);
     }
-    if (judged(value, Care::quick) == Hunts::yes) return scanned(true, value, Until::rests);
+    if (edge_.judged(value, HuntingEdge::Care::quick) == Hunts::yes) return scanned(up, value, Until::rests);
   }
-  return Bracket{1e-5 * size_, 0.0};  // it hunts at none of them: any will do
+  return Bracket{value_at(farthest), candidate_.own};  // it hunts at none of them: any will do
 }
 
-std::optional<RemedySearch::Bracket> RemedySearch::followed(bool up) {
+std::optional<Bracket> RemedySearch::followed(bool up) {
   if (!loop_.followable) return scanned(up, candidate_.own, Until::rests);
-  if (candidate_.own == 0.0) return followed_from_nothing();
+  if (candidate_.is_absent()) return followed_from_nothing(up);
   const auto stable = std::ranges::find(loop_.cycles, std::optional<bool>(true), &Cycle::stable);
-  hunting_ = stable->start;
+  edge_.hunting = stable->start;
   return followed_from(candidate_.own, loop_.cycles, up);
 }
 
 /// Values outwards from one at which it hunts (or rests) to the first at which it does not.
-std::optional<RemedySearch::Bracket> RemedySearch::scanned(bool up, double from, Until until) {
-  const double end = up ? widest_factor * size_ : size_ / widest_factor,
-               begin = from == 0.0 ? size_ / widest_factor : from;
+std::optional<Bracket> RemedySearch::scanned(bool up, double from, Until until) {
+  const double smallest = size_ / widest_factor, largest = widest_factor * size_;
+  const double end = up ? largest : smallest, begin = from == 0.0 ? smallest : std::isinf(from) ? largest : from;
   const int steps = std::max(1, static_cast<int>(std::ceil(a_decade * std::abs(std::log10(end / begin)))));
   double last = from;
   int diverging = 0, open = 0;
-  for (int k = from == 0.0 ? 0 : 1; k <= steps && !stopped(); ++k) {
+  for (int k = begin == from ? 1 : 0; k <= steps && !edge_.stopped(); ++k) {
     const double value = begin * std::pow(end / begin, static_cast<double>(k) / steps);
     if (progress_) progress_(static_cast<double>(k) / steps);
     if (!candidate_.parts(value)) break;
-    const Hunts here = judged(value, Care::quick);
+    const Hunts here = edge_.judged(value, HuntingEdge::Care::quick);
     if (until == Until::rests && here == Hunts::no) return Bracket{value, last};
     if (until == Until::hunts && (here == Hunts::yes || here == Hunts::diverges))
       return Bracket{last, value, here == Hunts::diverges};
@@ -226,97 +134,29 @@ std::optional<RemedySearch::Bracket> RemedySearch::scanned(bool up, double from,
     }
     last = value;
   }
-  if (until == Until::rests) seen_.push_back("no value up to " + number(last) + " ends it");
+  if (until == Until::rests)
+    seen_.push_back((up ? "no value up to " : "no value down to ") + number(last) + " ends it");
   return std::nullopt;
 }
 
 /// The nearer edge of the two sides; of two as near, that of the larger magnitude.
-std::optional<RemedySearch::Bracket> RemedySearch::nearest() {
+std::optional<Bracket> RemedySearch::nearest() {
   using Way = RemedyCandidate::Way;
   std::optional<Bracket> best;
   const auto distance = [&](const Bracket& one) {
-    return candidate_.own == 0.0 ? 0.0 : std::abs(std::log(one.rests / candidate_.own));
+    return candidate_.is_absent() ? 0.0 : std::abs(std::log(one.rests / candidate_.own));
   };
   for (const bool up : {true, false}) {
     if (up ? candidate_.way == Way::down : candidate_.way == Way::up || candidate_.own == 0.0) continue;
     if (auto one = followed(up); one && (!best || distance(*one) < distance(*best))) {
       best = std::move(one);
-      best->hunting = hunting_;
+      best->hunting = edge_.hunting;
     }
-    if (stopped()) return std::nullopt;
+    if (edge_.stopped()) return std::nullopt;
   }
-  if (!best && candidate_.way != Way::up && candidate_.own != 0.0 && judged(0.0) == Hunts::no) return Bracket{0.0, 0.0};
+  if (!best && candidate_.way != Way::up && !candidate_.is_absent() && edge_.judged(0.0) == Hunts::no)
+    return Bracket{0.0, 0.0};
   return best;
-}
-
-/// Moves either side away from the other until predict() judges both as they should be.
-bool RemedySearch::widen(Bracket& bracket) {
-  constexpr int widenings = 7;
-  const double factor = bracket.rests / bracket.hunts, middle = bracket.hunts * std::sqrt(factor);
-  double apart = std::max(std::sqrt(std::max(factor, 1.0 / factor)), 1.0 + 0.25 * narrow_enough) - 1.0;
-  const bool outward = factor > 1.0;
-  const auto at = [&](double distance, bool to_rest) {
-    const double value = to_rest == outward ? middle * (1.0 + distance) : middle / (1.0 + distance);
-    return rounded_away(value, middle);
-  };
-  const auto find = [&](bool to_rest, double& side) {
-    double distance = apart;
-    for (int i = 0; i < widenings && !stopped(); ++i, distance *= 2.5) {
-      const double value = at(distance, to_rest);
-      const Hunts here = judged(value);
-      const bool rests = here == Hunts::no, hunting = here == Hunts::yes || here == Hunts::diverges;
-      if (to_rest ? rests : hunting) {
-        side = value;
-        return true;
-      }
-      if (!to_rest && rests) bracket.rests = value;
-      if (to_rest && hunting) bracket.hunts = value;
-    }
-    return false;
-  };
-  bool hunts_beyond = false;
-  const double before = bracket.hunts;
-  if (!find(true, bracket.rests)) return false;
-  hunts_beyond = bracket.hunts != before;
-  return hunts_beyond || find(false, bracket.hunts);
-}
-
-/// Both sides judged by predict(), and 1e-3 apart.
-bool RemedySearch::confirm(Bracket& bracket) {
-  constexpr int rounds = 4;
-  for (int i = 0; i < rounds; ++i) {
-    if (!widen(bracket) || !narrow(bracket)) return false;
-    if (!look_beyond(bracket)) return !stopped();
-  }
-  return false;
-}
-
-/// True if it hunts again just beyond an edge: the bracket is moved there.
-bool RemedySearch::look_beyond(Bracket& bracket) {
-  for (const double farther : {1.03, 1.1}) {
-    const bool outward = bracket.rests / bracket.hunts > 1.0;
-    const double value = bracket.rests * std::pow(farther, outward ? 1.0 : -1.0);
-    if (stopped() || !candidate_.parts(value)) return false;
-    if (judged(value) != Hunts::yes) continue;
-    bracket.hunts = value;
-    bracket.rests = value * (outward ? 1.001 : 0.999);
-    return true;
-  }
-  return false;
-}
-
-/// By bisection; true if the sides are near each other in the end.
-bool RemedySearch::narrow(Bracket& bracket) {
-  while (std::abs(std::log(bracket.rests / bracket.hunts)) > 1.5 * narrow_enough) {
-    if (stopped()) return false;
-    const double middle = bracket.hunts * std::sqrt(bracket.rests / bracket.hunts);
-    const double value = rounded_away(middle, bracket.hunts);
-    if (value == bracket.rests) break;
-    const Hunts here = judged(value);
-    if (here == Hunts::undecided || here == Hunts::neutral) return false;
-    (here == Hunts::no ? bracket.rests : bracket.hunts) = value;
-  }
-  return true;
 }
 
 void RemedySearch::locate_far_edge(Remedy& remedy, const Bracket& near) {
@@ -332,10 +172,7 @@ void RemedySearch::locate_far_edge(Remedy& remedy, const Bracket& near) {
     options.steps_a_branch = steps_a_branch;
     const MarginSide side = SideSearch(parameter, up, options, progress_).where_hunting_begins();
     if (side.what == MarginSide::What::begins && side.value != near.rests) {
-      const double outward = up ? 1.0 : -1.0,
-                   apart = std::isnan(side.error) ? 0.1 : std::clamp(2.0 * side.error, 0.25 * narrow_enough, 0.1);
-      far = Bracket{side.value * (1.0 - outward * apart), side.value * (1.0 + outward * apart)};
-      if (side.cycle) hunting_ = side.cycle->start;
+      far = around(side, up, false);
     } else if (side.diverges) {
       far = Bracket{near.rests, side.value, true};
     } else if (side.what == MarginSide::What::unknown) {
@@ -344,22 +181,23 @@ void RemedySearch::locate_far_edge(Remedy& remedy, const Bracket& near) {
   } else {
     far = scanned(up, near.rests, Until::hunts);
   }
-  if (!far || stopped()) return;
-  const Trace kept = run_;
-  if (confirm(*far)) {
+  if (!far || edge_.stopped()) return;
+  const Trace kept = edge_.run;
+  if (edge_.confirm(*far)) {
     remedy.edges.push_back(far->rests);
     remedy.beyond.push_back(far->hunts);
-    const bool diverges = far->diverges || judged(far->hunts) == Hunts::diverges;
-    remedy.why += "; beyond " + number(far->rests, digits) + (diverges ? " the motion diverges" : " it hunts again");
+    const bool diverges = far->diverges || edge_.judged(far->hunts) == Hunts::diverges;
+    remedy.why +=
+        "; beyond " + number(far->rests, edge_digits) + (diverges ? " the motion diverges" : " it hunts again");
   } else {
     remedy.why += "; near " + number(far->hunts) + " it no longer rests, the edge was not confirmed";
   }
-  run_ = kept;
+  edge_.run = kept;
 }
 
 Remedy RemedySearch::nothing_found() const {
   Remedy remedy{candidate_, false};
-  if (stopped()) {
+  if (edge_.stopped()) {
     remedy.ends = std::nullopt;
     remedy.why = "interrupted";
     return remedy;
@@ -374,31 +212,34 @@ Remedy RemedySearch::run() {
   auto edge = nearest();
   if (!edge) return nothing_found();
   Remedy remedy{candidate_, true};
-  if (edge->hunts == 0.0) {
+  if (edge->hunts == 0.0 || std::isinf(edge->hunts)) {
     if (edge->rests == 0.0)
       remedy.why =
           "only 0 ends it: " + (seen_.empty() ? std::string("it hunts at every other value tried") : seen_.back());
     else
-      remedy.why = "rests at every value tried, down to " + number(edge->rests);
+      remedy.why = "rests at every value tried, " + std::string(edge->hunts == 0.0 ? "down" : "up") + " to " +
+                   number(edge->rests);
     remedy.value = edge->rests;
-    if (judged(edge->rests) != Hunts::no) remedy.ends = std::nullopt;
-    remedy.after = run_;
+    if (edge_.judged(edge->rests) != Hunts::no) remedy.ends = std::nullopt;
+    remedy.after = edge_.run;
     return remedy;
   }
-  hunting_ = edge->hunting;
-  if (!confirm(*edge)) {
+  edge_.hunting = edge->hunting;
+  if (!edge_.confirm(*edge)) {
     remedy.ends = std::nullopt;
-    remedy.why = stopped() ? "interrupted"
-                           : "hunting ends near " + number(edge->rests) +
-                                 " on the cycle that was followed, but `predict` does not confirm it on both sides";
+    remedy.why = edge_.stopped()
+                     ? "interrupted"
+                     : "hunting ends near " + number(edge->rests) +
+                           " on the cycle that was followed, but `predict` does not confirm it on both sides";
     return remedy;
   }
   remedy.value = edge->rests;
   remedy.edges.push_back(edge->rests);
   remedy.beyond.push_back(edge->hunts);
-  remedy.why = "hunts at " + short_number(edge->hunts, digits) + ", no longer at " + number(edge->rests, digits);
+  remedy.why =
+      "hunts at " + short_number(edge->hunts, edge_digits) + ", no longer at " + number(edge->rests, edge_digits);
   locate_far_edge(remedy, *edge);
-  remedy.after = run_;
+  remedy.after = edge_.run;
   return remedy;
 }
 

@@ -98,7 +98,10 @@ bool is_siso(const StateSpaceBlock& block) { return block.B.cols() == 1 && block
 
 /// True if the controller had integral action.
 bool end_integral(Controller& controller) {
-  if (auto* pid = std::get_if<Pid>(&controller)) return set_members(*pid, {&Pid::ki}, 0.0);
+  if (auto* pid = std::get_if<Pid>(&controller)) {
+    pid->integral_limit = pid->integral_band = infinite;
+    return set_members(*pid, {&Pid::ki}, 0.0);
+  }
   if (auto* cascade = std::get_if<Cascade>(&controller)) {
     cascade->anti_windup = {};
     return set_members(*cascade, {&Cascade::position_ki, &Cascade::velocity_ki}, 0.0);

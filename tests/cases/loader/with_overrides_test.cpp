@@ -113,8 +113,8 @@ TEST_CASE("remedy candidates: each name once, applicable where the case has its 
                                           "gain-kp", "gain-ki", "gain-kd", "friction-compensation",
                                           "impulse-compensation", "dither", "integral-band", "velocity-feedforward",
                                           "damping", "stiffness"});
-  CHECK(fit == std::vector<std::string>{"error-dead-zone", "integrator-leak", "gain-kp", "gain-ki", "gain-kd",
-                                        "friction-compensation", "damping", "stiffness"});
+  CHECK(fit == std::vector<std::string>{"error-dead-zone", "integrator-leak", "integrator-clamp", "gain-kp", "gain-ki",
+                                        "gain-kd", "friction-compensation", "integral-band", "damping", "stiffness"});
   const auto& zone = candidates.front();
   const auto parts = zone.parts(0.02);
   REQUIRE(parts);

@@ -167,3 +167,29 @@ TEST_CASE("remedy: a loop that rests needs none, and a stop keeps what is known"
   stopped.predict.stop = [] { return true; };
   CHECK(remedies(servo_parts(coulomb(1.5, 1.0)), {}, stopped).status == Status::interrupted);
 }
+
+TEST_CASE("remedy: a limit and a band of the integral, from infinity down, in two units of length") {
+  for (const auto& [number, measure] :
+       {std::pair(&Pid::integral_limit, Measure::force), std::pair(&Pid::integral_band, Measure::displacement)}) {
+    std::vector<double> values;
+    for (const double unit : {1.0, 1e-3}) {
+      LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+      parts.plant = Mass{1.0 / unit, 0.0, 0.0};
+      parts.controller = test::pid(3.0 / unit, 4.0 / unit, 6.0 / unit);
+      const auto candidate = of_controller(parts, number, measure, RemedyCandidate::Way::down);
+      REQUIRE(candidate.is_absent());
+      const RemedyReport report = remedies(parts, {candidate}, quick());
+      const Remedy& remedy = report.remedies.front();
+      INFO(remedy.why);
+      REQUIRE(remedy.ends == true);
+      CHECK(remedy.beyond.at(0) > remedy.value);
+      CHECK(remedy.beyond.at(0) / remedy.value - 1.0 < 2e-3);
+      const Judging judging = judging_of_variants(quick().predict, hunts(build_loop(parts), {}).found);
+      CHECK(hunts(build_loop(*candidate.parts(remedy.value)), judging).hunts == Hunts::no);
+      // Just above the edge the cycle attracts from nearby only; well above it from the starts of predict() too.
+      CHECK(hunts(build_loop(*candidate.parts(1.3 * remedy.value)), judging).hunts == Hunts::yes);
+      values.push_back(measure == Measure::force ? remedy.value : remedy.value / unit);
+    }
+    CHECK(values[1] == Approx(values[0]).epsilon(2e-3));
+  }
+}

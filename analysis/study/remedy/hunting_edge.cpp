@@ -1,0 +1,178 @@
+#include "limcycle/analysis/study/remedy/hunting_edge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/motion/field/loop_field.hpp"
+#include "limcycle/analysis/study/predict/cycle_search.hpp"
+#include "limcycle/analysis/study/predict/loop_in_time.hpp"
+
+namespace limcycle {
+namespace {
+
+/// A value with few digits, not nearer to `other` than `value` is.
+double rounded_away(double value, double other) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  // A power of ten with a negative exponent is no binary number: divided by its inverse the result is the nearest.
+  const double places = edge_digits - 1 - std::floor(std::log10(std::abs(value))),
+               unit = std::pow(10.0, std::abs(places));
+  const double in_units = places > 0.0 ? value * unit : value / unit;
+  const double whole = value > other ? std::ceil(in_units) : std::floor(in_units);
+  return places > 0.0 ? whole / unit : whole * unit;
+}
+
+}  // namespace
+
+std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from) {
+  LoopField field(loop);
+  if (field.size() != from.x.size()) return std::nullopt;
+  if (from.modes.size() == loop.elements.size()) return from;
+  LoopState state{from.x, {}};
+  field.start(state.x, 0.0);
+  state.modes = field.modes();
+  return state;
+}
+
+double HuntingSizes::of(Measure measure) const {
+  switch (measure) {
+    case Measure::displacement:
+      return displacement;
+    case Measure::force:
+      return force;
+    case Measure::stiffness:
+      return force / displacement;
+    case Measure::damping:
+      return force / (displacement * frequency);
+    case Measure::rate:
+      return frequency;
+    case Measure::own:
+      break;
+  }
+  return 1.0;
+}
+
+std::optional<Loop> HuntingEdge::loop_at(double value) const {
+  const auto parts = candidate_.parts(value);
+  return parts ? std::optional(build_loop(*parts)) : std::nullopt;
+}
+
+/// A cycle may be stable where no start of predict() comes upon it.
+Hunts HuntingEdge::from_last_hunting(const Loop& loop, const SearchBox& box) {
+  const Loop time = loop_in_time(loop, 0.0).treated.loop;
+  const auto from = hunting ? carried_to(time, *hunting) : std::nullopt;
+  if (!from) return Hunts::no;
+  const PredictOptions& options = loop_.judging.predict;
+  const Settled settled = settle(time, *from, cycle_search(time, box, options.accuracy, options.stop));
+  switch (settled.outcome) {
+    case Outcome::rest:
+    case Outcome::sliding:
+      return Hunts::no;
+    case Outcome::cycle:
+      if (!settled.shot || settled.shot->cycle.stable != true) return Hunts::undecided;
+      hunting = settled.shot->cycle.start;
+      return Hunts::yes;
+    case Outcome::irregular:
+      return Hunts::yes;
+    case Outcome::divergence:
+      return Hunts::diverges;
+    case Outcome::family:
+      return Hunts::neutral;
+    case Outcome::undecided:
+      break;
+  }
+  return Hunts::undecided;
+}
+
+Hunts HuntingEdge::judged(double value, Care care) {
+  const auto loop = loop_at(value);
+  if (!loop) return Hunts::undecided;
+  Hunts last = Hunts::no;
+  const SearchBox& box = *loop_.judging.predict.search;
+  if (care == Care::quick) {
+    last = from_last_hunting(*loop, box);
+    if (last != Hunts::no) return last;
+  }
+  Judging judging = loop_.judging;
+  if (care == Care::quick) {
+    judging.predict.starts = std::min(judging.predict.starts, 2);
+    judging.predict.load_step = false;
+  }
+  HuntsAnswer answer = hunts(*loop, judging);
+  for (const Cycle& one : answer.found.cycles)
+    if (one.stable == true) hunting = one.start;
+  if (care == Care::quick || answer.hunts != Hunts::no) return answer.hunts;
+  if (!answer.found.outcomes.empty()) run = std::move(answer.found.outcomes.front().trace);
+  return from_last_hunting(*loop, box);
+}
+
+/// Moves either side away from the other until predict() judges both as they should be.
+bool HuntingEdge::widen(Bracket& bracket) {
+  constexpr int widenings = 7;
+  const double factor = bracket.rests / bracket.hunts, middle = bracket.hunts * std::sqrt(factor);
+  double apart = std::max(std::sqrt(std::max(factor, 1.0 / factor)), 1.0 + 0.25 * narrow_enough) - 1.0;
+  const bool outward = factor > 1.0;
+  const auto at = [&](double distance, bool to_rest) {
+    const double value = to_rest == outward ? middle * (1.0 + distance) : middle / (1.0 + distance);
+    return rounded_away(value, middle);
+  };
+  const auto find = [&](bool to_rest, double& side) {
+    double distance = apart;
+    for (int i = 0; i < widenings && !stopped(); ++i, distance *= 2.5) {
+      const double value = at(distance, to_rest);
+      const Hunts here = judged(value);
+      const bool rests = here == Hunts::no, moves = here == Hunts::yes || here == Hunts::diverges;
+      if (to_rest ? rests : moves) {
+        side = value;
+        return true;
+      }
+      if (!to_rest && rests) bracket.rests = value;
+      if (to_rest && moves) bracket.hunts = value;
+    }
+    return false;
+  };
+  bool hunts_beyond = false;
+  const double before = bracket.hunts;
+  if (!find(true, bracket.rests)) return false;
+  hunts_beyond = bracket.hunts != before;
+  return hunts_beyond || find(false, bracket.hunts);
+}
+
+/// Both sides judged by predict(), and 1e-3 apart.
+bool HuntingEdge::confirm(Bracket& bracket) {
+  constexpr int rounds = 4;
+  for (int i = 0; i < rounds; ++i) {
+    if (!widen(bracket) || !narrow(bracket)) return false;
+    if (!look_beyond(bracket)) return !stopped();
+  }
+  return false;
+}
+
+/// True if it hunts again just beyond an edge: the bracket is moved there.
+bool HuntingEdge::look_beyond(Bracket& bracket) {
+  for (const double farther : {1.03, 1.1}) {
+    const bool outward = bracket.rests / bracket.hunts > 1.0;
+    const double value = bracket.rests * std::pow(farther, outward ? 1.0 : -1.0);
+    if (stopped() || !candidate_.parts(value)) return false;
+    if (judged(value) != Hunts::yes) continue;
+    bracket.hunts = value;
+    bracket.rests = value * (outward ? 1.001 : 0.999);
+    return true;
+  }
+  return false;
+}
+
+/// By bisection; true if the sides are near each other in the end.
+bool HuntingEdge::narrow(Bracket& bracket) {
+  while (std::abs(std::log(bracket.rests / bracket.hunts)) > 1.5 * narrow_enough) {
+    if (stopped()) return false;
+    const double middle = bracket.hunts * std::sqrt(bracket.rests / bracket.hunts);
+    const double value = rounded_away(middle, bracket.hunts);
+    if (value == bracket.rests) break;
+    const Hunts here = judged(value);
+    if (here == Hunts::undecided || here == Hunts::neutral) return false;
+    (here == Hunts::no ? bracket.rests : bracket.hunts) = value;
+  }
+  return true;
+}
+
+}  // namespace limcycle

@@ -1,0 +1,70 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "limcycle/analysis/study/remedy/hunts.hpp"
+#include "limcycle/analysis/study/remedy/remedy.hpp"
+
+namespace limcycle {
+
+/// Sizes of the motion of a loop that hunts.
+struct HuntingSizes {
+  double displacement = 1.0;  ///< of y
+  double frequency = 1.0;     ///< rad/s
+  double force = 1.0;         ///< N, of the friction
+
+  double of(Measure measure) const;
+};
+
+/// What is known of a loop before its remedies are sought.
+struct HuntingLoop {
+  Judging judging;
+  std::vector<Cycle> cycles;  ///< as the loop stands
+  HuntingSizes sizes;
+  bool followable = false;  ///< its cycles can be followed over a number: see in_exact_time()
+};
+
+/// Two values between which hunting ends.
+struct Bracket {
+  double rests = 0.0, hunts = 0.0;
+  bool diverges = false;               ///< beyond it the motion diverges: it does not hunt
+  std::optional<LoopState> hunting{};  ///< on the last hunting motion before it
+};
+
+/// Judges values of a remedy's number, and confirms the edges between those at which the loop hunts and those at which
+/// it rests.
+class HuntingEdge {
+ public:
+  HuntingEdge(const RemedyCandidate& candidate, const HuntingLoop& loop) : candidate_(candidate), loop_(loop) {}
+
+  std::optional<Loop> loop_at(double value) const;
+  bool stopped() const { return loop_.judging.predict.stop && loop_.judging.predict.stop(); }
+
+  /// By predict() and from the last hunting motion, or for a quick answer from that motion and two starts alone.
+  enum class Care { quick, full };
+  Hunts judged(double value, Care care = Care::full);
+
+  /// Both sides judged with full care, few-digit numbers at most 1.5e-3 apart; it rests at two values beyond as well.
+  /// False if that cannot be had.
+  bool confirm(Bracket& bracket);
+
+  std::optional<LoopState> hunting = {};  ///< on the last hunting motion that was met
+  Trace run = {};  ///< from the largest displacement, of the last judgement with full care without hunting
+
+ private:
+  Hunts from_last_hunting(const Loop& loop, const SearchBox& box);
+  bool widen(Bracket& bracket);
+  bool narrow(Bracket& bracket);
+  bool look_beyond(Bracket& bracket);
+
+  const RemedyCandidate& candidate_;
+  const HuntingLoop& loop_;
+};
+
+inline constexpr double narrow_enough = 1e-3;  ///< relative distance of the two sides of an edge
+inline constexpr int edge_digits = 4;          ///< of the values that are tried at an edge
+
+/// The state for a loop with as many states but perhaps more elements, whose modes then begin anew; empty for others.
+std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from);
+
+}  // namespace limcycle
