@@ -24,13 +24,12 @@ struct ResponseAxes {
 };
 
 /// Until the slower of the two has settled, at most the shorter of both runs if one of them hunts for ever.
-ResponseAxes axes_of(const RemedyReport& report, const Remedy& remedy) {
+ResponseAxes axes_of(const Trace& before, const Trace& after, const std::optional<double>& settled) {
   const auto length = [](const Trace& run) { return run.t.empty() ? 0.0 : run.t.back() - run.t.front(); };
   ResponseAxes axes;
-  const double settled = remedy.costs.settling_time.value_or(length(remedy.after));
-  axes.duration = std::min(std::max(length(report.before), length(remedy.after)),
-                           std::max(3.0 * settled, 0.25 * length(report.before)));
-  for (const Trace* run : {&report.before, &remedy.after})
+  axes.duration = std::min(std::max(length(before), length(after)),
+                           std::max(3.0 * settled.value_or(length(after)), 0.25 * length(before)));
+  for (const Trace* run : {&before, &after})
     for (std::size_t i = 0; i < run->t.size() && run->t[i] - run->t.front() <= axes.duration; ++i) {
       axes.low = std::min(axes.low, run->y[i]);
       axes.high = std::max(axes.high, run->y[i]);
@@ -62,29 +61,34 @@ std::string response_curve(const Trace& run, const ResponseAxes& axes, double le
 
 }  // namespace
 
-std::string remedy_picture(const RemedyReport& report, const Remedy& remedy, const Units& units) {
-  if (report.before.t.empty() || remedy.after.t.empty()) return {};
-  const ResponseAxes axes = axes_of(report, remedy);
+std::string response_picture(const Response& before, const Response& after, const std::optional<double>& settled,
+                             const Units& units) {
+  if (before.run.t.empty() || after.run.t.empty()) return {};
+  const ResponseAxes axes = axes_of(before.run, after.run, settled);
   if (!(axes.duration > 0.0) || !(axes.high > axes.low)) return {};
   std::string body;
-  const std::array<std::pair<std::string, const Trace*>, 2> panels{
-      {{"as it stands", &report.before}, {"with " + remedy.candidate.name, &remedy.after}}};
+  const std::array panels{&before, &after};
   for (std::size_t k = 0; k < panels.size(); ++k) {
     const double left = panel_left + static_cast<double>(k) * (panel_width + panel_gap);
     const double zero = panel_top + panel_height - place(0.0, 0.0, panel_height, axes.low, axes.high);
-    body += words_at(left, panel_top - 8.0, "", html_escaped(panels[k].first));
+    body += words_at(left, panel_top - 8.0, "", html_escaped(panels[k]->name));
     body += fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", left,
                         panel_top, panel_width, panel_height);
     body += line_of(left, zero, left + panel_width, zero, "zero");
-    body += response_curve(*panels[k].second, axes, left);
+    body += response_curve(panels[k]->run, axes, left);
     body += words_at(
         left, panel_top + panel_height + 16.0, "",
         fmt::format("t 0 to {} s, y {} to {}", with_digits(axes.duration, 3), with_digits(axes.low * units.y_per_si, 3),
                     Units::attach(with_digits(axes.high * units.y_per_si, 3), units.y)));
   }
-  const std::string label = "Step response as it stands and with " + remedy.candidate.name;
+  const std::string label = "Step response " + before.name + " and " + after.name;
   return svg_picture(2.0 * panel_width + panel_gap + 2.0 * panel_left, panel_top + panel_height + 28.0, label,
                      response_style, label, body);
+}
+
+std::string remedy_picture(const RemedyReport& report, const Remedy& remedy, const Units& units) {
+  return response_picture({"as it stands", report.before}, {"with " + remedy.candidate.name, remedy.after},
+                          remedy.costs.settling_time, units);
 }
 
 std::string remedy_page(const RemedyReport& report, const Provenance& provenance, const std::string& case_text,

@@ -4,12 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/continuation/margin_side.hpp"
-#include "limcycle/analysis/study/predict/cycle_search.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
-#include "limcycle/analysis/study/predict/loop_in_time.hpp"
 
 namespace limcycle {
 namespace {
@@ -28,17 +25,6 @@ double rounded_away(double value, double other) {
   const double in_units = places > 0.0 ? value * unit : value / unit;
   const double whole = value > other ? std::ceil(in_units) : std::floor(in_units);
   return places > 0.0 ? whole / unit : whole * unit;
-}
-
-/// The state for a loop with as many states but perhaps more elements, whose modes then begin anew; empty for others.
-std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from) {
-  LoopField field(loop);
-  if (field.size() != from.x.size()) return std::nullopt;
-  if (from.modes.size() == loop.elements.size()) return from;
-  LoopState state{from.x, {}};
-  field.start(state.x, 0.0);
-  state.modes = field.modes();
-  return state;
 }
 
 bool is_outward(double value, double from) { return std::abs(value) > std::abs(from); }
@@ -81,29 +67,11 @@ std::optional<Loop> RemedySearch::loop_at(double value) const {
 
 /// A cycle may be stable where no start of predict() comes upon it.
 Hunts RemedySearch::from_last_hunting(const Loop& loop, const SearchBox& box) {
-  const Loop time = loop_in_time(loop, 0.0).treated.loop;
-  const auto from = hunting_ ? carried_to(time, *hunting_) : std::nullopt;
-  if (!from) return Hunts::no;
-  const PredictOptions& options = loop_.judging.predict;
-  const Settled settled = settle(time, *from, cycle_search(time, box, options.accuracy, options.stop));
-  switch (settled.outcome) {
-    case Outcome::rest:
-    case Outcome::sliding:
-      return Hunts::no;
-    case Outcome::cycle:
-      if (!settled.shot || settled.shot->cycle.stable != true) return Hunts::undecided;
-      hunting_ = settled.shot->cycle.start;
-      return Hunts::yes;
-    case Outcome::irregular:
-      return Hunts::yes;
-    case Outcome::divergence:
-      return Hunts::diverges;
-    case Outcome::family:
-      return Hunts::neutral;
-    case Outcome::undecided:
-      break;
-  }
-  return Hunts::undecided;
+  const auto settled = hunting_ ? settled_from(loop, *hunting_, box, loop_.judging.predict) : std::nullopt;
+  if (!settled) return Hunts::no;
+  const Hunts answer = hunts_of(*settled);
+  if (answer == Hunts::yes && settled->outcome == Outcome::cycle) hunting_ = settled->shot->cycle.start;
+  return answer;
 }
 
 Hunts RemedySearch::judged(double value, Care care) {
@@ -174,12 +142,11 @@ std::optional<RemedySearch::Bracket> RemedySearch::followed_from_nothing() {
     if (!exact || stopped()) return std::nullopt;
     std::vector<Cycle> cycles;
     const PredictOptions& options = loop_.judging.predict;
-    const SettleOptions settling = cycle_search(*exact, *options.search, options.accuracy, options.stop);
     for (const Cycle& one : loop_.cycles) {
-      const auto from = one.stable == true ? carried_to(*exact, one.start) : std::nullopt;
-      if (!from) continue;
-      auto settled = settle(*exact, *from, settling);
-      if (settled.shot && settled.shot->cycle.stable == true) cycles.push_back(std::move(settled.shot->cycle));
+      if (one.stable != true) continue;
+      auto settled = settled_from(*exact, one.start, *options.search, options);
+      if (settled && settled->shot && settled->shot->cycle.stable == true)
+        cycles.push_back(std::move(settled->shot->cycle));
     }
     if (!cycles.empty()) {
       hunting_ = cycles.front().start;
