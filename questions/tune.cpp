@@ -51,6 +51,18 @@ void check_costs(const Case& from, const TuneWishes& wishes) {
                       ", or [simulate] with duration");
 }
 
+/// What the reader of cases says of a value; may be empty.
+std::string broken_rule(const Case& from, const std::string& override) {
+  auto overrides = from.overrides;
+  overrides.push_back(override);
+  try {
+    read_again(from, overrides);
+  } catch (const InputError& error) {
+    return error.fault().rule;
+  }
+  return {};
+}
+
 TuneNumber tune_number(const Case& from, const TuneWishes::Bounds& bounds, const std::string& argument) {
   const CaseNumber number = number_named(from, argument, bounds.name);
   const auto text = [&](double value) { return number.path + "=" + shortest(value); };
@@ -59,7 +71,8 @@ TuneNumber tune_number(const Case& from, const TuneWishes::Bounds& bounds, const
   const LoopVariation variation(from, argument, number.path);
   for (const double bound : {bounds.low, bounds.high})
     if (!variation.parts({&bound, 1}))
-      throw refused(argument, text(bound), "this bound is not a valid value with the other numbers as they stand");
+      throw refused(argument, text(bound), "this bound is not a valid value with the other numbers as they stand",
+                    broken_rule(from, override_of(number.path, bound)));
   return {number.path, number.unit, number.value, bounds.low, bounds.high};
 }
 

@@ -122,6 +122,7 @@ void add_tune(CLI::App& program, Action& action) {
   command->add_option("--vary", flags->vary, "Numbers to choose, with their bounds; a list, such as kp=1:100,ki=0:10")
       ->type_name("NAME=LO:HI,...")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->required();
   command->add_option("--until", flags->until, "What must hold of every start")
       ->type_name("CONDITION")

@@ -118,15 +118,15 @@ std::string as_it_stands(const TuneReport& report, const Units& units) {
 }
 
 std::string nothing_found(const TuneReport& report) {
-  std::vector<std::string> counts;
-  for (const auto& row : tune_outcome_table(report).rows) counts.push_back(row[1] + " " + row[0]);
-  std::string out = "No point without hunting was found within these bounds";
-  if (std::ranges::any_of(report.limits, [](const auto& limit) { return limit.has_value(); })) out += " and limits";
-  out += fmt::format(": of {} points that were tried", report.points.size());
-  if (!counts.empty()) out += ", " + joined_in_words(counts, "and");
-  return out +
-         ". That is no proof that there is none: more --samples look closer, wider bounds farther; `limcycle remedy` "
-         "tries other changes.";
+  std::string counts;
+  for (const auto& row : tune_outcome_table(report).rows)
+    counts += (counts.empty() ? "" : ", ") + row[0] + ": " + row[1];
+  const bool limits = std::ranges::any_of(report.limits, [](const auto& limit) { return limit.has_value(); });
+  return fmt::format(
+      "No point without hunting was found within these bounds{}. {} points were tried ({}). That is no proof that "
+      "there "
+      "is none: more --samples look closer, wider bounds farther, and `limcycle remedy` tries other changes.",
+      limits ? " and limits" : "", report.points.size(), counts);
 }
 
 }  // namespace
