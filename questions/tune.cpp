@@ -110,6 +110,7 @@ std::string flags_of(const TuneWishes& wishes, std::uint64_t seed) {
   for (std::size_t i = 0; i < wishes.limits.size(); ++i)
     if (wishes.limits[i]) text += " --at-most " + std::string(tune_cost_names[i]) + "=" + shortest(*wishes.limits[i]);
   if (wishes.horizon > 0.0) text += " --horizon " + shortest(wishes.horizon);
+  if (wishes.margin > 0.0) text += " --margin " + shortest(with_four_digits(100.0 * wishes.margin));
   text += " --samples " + std::to_string(wishes.samples);
   return seed == 0 ? text : text + " --seed " + std::to_string(seed);
 }
@@ -135,6 +136,7 @@ TuneReport ask_tune(const Case& from, const TuneWishes& wishes, const Asking& as
   options.limits = wishes.limits;
   if (wants(wishes, TuneCost::ise)) options.horizon = horizon_of(from, wishes);
   options.samples = wishes.samples;
+  options.margin = wishes.margin;
   options.seed = asking.seed;
   options.threads = asking.threads;
   const LoopVariation variation(from, wishes.names.vary, paths);

@@ -25,6 +25,7 @@ struct TuneWishes {
   TuneCosts limits{};
   double horizon = 0.0;  ///< s, of ise; 0: the duration of [simulate]
   std::size_t samples = 64;
+  double margin = 0.0;  ///< share of each number
   Names names{};
 };
 

@@ -24,6 +24,7 @@ struct TuneFlags : CommonFlags {
   std::string minimise = "ms";       ///< --minimise
   std::vector<std::string> at_most;  ///< --at-most COST=VALUE
   double horizon = 0.0;              ///< --horizon; 0: not given
+  double margin = 0.0;               ///< --margin, in per cent
   int samples = 64;                  ///< --samples
   bool apply = false;                ///< --apply
   std::string html, picture;         ///< --html, --svg
@@ -56,6 +57,7 @@ TuneWishes wishes_of(const TuneFlags& flags) {
   wishes.minimised = tune_cost_named("--minimise", flags.minimise);
   wishes.limits = limits_of(flags.at_most);
   wishes.horizon = flags.horizon;
+  wishes.margin = 0.01 * flags.margin;
   wishes.samples = static_cast<std::size_t>(flags.samples);
   return wishes;
 }
@@ -138,6 +140,10 @@ void add_tune(CLI::App& program, Action& action) {
   command->add_option("--horizon", flags->horizon, "Time of the integral of ise; default: the duration of [simulate]")
       ->type_name("S")
       ->check(more_than_zero());
+  command->add_option("--margin", flags->margin, "Per cent by which each number may change without hunting")
+      ->type_name("X")
+      ->check(number_in(0.0, 50.0))
+      ->capture_default_str();
   command->add_option("--samples", flags->samples, "Points of the global search")
       ->type_name("N")
       ->check(whole_in(1, 100000))

@@ -14,7 +14,7 @@ std::string tune_page(const TuneReport& report, const Provenance& provenance, co
       "<h2>The search</h2>\n" +
       html_picture(tune_picture(report, units),
                    "Points that were tried, by outcome; those without hunting by their cost.", tune_csv(report)) +
-      html_table(tune_number_table(report), "The numbers, and what a change of 1 % does");
+      html_table(tune_number_table(report), "The numbers, and what a small change of each does");
   if (report.best) {
     body += "<h2>Before and after</h2>\n" +
             html_picture(response_picture({"as it stands", report.before}, {"tuned", report.after},

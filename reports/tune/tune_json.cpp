@@ -62,6 +62,8 @@ std::string tune_json(const Provenance& provenance, const TuneReport& report) {
   top["minimise"] = to_string(report.minimised);
   top["at_most"] = named(report.limits);
   top["horizon"] = report.horizon > 0.0 ? number(report.horizon) : Json(nullptr);
+  top["margin"] = number(report.margin);
+  top["aside"] = number(report.aside);
   top["step"] = number(report.step);
   top["hunts"] = report.hunts == Hunts::undecided ? Json(nullptr) : Json(report.hunts == Hunts::yes);
   top["now"] = Json::parse(costs_json(report.now));

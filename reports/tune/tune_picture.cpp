@@ -43,6 +43,8 @@ std::string outcome_colour(TuneOutcome outcome) {
       return "#3b2f45";
     case TuneOutcome::unstable:
       return "#8a5a2b";
+    case TuneOutcome::fragile:
+      return "#e79c9c";
     case TuneOutcome::above_limit:
       return "#eda352";
     case TuneOutcome::undecided:

@@ -18,6 +18,8 @@ std::string joined_in_words(const std::vector<std::string>& parts, const std::st
   return out;
 }
 
+std::string aside_in_words(const TuneReport& report) { return with_digits(100.0 * report.aside, 1) + " %"; }
+
 std::string point_in_words(const TuneReport& report, const TunePoint& point) {
   const auto names = tune_names(report);
   std::vector<std::string> parts;
@@ -39,7 +41,7 @@ std::string edges_in_words(const TuneReport& report) {
     if (values[i] == number.low) bounds.push_back(names[i] + " on its lower bound");
     if (values[i] == number.high) bounds.push_back(names[i] + " on its upper bound");
     if (report.surroundings.empty()) continue;
-    const std::string by = values[i] == 0.0 ? " 1 % of its range " : " 1 % ";
+    const std::string by = " " + aside_in_words(report) + (values[i] == 0.0 ? " of its range " : " ");
     const auto& [below, above] = report.surroundings[i];
     if (below && *below != TuneOutcome::feasible) changes[*below].push_back(names[i] + by + "lower");
     if (above && *above != TuneOutcome::feasible) changes[*above].push_back(names[i] + by + "higher");
@@ -52,6 +54,8 @@ std::string edges_in_words(const TuneReport& report) {
   };
   say(TuneOutcome::hunts, "at the edge of hunting",
       "the loop hunts; `limcycle margin` shows how far each number may change");
+  if (report.margin == 0.0 && changes.contains(TuneOutcome::hunts))
+    out += " `--margin 5` looks for numbers each of which may change by 5 %.";
   say(TuneOutcome::neutral, "at the edge of a motion that never dies out", "the loop oscillates for ever");
   say(TuneOutcome::diverges, "at the edge of divergence", "the loop diverges");
   say(TuneOutcome::unstable, "at the edge of stability", "the loop without friction is unstable");
@@ -148,6 +152,8 @@ std::string outcome_in_words(TuneOutcome outcome) {
       return "diverges";
     case TuneOutcome::undecided:
       return "undecided";
+    case TuneOutcome::fragile:
+      return "hunts within the margin";
     case TuneOutcome::unstable:
       return "linear loop unstable";
     case TuneOutcome::above_limit:
@@ -187,8 +193,8 @@ Table tune_number_table(const TuneReport& report) {
                {"to", ""},
                {"now", ""},
                {"tuned", ""},
-               {"1 % lower", "", Align::left},
-               {"1 % higher", "", Align::left}},
+               {aside_in_words(report) + " lower", "", Align::left},
+               {aside_in_words(report) + " higher", "", Align::left}},
               {}};
   for (std::size_t i = 0; i < report.numbers.size(); ++i) {
     const TuneNumber& one = report.numbers[i];

@@ -89,8 +89,8 @@ class Documents(unittest.TestCase):
     def test_tune(self):
         file = case("over-compensated")
         self.same(limcycle.tune(limcycle.load(file), {"kp": (20.0, 40.0)}, minimise="settling", at_most={"ms": 3.0},
-                                samples=4, threads=1), "tune", file, "--vary", "kp=20:40", "--minimise", "settling",
-                  "--at-most", "ms=3", "--samples", "4")
+                                margin=0.02, samples=4, threads=1), "tune", file, "--vary", "kp=20:40", "--minimise", "settling",
+                  "--at-most", "ms=3", "--margin", "2", "--samples", "4")
 
     def test_identify(self):
         file = case("records/servo")

@@ -32,6 +32,10 @@ class TuneStudy {
     report_.limits = question_.limits = options.limits;
     report_.horizon = question_.horizon = options.horizon;
     question_.loop_with = loop_with;
+    report_.margin = options.margin;
+    report_.aside += options.margin;
+    if (options.margin > 0.0)
+      question_.margin = [this](std::span<const double> values) { return space_.beside(values, options_.margin); };
   }
 
   TuneReport run() {
@@ -174,7 +178,7 @@ class TuneStudy {
       if (!stands_by_itself(report_.points[best])) continue;
       look_around();
       if (!stands_by_itself(report_.points[best])) continue;
-      if (best_point() == best || ++better > most_results) break;
+      if (question_.margin || best_point() == best || ++better > most_results) break;
     }
     if (!report_.best) return;
     const auto parts = question_.loop_with(report_.points[*report_.best].values);
@@ -209,21 +213,17 @@ class TuneStudy {
   void look_around() {
     const std::vector<double> values = report_.points[*report_.best].values;
     std::vector<TunePoint> around;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      for (const double sign : {-1.0, 1.0}) {
-        const TuneNumber& number = report_.numbers[i];
-        const double by = values[i] != 0.0 ? std::abs(values[i]) : number.high - number.low;
-        TunePoint point{values, TunePoint::Part::neighbour};
-        point.values[i] = with_four_digits(values[i] + sign * aside * by);
-        around.push_back(std::move(point));
-      }
+    for (auto& other : space_.beside(values, report_.aside))
+      around.push_back({std::move(other), TunePoint::Part::neighbour});
+    TuneQuestion alone = question_;
+    alone.margin = {};
     const JudgedPoints judged = judged_points();
     const auto judge_one = [&](std::size_t k) {
       TunePoint& point = around[k];
-      if (!space_.contains(point.values)) return;
-      look_at(point, question_);
-      if (point.outcome == TuneOutcome::not_judged && question_.cost_of(point))
-        judge(point, question_, judged.hunting_near(point.values));
+      if (point.values.empty()) return;
+      look_at(point, alone);
+      if (point.outcome == TuneOutcome::not_judged && alone.cost_of(point))
+        judge(point, alone, judged.hunting_near(point.values));
     };
     run_each(around.size(), judge_one, {options_.threads, options_.predict.stop, {}});
     report_.surroundings.assign(values.size(), {});

@@ -18,6 +18,8 @@ struct TuneOptions {
   TuneCosts limits{};        ///< largest costs that are allowed
   double horizon = 0.0;      ///< s, of ise
   std::size_t samples = 64;  ///< of the design, at least 1
+  /// Share by which each number, one at a time, may change without hunting, as far as the bounds reach; 0: none.
+  double margin = 0.0;
   std::uint64_t seed = 0;
   int threads = 1;
 };
@@ -29,8 +31,8 @@ struct TuneSearch {
   bool ended = false;            ///< by its own criterion, not by its limit of judgements or a stop
 };
 
-/// Surroundings of the result along one number: what becomes of a value 1 % lower and higher (of a hundredth of the
-/// range for 0). Empty: beyond the bound, or interrupted.
+/// Surroundings of the result along one number: what becomes of a value that is lower and higher by TuneReport::aside.
+/// Empty: beyond the bound, or interrupted.
 struct TuneSurroundings {
   std::optional<TuneOutcome> below, above;
 };
@@ -51,6 +53,9 @@ struct TuneReport {
   TuneCost minimised = TuneCost::ms;
   TuneCosts limits{};
   double horizon = 0.0;
+  double margin = 0.0;
+  double aside =
+      0.01;           ///< share of a value, or of its range for 0, by which the surroundings differ: beyond the margin
   double step = 0.0;  ///< height of the step
   Hunts hunts = Hunts::undecided;
   std::string why;                      ///< of that, one clause

@@ -95,6 +95,21 @@ bool is_above_limit(TunePoint& point, const TuneQuestion& question) {
   return true;
 }
 
+/// A point by itself.
+void judge_alone(TunePoint& point, const TuneQuestion& question, std::span<const LoopState> nearby) try {
+  const auto parts = question.loop_with(point.values);
+  if (!parts) return conclude(point, TuneOutcome::invalid, "these values break a rule of the loop");
+  if (!question.wants(TuneCost::settling)) {
+    const Settled run = run_from_step(*parts, question);
+    if (is_stopped(question)) return;
+    const Hunts shown = hunts_of(run);
+    if (shown != Hunts::no && shown != Hunts::diverges) return conclude_by(point, run);  // this may be allowed
+  }
+  judge_in_full(point, build_loop(*parts), question, nearby);
+} catch (const std::invalid_argument& refused) {
+  conclude(point, TuneOutcome::undecided, std::string("could not be simulated: ") + refused.what());
+}
+
 }  // namespace
 
 std::string_view to_string(TuneOutcome outcome) {
@@ -111,6 +126,8 @@ std::string_view to_string(TuneOutcome outcome) {
       return "undecided";
     case TuneOutcome::unstable:
       return "unstable";
+    case TuneOutcome::fragile:
+      return "fragile";
     case TuneOutcome::above_limit:
       return "above-limit";
     case TuneOutcome::invalid:
@@ -177,17 +194,19 @@ std::optional<SquaredError> squared_error_of(const LoopParts& parts, const TuneQ
   return squared_error(run, parts.reference, question.horizon);
 }
 
-void judge(TunePoint& point, const TuneQuestion& question, std::span<const LoopState> nearby) try {
-  const auto parts = question.loop_with(point.values);
-  if (!question.wants(TuneCost::settling)) {
-    const Settled run = run_from_step(*parts, question);
-    if (is_stopped(question)) return;
-    const Hunts shown = hunts_of(run);
-    if (shown != Hunts::no && shown != Hunts::diverges) return conclude_by(point, run);  // this may be allowed
+void judge(TunePoint& point, const TuneQuestion& question, std::span<const LoopState> nearby) {
+  judge_alone(point, question, nearby);
+  if (point.outcome != TuneOutcome::feasible || !question.margin) return;
+  for (const auto& values : question.margin(point.values)) {
+    if (values.empty()) continue;
+    TunePoint other{values};
+    judge_alone(other, question, nearby);
+    if (other.outcome == TuneOutcome::feasible) continue;
+    point.outcome = other.outcome == TuneOutcome::not_judged ? other.outcome : TuneOutcome::fragile;
+    point.why = "within the margin it is " + std::string(to_string(other.outcome)) + ": " + other.why;
+    point.hunting = other.hunting;
+    return;
   }
-  judge_in_full(point, build_loop(*parts), question, nearby);
-} catch (const std::invalid_argument& refused) {
-  conclude(point, TuneOutcome::undecided, std::string("could not be simulated: ") + refused.what());
 }
 
 }  // namespace limcycle

@@ -32,6 +32,7 @@ enum class TuneOutcome {
   diverges,     ///<
   undecided,    ///<
   unstable,     ///< the linear loop is
+  fragile,      ///< it does not hunt itself, but is not feasible with one number changed by the margin
   above_limit,  ///< a cost exceeds its limit
   invalid,      ///< the numbers break a rule of the loop
   not_judged    ///< allowed as far as it is known; whether it hunts was not asked, because its cost is no better
@@ -64,6 +65,8 @@ struct TuneQuestion {
   double step = 0.0;     ///< height of the step
   bool linear = true;    ///< the loop has a linear one: see linear_costs()
   Judging judging;       ///< with a search box
+  /// Other values at which the loop must not hunt either, for those of a point; empty: none.
+  std::function<std::vector<std::vector<double>>(std::span<const double>)> margin = {};
 
   bool wants(TuneCost cost) const { return minimised == cost || limits[static_cast<std::size_t>(cost)]; }
   std::optional<double> cost_of(const TunePoint& point) const {
@@ -84,8 +87,8 @@ std::optional<SquaredError> squared_error_of(const LoopParts& parts, const TuneQ
 
 /// The dear part, for a point that look_at() left not_judged: one run, which mostly suffices to see that a loop hunts
 /// (one that does not come to rest in 60 000 steps was not decided), then hunts() from all starts, then runs from the
-/// hunting motions of points nearby, whose cycle may reach as far as here without a start that leads to it. The outcome
-/// stays not_judged if it was interrupted.
+/// hunting motions of points nearby, whose cycle may reach as far as here without a start that leads to it; then the
+/// same for the margin. The outcome stays not_judged if it was interrupted.
 void judge(TunePoint& point, const TuneQuestion& question, std::span<const LoopState> nearby);
 
 }  // namespace limcycle

@@ -58,6 +58,18 @@ bool TuneSpace::contains(std::span<const double> values) const {
   return true;
 }
 
+std::vector<std::vector<double>> TuneSpace::beside(std::span<const double> values, double share) const {
+  std::vector<std::vector<double>> all;
+  for (std::size_t i = 0; i < sides_.size(); ++i)
+    for (const double sign : {-1.0, 1.0}) {
+      std::vector<double> other(values.begin(), values.end());
+      const double of = values[i] != 0.0 ? std::abs(values[i]) : sides_[i].high - sides_[i].low;
+      other[i] = with_four_digits(values[i] + sign * share * of);
+      all.push_back(contains(other) ? std::move(other) : std::vector<double>());
+    }
+  return all;
+}
+
 std::vector<std::vector<double>> TuneSpace::design(std::size_t samples, std::uint64_t seed) const {
   constexpr double beyond = 1.0 / 14.0;  // each end of an interval of 8/7: a sixteenth of it
   const SobolDesign sobol(size(), samples, false, seed);

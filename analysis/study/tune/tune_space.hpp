@@ -29,6 +29,10 @@ class TuneSpace {
   std::vector<double> place(std::span<const double> values) const;
   bool contains(std::span<const double> values) const;
 
+  /// The values with one of them lower and higher by this share of itself (of its side for 0), number by number; empty
+  /// where that is beyond a bound.
+  std::vector<std::vector<double>> beside(std::span<const double> values, double share) const;
+
   /// Places that fill the box evenly: those of a Sobol sequence, stretched by a seventh, so that each number is on one
   /// of its bounds in one of eight places. There optima and absent parts (an integral gain of 0) are found, which no
   /// point inside meets.

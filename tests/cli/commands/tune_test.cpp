@@ -100,6 +100,7 @@ TEST_CASE("tune: bad input ends with 2, before anything is computed") {
   refused(servo, {"--vary", "kp=1:2", "--at-most", "ms=-1"}, "must be COST=VALUE");
   refused(servo, {"--vary", "kp=1:2", "--apply"}, "needs -o FILE");
   refused(servo, {"--vary", "kp=1:2", "--samples", "0"}, "--samples");
+  refused(servo, {"--vary", "kp=1:2", "--margin", "60"}, "--margin");
   refused(servo, {"--vary", "kp=1:2", "--horizon", "0"}, "--horizon");
   refused(shipped("tutorial-servo.toml"), {"--vary", "kp=1:2", "--minimise", "ise"}, "--horizon");
   refused(shipped("two-mass-drive.toml"), {"--vary", "mass=1:2"}, "is not a parameter of this loop");

@@ -27,6 +27,17 @@ TEST_CASE("tune space: even in the logarithm of bounds of one sign, else in the 
   CHECK(with_four_digits(0.0) == 0.0);
 }
 
+TEST_CASE("tune space: values beside a point, as far as the bounds reach") {
+  const auto beside = TuneSpace(three).beside(std::vector{100.0, 0.0, -1.0}, 0.01);
+  REQUIRE(beside.size() == 6);
+  CHECK(beside[0] == std::vector{99.0, 0.0, -1.0});
+  CHECK(beside[1].empty());
+  CHECK(beside[2].empty());
+  CHECK(beside[3] == std::vector{100.0, 0.07, -1.0});
+  CHECK(beside[4] == std::vector{100.0, 0.0, -1.01});
+  CHECK(beside[5] == std::vector{100.0, 0.0, -0.99});
+}
+
 TEST_CASE("tune space: rounding does not lead beyond a bound") {
   const TuneSpace narrow(std::vector<TuneNumber>{{"a", "1", 0.0, 1.00004, 1.00006}});
   for (const double share : {0.01, 0.3, 0.5, 0.99}) {

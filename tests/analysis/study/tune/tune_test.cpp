@@ -172,6 +172,28 @@ TEST_CASE("tune: an optimum at the edge of hunting, confirmed by predict, the sa
   }
 }
 
+TEST_CASE("tune: with a margin the loop does not hunt beside the result either") {
+  const LoopParts parts = over_compensated();
+  TuneOptions options = few(TuneCost::settling);
+  options.predict.search = SearchBox{1e-4, 1.0, 0.1, 100.0};
+  options.margin = 0.05;
+  const TuneReport report = tuned(parts, {{&Pid::kp, 1.0, 100.0}}, options);
+  REQUIRE(report.best);
+  const auto hunts_with = [&](double kp) {
+    LoopParts other = parts;
+    std::get<Pid>(other.controller).kp = kp;
+    return hunts_by_predict(other);
+  };
+  const double kp = values_of(report)[0];
+  CHECK_FALSE(hunts_with(kp));
+  CHECK_FALSE(hunts_with(with_four_digits(0.95 * kp)));
+  CHECK_FALSE(hunts_with(with_four_digits(1.05 * kp)));
+  CHECK(report.aside == Approx(0.06));
+  CHECK(report.surroundings.at(0).above == TuneOutcome::hunts);
+  CHECK(hunts_with(with_four_digits(1.06 * kp)));
+  CHECK(std::ranges::any_of(report.points, [](const TunePoint& one) { return one.outcome == TuneOutcome::fragile; }));
+}
+
 TEST_CASE("tune: other units of length give the same optimum") {
   std::vector<double> costs, values;
   for (const double unit : {1.0, 1e-3}) {
