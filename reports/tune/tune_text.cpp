@@ -41,7 +41,7 @@ std::string edges_in_words(const TuneReport& report) {
     if (values[i] == number.low) bounds.push_back(names[i] + " on its lower bound");
     if (values[i] == number.high) bounds.push_back(names[i] + " on its upper bound");
     if (report.surroundings.empty()) continue;
-    const std::string by = " " + aside_in_words(report) + (values[i] == 0.0 ? " of its range " : " ");
+    const std::string by = values[i] == 0.0 ? " 1 % of its range " : " " + aside_in_words(report) + " ";
     const auto& [below, above] = report.surroundings[i];
     if (below && *below != TuneOutcome::feasible) changes[*below].push_back(names[i] + by + "lower");
     if (above && *above != TuneOutcome::feasible) changes[*above].push_back(names[i] + by + "higher");

@@ -17,7 +17,6 @@ namespace {
 constexpr std::size_t most_searches = 3, judged_at_once = 4;
 constexpr double apart = 0.2;  ///< of two starts of local searches, in shares of the box
 constexpr double same_cost_by = 0.01, same_place_by = 0.05, near_cost_by = 0.05;
-constexpr double aside = 0.01;   ///< of the surroundings
 constexpr int most_results = 5;  ///< that are confirmed one after another, each better than the one before
 /// Where the parts of the progress bar begin: design, starts, searches, confirmation.
 constexpr double shares[] = {0.05, 0.2, 0.4, 0.9, 1.0};
@@ -35,7 +34,7 @@ class TuneStudy {
     report_.margin = options.margin;
     report_.aside += options.margin;
     if (options.margin > 0.0)
-      question_.margin = [this](std::span<const double> values) { return space_.beside(values, options_.margin); };
+      question_.margin = [this](std::span<const double> values) { return space_.beside(values, options_.margin, 0.0); };
   }
 
   TuneReport run() {
@@ -213,7 +212,7 @@ class TuneStudy {
   void look_around() {
     const std::vector<double> values = report_.points[*report_.best].values;
     std::vector<TunePoint> around;
-    for (auto& other : space_.beside(values, report_.aside))
+    for (auto& other : space_.beside(values, report_.aside, 0.01))
       around.push_back({std::move(other), TunePoint::Part::neighbour});
     TuneQuestion alone = question_;
     alone.margin = {};

@@ -18,7 +18,8 @@ struct TuneOptions {
   TuneCosts limits{};        ///< largest costs that are allowed
   double horizon = 0.0;      ///< s, of ise
   std::size_t samples = 64;  ///< of the design, at least 1
-  /// Share by which each number, one at a time, may change without hunting, as far as the bounds reach; 0: none.
+  /// Share by which each number, one at a time, may change without hunting, as far as the bounds reach; one that is 0
+  /// stays. 0: none.
   double margin = 0.0;
   std::uint64_t seed = 0;
   int threads = 1;
@@ -55,7 +56,7 @@ struct TuneReport {
   double horizon = 0.0;
   double margin = 0.0;
   double aside =
-      0.01;           ///< share of a value, or of its range for 0, by which the surroundings differ: beyond the margin
+      0.01;  ///< share by which the surroundings differ, beyond the margin; for a value of 0 it is 1 % of the range
   double step = 0.0;  ///< height of the step
   Hunts hunts = Hunts::undecided;
   std::string why;                      ///< of that, one clause

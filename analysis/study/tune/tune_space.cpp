@@ -58,14 +58,14 @@ bool TuneSpace::contains(std::span<const double> values) const {
   return true;
 }
 
-std::vector<std::vector<double>> TuneSpace::beside(std::span<const double> values, double share) const {
+std::vector<std::vector<double>> TuneSpace::beside(std::span<const double> values, double share, double of_side) const {
   std::vector<std::vector<double>> all;
   for (std::size_t i = 0; i < sides_.size(); ++i)
     for (const double sign : {-1.0, 1.0}) {
       std::vector<double> other(values.begin(), values.end());
-      const double of = values[i] != 0.0 ? std::abs(values[i]) : sides_[i].high - sides_[i].low;
-      other[i] = with_four_digits(values[i] + sign * share * of);
-      all.push_back(contains(other) ? std::move(other) : std::vector<double>());
+      const double by = values[i] != 0.0 ? share * std::abs(values[i]) : of_side * (sides_[i].high - sides_[i].low);
+      other[i] = with_four_digits(values[i] + sign * by);
+      all.push_back(other[i] != values[i] && contains(other) ? std::move(other) : std::vector<double>());
     }
   return all;
 }

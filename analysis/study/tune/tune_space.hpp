@@ -29,9 +29,9 @@ class TuneSpace {
   std::vector<double> place(std::span<const double> values) const;
   bool contains(std::span<const double> values) const;
 
-  /// The values with one of them lower and higher by this share of itself (of its side for 0), number by number; empty
-  /// where that is beyond a bound.
-  std::vector<std::vector<double>> beside(std::span<const double> values, double share) const;
+  /// The values with one of them lower and higher by this share of itself, one that is 0 by `of_side` of its side,
+  /// number by number; empty where that is beyond a bound, or no change.
+  std::vector<std::vector<double>> beside(std::span<const double> values, double share, double of_side) const;
 
   /// Places that fill the box evenly: those of a Sobol sequence, stretched by a seventh, so that each number is on one
   /// of its bounds in one of eight places. There optima and absent parts (an integral gain of 0) are found, which no

@@ -28,13 +28,14 @@ TEST_CASE("tune space: even in the logarithm of bounds of one sign, else in the 
 }
 
 TEST_CASE("tune space: values beside a point, as far as the bounds reach") {
-  const auto beside = TuneSpace(three).beside(std::vector{100.0, 0.0, -1.0}, 0.01);
+  const auto beside = TuneSpace(three).beside(std::vector{100.0, 0.0, -1.0}, 0.01, 0.02);
   REQUIRE(beside.size() == 6);
   CHECK(beside[0] == std::vector{99.0, 0.0, -1.0});
   CHECK(beside[1].empty());
   CHECK(beside[2].empty());
-  CHECK(beside[3] == std::vector{100.0, 0.07, -1.0});
+  CHECK(beside[3] == std::vector{100.0, 0.14, -1.0});
   CHECK(beside[4] == std::vector{100.0, 0.0, -1.01});
+  CHECK(TuneSpace(three).beside(std::vector{50.0, 0.0, -1.0}, 0.01, 0.0)[3].empty());
   CHECK(beside[5] == std::vector{100.0, 0.0, -0.99});
 }
 
