@@ -90,5 +90,6 @@ void add_sensitivity(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);
 void add_status(CLI::App& program, Action& action);
 void add_synthesize(CLI::App& program, Action& action);
+void add_tune(CLI::App& program, Action& action);
 
 }  // namespace limcycle

@@ -1,7 +1,7 @@
 #include "limcycle/cases/loader/case_numbers.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <charconv>
 
 #include "limcycle/cases/loader/owned_parts.hpp"
 
@@ -60,10 +60,32 @@ CaseNumber number_at(const Case& from, const std::string& argument, const std::s
                     .suggestion = suggest(path, paths)});
 }
 
+CaseNumber number_named(const Case& from, const std::string& argument, const std::string& name) {
+  std::vector<CaseNumber> found;
+  std::vector<std::string> names;
+  for (const auto& one : numbers_of(from)) {
+    if (one.path == name) return one;
+    if (one.path.ends_with("." + name)) found.push_back(one);
+    names.push_back(name.find('.') == std::string::npos ? one.path.substr(one.path.rfind('.') + 1) : one.path);
+  }
+  if (found.size() == 1) return found.front();
+  const auto refused = [&](std::string rule, std::string suggestion) {
+    return InputError({.file = {},
+                       .line = 0,
+                       .override = {},
+                       .key = argument,
+                       .value = name,
+                       .rule = std::move(rule),
+                       .suggestion = std::move(suggestion)});
+  };
+  if (!found.empty())
+    throw refused("is the name of several numbers", "write " + found[0].path + " or " + found[1].path);
+  throw refused("is not a parameter of this loop that is one number", suggest(name, names));
+}
+
 std::string override_of(const std::string& path, double value) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  const std::string number = text;
+  const std::string number(text, std::to_chars(text, text + sizeof text, value).ptr);
   return path + "=" + number + (number.find_first_of(".en") == std::string::npos ? ".0" : "");
 }
 

@@ -25,6 +25,10 @@ std::vector<CaseNumber> numbers_of(const Case& from);
 /// The number at a path. Throws InputError (of `argument`, such as "--parameter") if there is none.
 CaseNumber number_at(const Case& from, const std::string& argument, const std::string& path);
 
+/// The number with this path or, if only one has it, with this name at the end of its path ("kp", "controller.kp").
+/// Throws InputError (of `argument`) if there is none, or several.
+CaseNumber number_named(const Case& from, const std::string& argument, const std::string& name);
+
 /// A value at a path as `--set` takes it, "loop.controller.kd=8.0".
 std::string override_of(const std::string& path, double value);
 

@@ -94,6 +94,19 @@ std::vector<Description> what_if() {
        "loop then costs in error, speed, margins and noise. --apply writes the case with one of them.",
        {{"limcycle remedy cases/belt-squeal.toml --threads 2", "the cause, and all remedies"},
         {"limcycle remedy cases/over-compensated.toml --apply gain-kp -o fixed.toml", "the case with one remedy"}}},
+      {"tune",
+       change_group,
+       "Chooses numbers within bounds so that the loop does not hunt and a cost is least: the peak sensitivity Ms of "
+       "the "
+       "linear loop, or the settling time or the integral of the squared error of the loop with its friction after a "
+       "step. Points that fill the bounds are tried, then searches from the best ones that lie apart. States whether "
+       "these agree, and what lies next to the result. A name such as kp stands for the only number with that name. "
+       "--apply writes the case with the numbers that were found.",
+       {{"limcycle tune cases/pid-lugre.toml --vary kp=1:20,ki=0:5 --minimise ms --threads 2",
+         "gains that do not hunt"},
+        {"limcycle tune cases/over-compensated.toml --vary kp=1:100 --minimise settling --samples 8 --apply -o "
+         "tuned.toml",
+         "the fastest, as a case"}}},
       {"continue",
        change_group,
        "Follows the limit cycles, stable and unstable, over a range of one number, around folds and to their ends. It "

@@ -26,7 +26,8 @@ struct Answer {
   std::function<std::string()> page;                     ///< HTML; empty likewise
   std::function<std::map<std::string, Array>()> arrays;  ///< beside the document; empty: none
   std::vector<std::string> columns;                      ///< of the array "rows", if there is one
-  /// The case that follows from the result: with the remedy of this name, with the fitted law. Empty: none does.
+  /// The case that follows from the result: with the remedy of this name, with the numbers found, with the fitted law.
+  /// Empty: none does.
   std::function<Case(const std::string&)> applied;
 };
 

@@ -30,6 +30,7 @@
 #include "limcycle/reports/remedy/remedy.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 #include "limcycle/reports/text.hpp"
+#include "limcycle/reports/tune/tune.hpp"
 
 namespace limcycle::python {
 namespace {
@@ -288,6 +289,21 @@ Answer remedy_answer(const Question& question, const RemedyWishes& wishes) {
   answer.applied = [=](const std::string& name) {
     auto overrides = sheet.from->overrides;
     for (const auto& one : overrides_of_remedy(*report, name)) overrides.push_back(one);
+    return read_again(*sheet.from, overrides);
+  };
+  return answer;
+}
+
+Answer tune_answer(const Question& question, const TuneWishes& wishes) {
+  tune_numbers(*question.from, wishes);  // reports errors before anything is computed
+  const auto report = computed([&] { return ask_tune(*question.from, wishes, question.asking); });
+  const Sheet sheet = sheet_of(question, report->status);
+  Answer answer = documents(sheet, report, tune_json, tune_csv, tune_text);
+  answer.picture = drawn(sheet, report, tune_picture);
+  answer.page = paged(sheet, report, tune_page, flags_of(wishes, question.asking.seed));
+  answer.applied = [=](const std::string&) {
+    auto overrides = sheet.from->overrides;
+    for (const auto& one : overrides_of_tuning(*report)) overrides.push_back(one);
     return read_again(*sheet.from, overrides);
   };
   return answer;

@@ -4,6 +4,7 @@
 #include "limcycle/questions/map.hpp"
 #include "limcycle/questions/remedy.hpp"
 #include "limcycle/questions/sensitivity.hpp"
+#include "limcycle/questions/tune.hpp"
 
 namespace limcycle::python {
 
@@ -21,6 +22,7 @@ Answer map_answer(const Question& question, const MapAxis& x, const MapAxis& y, 
 Answer sensitivity_answer(const Question& question, const SensitivityWishes& wishes);
 Answer dissipativity_answer(const Question& question, const DissipativityWishes& wishes);
 Answer remedy_answer(const Question& question, const RemedyWishes& wishes);
+Answer tune_answer(const Question& question, const TuneWishes& wishes);
 Answer identify_answer(const Question& question);
 
 }  // namespace limcycle::python

@@ -169,6 +169,21 @@ Answer remedy_of(const Question& question, const std::vector<std::string>& only,
   return remedy_answer(question, wishes);
 }
 
+using Bounds = std::tuple<std::string, double, double>;
+
+Answer tune_of(const Question& question, const std::vector<Bounds>& vary, const std::string& minimise,
+               const std::map<std::string, double>& at_most, double horizon, double margin, std::size_t samples) {
+  TuneWishes wishes;
+  for (const auto& [name, low, high] : vary) wishes.vary.push_back({name, low, high});
+  wishes.minimised = tune_cost_named("minimise", minimise);
+  for (const auto& [name, limit] : at_most)
+    wishes.limits[static_cast<std::size_t>(tune_cost_named("at_most", name))] = limit;
+  wishes.horizon = horizon;
+  wishes.margin = margin;
+  wishes.samples = samples;
+  return tune_answer(question, wishes);
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
@@ -184,6 +199,7 @@ PYBIND11_MODULE(_core, module) {
   define_question(module, "sensitivity", &sensitivity_of);
   define_question(module, "dissipativity", &dissipativity_of);
   define_question(module, "remedy", &remedy_of);
+  define_question(module, "tune", &tune_of);
   define_question(module, "identify", &identify_answer);
 }
 

@@ -193,6 +193,24 @@ def remedies(result: _results.Remedies, ax: Any, cost: str) -> Any:
     return ax
 
 
+def searched(result: _results.Tuning, ax: Any) -> Any:
+    ax = _axes(ax)
+    two = len(result.numbers) > 1
+    for outcome, colour in (("not-judged", "lightgrey"), ("hunts", "C3"), ("feasible", "C0")):
+        points = [one for one in result.points if one.outcome == outcome and (two or one[result.minimise] is not None)]
+        ax.plot([one.values[0] for one in points],
+                [one.values[1] if two else one[result.minimise] for one in points], ".", color=colour,
+                label={"feasible": "does not hunt", "not-judged": "not judged"}.get(outcome, outcome))
+    if result.best is not None:
+        best = result.points[result.best]
+        ax.plot([best.values[0]], [best.values[1] if two else best[result.minimise]], "o", color="black",
+                fillstyle="none", label="best")
+    ax.set_xlabel(result.numbers[0].parameter)
+    ax.set_ylabel(result.numbers[1].parameter if two else result.minimise)
+    ax.legend(fontsize="small")
+    return ax
+
+
 def intervals(result: _results.Identification, ax: Any) -> Any:
     laws = [one for one in result.laws if one.kind == result.chosen]
     known = [one for law in laws for one in law.parameters if one.identifiable and one.value and None not in (one.low, one.high)]

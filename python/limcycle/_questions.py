@@ -215,6 +215,33 @@ def remedy(loop: Loop, only: Union[str, Sequence[str]] = (), *, weights: Optiona
 
 
 @_explained
+def tune(loop: Loop, vary: Mapping[str, Tuple[float, float]], *, minimise: str = "ms",
+         at_most: Optional[Mapping[str, float]] = None, horizon: Optional[float] = None, margin: float = 0.0,
+         samples: int = 64, seed: int = 0, threads: int = 0, time_limit: Optional[float] = None, progress: Progress = None) -> _results.Tuning:
+    """The numbers within bounds for which the loop does not hunt and a cost is least.
+
+    `vary`: the bounds of each number by its path or the end of that, such as {"kp": (1.0, 100.0)}, `minimise`: "ms",
+    "settling" or "ise", `at_most`: limits of costs by name, `horizon`: s, of ise, `margin`: share by which
+    each number may change without hunting, `samples`: of the global search."""
+    if not isinstance(vary, Mapping):
+        raise CaseError("vary", repr(vary), 'must be bounds by number, such as {"kp": (1.0, 100.0)}')
+    bounds = []
+    for name, ends in vary.items():
+        if not isinstance(ends, (tuple, list)) or len(ends) != 2:
+            raise CaseError(f"vary[{name!r}]", repr(ends), "must be (low, high)")
+        bounds.append((word("vary", name, _PATH), *stretch(f"vary[{name!r}]", ends[0], ends[1])))
+    limits = {word("at_most", name, "the name of a cost"):
+              number(f"at_most[{name!r}]", value, "finite and above 0", lambda x: 0.0 < x < math.inf)
+              for name, value in (at_most or {}).items()}
+    span = 0.0 if horizon is None else number("horizon", horizon, "> 0 s", lambda x: 0.0 < x < math.inf)
+    answer = _core.tune(_case_of(loop), _work(time_limit, progress, seed=seed, threads=threads), bounds,
+                        word("minimise", minimise, "the name of a cost"), limits, span,
+                        number("margin", margin, "0 to 0.5", lambda x: 0.0 <= x <= 0.5),
+                        whole("samples", samples, 1, 100000))
+    return _results.Tuning(answer, loop)
+
+
+@_explained
 def identify(case: Loop, *, time_limit: Optional[float] = None, progress: Progress = None) -> _results.Identification:
     """Friction laws fitted to measured records, as the section [identify] of a case names them: load() it, or give
     Loop(identify={"law": [...], "record": [{"kind": ..., "file": ...}]})."""

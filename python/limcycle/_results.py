@@ -421,6 +421,29 @@ class Remedies(Result):
         return self._plot("remedies", ax, cost=cost)
 
 
+class Tuning(Result):
+    """Of tune(): `numbers`, each with its `value`, `best` (index of a point), `cost`, `costs`, `searches`, `points`."""
+
+    hunts: Any
+    best: Optional[int]
+    cost: Optional[float]
+    numbers: List[Record]
+    points: List[Record]
+    status: str
+
+    def __init__(self, answer: Union[_core.Answer, _Kept], loop: Optional[Loop] = None) -> None:
+        super().__init__(answer)
+        self._own = loop._own if loop is not None else None
+
+    def tuned(self) -> Loop:
+        """The loop with the numbers that were found. Raises NoAnswer if none were."""
+        return Loop._of(self._answer.applied(""), self._own)
+
+    def plot(self, ax: Any = None) -> Any:
+        """The points over the first two numbers, or over the only one their costs."""
+        return self._plot("searched", ax)
+
+
 class Identification(Result):
     """Of identify(): `laws`, each with `parameters`, and `chosen`, the kind of the least law that the data support."""
 

@@ -27,6 +27,15 @@ std::string remedy_page(const RemedyReport& report, const Provenance& provenance
 /// The step response of the loop as it stands and with one remedy, two panels with the same axes, as SVG.
 std::string remedy_picture(const RemedyReport& report, const Remedy& remedy, const Units& units);
 
+/// Two step responses, two panels with the same axes, as SVG; until the second one has settled, if `settled` (s) says
+/// when, at most to the end of the longer one. Empty if either is.
+struct Response {
+  std::string name;
+  const Trace& run;
+};
+std::string response_picture(const Response& before, const Response& after, const std::optional<double>& settled,
+                             const Units& units);
+
 /// Remedies that end hunting: their numbers, and their costs.
 Table remedy_table(const RemedyReport& report, const Units& units);
 Table remedy_cost_table(const RemedyReport& report, const Units& units);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "limcycle/reports/figures/svg_axes.hpp"
@@ -21,14 +20,13 @@ double length_of(const Trace& run) { return run.t.empty() ? 0.0 : run.t.back() -
 
 /// The axes that both panels share. Time goes until the slower of the two has settled, at most the shorter of both runs
 /// if one of them hunts for ever.
-AxesFrame shared_axes(const RemedyReport& report, const Remedy& remedy, double per_si) {
+AxesFrame shared_axes(const Trace& before, const Trace& after, const std::optional<double>& settled, double per_si) {
   AxesFrame frame{panel_left, panel_top, panel_width, panel_height};
-  const double settled = remedy.costs.settling_time.value_or(length_of(remedy.after));
-  const double duration = std::min(std::max(length_of(report.before), length_of(remedy.after)),
-                                   std::max(3.0 * settled, 0.25 * length_of(report.before)));
+  const double duration = std::min(std::max(length_of(before), length_of(after)),
+                                   std::max(3.0 * settled.value_or(length_of(after)), 0.25 * length_of(before)));
   frame.x.include({0.0, duration});
   frame.y.include(0.0);
-  for (const Trace* run : {&report.before, &remedy.after})
+  for (const Trace* run : {&before, &after})
     for (std::size_t i = 0; i < run->t.size() && run->t[i] - run->t.front() <= duration; ++i)
       frame.y.include(run->y[i] * per_si);
   frame.x.settle(false);
@@ -60,23 +58,27 @@ std::string response_curve(const Trace& run, const AxesFrame& frame, double per_
 
 }  // namespace
 
-std::string remedy_picture(const RemedyReport& report, const Remedy& remedy, const Units& units) {
-  if (!(length_of(report.before) > 0.0) || !(length_of(remedy.after) > 0.0)) return {};
-  AxesFrame frame = shared_axes(report, remedy, units.y_per_si);
+std::string response_picture(const Response& before, const Response& after, const std::optional<double>& settled,
+                             const Units& units) {
+  if (!(length_of(before.run) > 0.0) || !(length_of(after.run) > 0.0)) return {};
+  AxesFrame frame = shared_axes(before.run, after.run, settled, units.y_per_si);
   std::string body;
-  const std::array<std::pair<std::string, const Trace*>, 2> panels{
-      {{"as it stands", &report.before}, {"with " + remedy.candidate.name, &remedy.after}}};
-  for (const auto& [name, run] : panels) {
+  for (const Response* one : {&before, &after}) {
     const double zero = frame.py(0.0);
-    body += words_at(frame.left, panel_top - 24.0, "", html_escaped(name)) + frame.markup() +
+    body += words_at(frame.left, panel_top - 24.0, "", html_escaped(one->name)) + frame.markup() +
             frame.names(frame.x.label("t", "s"), frame.y.label("y", units.y)) +
             line_of(frame.left, zero, frame.left + frame.width, zero, "zero") +
-            response_curve(*run, frame, units.y_per_si);
+            response_curve(one->run, frame, units.y_per_si);
     frame.left += panel_width + panel_gap;
   }
-  const std::string label = "Step response as it stands and with " + remedy.candidate.name;
+  const std::string label = "Step response " + before.name + " and " + after.name;
   return svg_picture(frame.left - panel_gap + 12.0, panel_top + panel_height + 34.0, label,
                      std::string(axes_style) + std::string(response_style), label, body);
+}
+
+std::string remedy_picture(const RemedyReport& report, const Remedy& remedy, const Units& units) {
+  return response_picture({"as it stands", report.before}, {"with " + remedy.candidate.name, remedy.after},
+                          remedy.costs.settling_time, units);
 }
 
 std::string remedy_page(const RemedyReport& report, const Provenance& provenance, const std::string& case_text,

@@ -1,27 +1,11 @@
 #include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/number.hpp"
+#include "limcycle/reports/remedy/costs.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 
 namespace limcycle {
 namespace {
-
-Json known(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
-
-Json costs_json(const RemedyCosts& costs) {
-  Json error = nullptr;
-  if (costs.steady_state_error) error = {number(costs.steady_state_error->low), number(costs.steady_state_error->high)};
-  return {{"steady_state_error", error},
-          {"settling_time", known(costs.settling_time)},
-          {"overshoot", known(costs.overshoot)},
-          {"linear_settling_time", known(costs.linear_settling_time)},
-          {"linear_overshoot", known(costs.linear_overshoot)},
-          {"phase_margin", known(costs.phase_margin)},
-          {"delay_margin", known(costs.delay_margin)},
-          {"peak_sensitivity", known(costs.peak_sensitivity)},
-          {"noise_gain", known(costs.noise_gain)},
-          {"robust_share", known(costs.robust_share)}};
-}
 
 Json remedy_entry(const Remedy& remedy) {
   const RemedyCandidate& candidate = remedy.candidate;
@@ -37,7 +21,7 @@ Json remedy_entry(const Remedy& remedy) {
           {"edges", numbers(remedy.edges)},
           {"beyond", numbers(remedy.beyond)},
           {"best", remedy.best},
-          {"costs", costs_json(remedy.costs)}};
+          {"costs", Json::parse(costs_json(remedy.costs))}};
 }
 
 }  // namespace
@@ -49,7 +33,7 @@ std::string remedy_json(const Provenance& provenance, const RemedyReport& report
   for (const Counterfactual& test : report.cause.tests)
     top["cause"]["tests"].push_back({{"without", test.without}, {"hunts", to_string(test.hunts)}});
   top["step"] = number(report.step);
-  top["now"] = costs_json(report.now);
+  top["now"] = Json::parse(costs_json(report.now));
   top["remedies"] = Json::array();
   for (const Remedy& remedy : report.remedies) top["remedies"].push_back(remedy_entry(remedy));
   top["notes"] = report.notes;

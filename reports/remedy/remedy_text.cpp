@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "limcycle/reports/number.hpp"
+#include "limcycle/reports/remedy/costs.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 
 namespace limcycle {
@@ -26,30 +26,6 @@ std::string in_words(const Remedy& remedy, const Units& units) {
   if (candidate.is_absent()) return fmt::format("set {} to {}", candidate.parameter, to);
   return fmt::format("{} {} from {} to {}", std::abs(remedy.value) > std::abs(candidate.own) ? "raise" : "lower",
                      candidate.parameter, number_of_remedy(candidate, candidate.own, 4, units), to);
-}
-
-std::string error_cell(const std::optional<Extent>& error, const Units& units) {
-  if (!error) return "-";
-  const double low = error->low * units.y_per_si, high = error->high * units.y_per_si;
-  const double size = std::max(std::abs(low), std::abs(high));
-  if (std::isinf(low) && std::isinf(high)) return "any";
-  if (std::abs(low + high) <= 1e-6 * size) return size == 0.0 ? "0" : "+-" + with_digits(size, 3);
-  return with_digits(low, 3) + ".." + with_digits(high, 3);
-}
-
-std::string cost_cell(const std::optional<double>& value, double factor = 1.0, int digits = 3) {
-  return value ? with_digits(*value * factor, digits) : "-";
-}
-
-std::vector<std::string> cost_row(const std::string& name, const RemedyCosts& costs, const Units& units) {
-  return {name,
-          error_cell(costs.steady_state_error, units),
-          cost_cell(costs.settling_time),
-          cost_cell(costs.overshoot, 100.0),
-          cost_cell(costs.phase_margin, 180.0 / std::numbers::pi),
-          cost_cell(costs.peak_sensitivity),
-          cost_cell(costs.noise_gain),
-          cost_cell(costs.robust_share, 100.0)};
 }
 
 std::string without_cure(const RemedyReport& report) {
@@ -88,19 +64,10 @@ Table remedy_table(const RemedyReport& report, const Units& units) {
 }
 
 Table remedy_cost_table(const RemedyReport& report, const Units& units) {
-  Table table{{{"remedy", "", Align::left},
-               {"error", units.y},
-               {"settles", "s"},
-               {"overshoot", "%"},
-               {"phase", "deg"},
-               {"Ms", ""},
-               {"noise", ""},
-               {"robust", "%"}},
-              {}};
-  table.rows.push_back(cost_row("(as it stands)", report.now, units));
+  NamedCosts loops{{"(as it stands)", &report.now}};
   for (const Remedy& one : report.remedies)
-    if (one.ends == true) table.rows.push_back(cost_row(one.candidate.name, one.costs, units));
-  return table;
+    if (one.ends == true) loops.emplace_back(one.candidate.name, &one.costs);
+  return cost_table("remedy", loops, units);
 }
 
 std::string remedy_answer(const RemedyReport& report, const Units& units) {
@@ -142,11 +109,7 @@ std::string remedy_text(const std::string& title, const RemedyReport& report, co
                "nearest to the present at which the loop does not hunt, confirmed by simulations on both sides of the "
                "edge: choose a value well beyond it.");
     out += "\nWhat it costs there\n" + remedy_cost_table(report, units).text();
-    out +=
-        wrapped(fmt::format("error: r - y over all states of rest; settles, overshoot: a step of {} with friction; "
-                            "phase margin and Ms: without friction; noise: largest gain from y to the command; "
-                            "robust: share of [sensitivity] without hunting",
-                            Units::attach(with_digits(report.step * units.y_per_si, 3), units.y)));
+    out += wrapped(cost_legend(report.step, units));
   }
   out += without_cure(report) + notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));

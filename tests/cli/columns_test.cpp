@@ -56,6 +56,8 @@ TEST_CASE("columns: predict on every case that has a cycle or none") {
 
 TEST_CASE("columns: every other question, on cases that are answered soon") {
   const Scratch scratch;
+  check_page({"tune", shipped("over-compensated.toml"), "--vary", "kp=20:40,kd=9:11,lag=0.04:0.05", "--samples", "4"});
+  check_page({"tune", shipped("pid-lugre.toml"), "--vary", "ki=2:8", "--samples", "2"});
   for (const auto& name : some_of(Names{"relay-integrator.toml", "relay-third-order.toml", "backlash.toml"})) {
     check_page({"margin", shipped(name)});
     check_page({"remedy", shipped(name), "--only", "gain-kp", "--only", "error-dead-zone"});

@@ -86,6 +86,12 @@ class Documents(unittest.TestCase):
         self.same(limcycle.remedy(limcycle.load(file), "damping", weights={"noise_gain": 2.0}, threads=1), "remedy", file,
                   "--only", "damping", "--weight", "noise_gain=2")
 
+    def test_tune(self):
+        file = case("over-compensated")
+        self.same(limcycle.tune(limcycle.load(file), {"kp": (20.0, 40.0)}, minimise="settling", at_most={"ms": 3.0},
+                                margin=0.02, samples=4, threads=1), "tune", file, "--vary", "kp=20:40", "--minimise", "settling",
+                  "--at-most", "ms=3", "--margin", "2", "--samples", "4")
+
     def test_identify(self):
         file = case("records/servo")
         self.same(limcycle.identify(limcycle.load(file)), "identify", file)

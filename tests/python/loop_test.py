@@ -95,6 +95,10 @@ class Wrong(unittest.TestCase):
         self.refused(lambda: limcycle.predict(loop, progress=3), key="progress")
         self.refused(lambda: limcycle.remedy(loop, "gain-kk"), key="only", value="gain-kk")
         self.refused(lambda: limcycle.remedy(loop, weights={"noise": 1.0}), key="weights", value="noise")
+        self.refused(lambda: limcycle.tune(loop, {"kq": (1.0, 2.0)}), key="vary", value="kq")
+        self.refused(lambda: limcycle.tune(loop, {"kp": 1.0}), key="vary['kp']")
+        self.refused(lambda: limcycle.tune(loop, {"kp": (1.0, 2.0)}, minimise="mz"), key="minimise", value="mz")
+        self.refused(lambda: limcycle.tune(loop, {"kp": (1.0, 2.0)}, at_most={"ms": 0.0}), key="at_most['ms']")
 
     def test_numbers_of_numpy_are_numbers(self):
         loop = servo()

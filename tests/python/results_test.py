@@ -174,6 +174,16 @@ class Followers(unittest.TestCase):
         with self.assertRaisesRegex(limcycle.NoAnswer, "gain-kd: this remedy was not tried"):
             result.apply("gain-kd")
 
+    def test_a_loop_is_tuned(self):
+        result = limcycle.tune(limcycle.load(case("over-compensated")), {"kp": (20.0, 40.0)}, samples=4)
+        tuned = result.tuned()
+        self.assertEqual(tuned["loop.controller.kp"], result.numbers[0].value)
+        self.assertEqual(tuned["loop.controller.kp"], result.points[result.best].values[0])
+        nothing = limcycle.tune(limcycle.load(case("pid-lugre")), {"ki": (2.0, 8.0)}, samples=2)
+        self.assertIsNone(nothing.best)
+        with self.assertRaisesRegex(limcycle.NoAnswer, "there is nothing to apply"):
+            nothing.tuned()
+
     def test_a_law_is_fitted(self):
         result = limcycle.identify(limcycle.load(case("records/servo")))
         loop = result.fitted()
@@ -207,6 +217,7 @@ class Figures(unittest.TestCase):
         limcycle.sensitivity(loop, local=True).plot(output="period")
         limcycle.dissipativity(limcycle.load(case("df-lugre"))).plot()
         limcycle.remedy(limcycle.load(case("over-compensated")), "gain-kp").plot()
+        limcycle.tune(limcycle.load(case("over-compensated")), {"kp": (20.0, 40.0)}, samples=4).plot()
         ax = limcycle.identify(limcycle.load(case("records/servo"))).plot()
         self.assertEqual(ax.get_title(), "lugre")
         with self.assertRaisesRegex(ValueError, "no counter-example"):

@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/analysis/motion/field/loop_field.hpp"
-#include "limcycle/analysis/study/predict/cycle_search.hpp"
-#include "limcycle/analysis/study/predict/loop_in_time.hpp"
-
 namespace limcycle {
 namespace {
 
@@ -22,16 +18,6 @@ double rounded_away(double value, double other) {
 }
 
 }  // namespace
-
-std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from) {
-  LoopField field(loop);
-  if (field.size() != from.x.size()) return std::nullopt;
-  if (from.modes.size() == loop.elements.size()) return from;
-  LoopState state{from.x, {}};
-  field.start(state.x, 0.0);
-  state.modes = field.modes();
-  return state;
-}
 
 double HuntingSizes::of(Measure measure) const {
   switch (measure) {
@@ -58,29 +44,11 @@ std::optional<Loop> HuntingEdge::loop_at(double value) const {
 
 /// A cycle may be stable where no start of predict() comes upon it.
 Hunts HuntingEdge::from_last_hunting(const Loop& loop, const SearchBox& box) {
-  const Loop time = loop_in_time(loop, 0.0).treated.loop;
-  const auto from = hunting ? carried_to(time, *hunting) : std::nullopt;
-  if (!from) return Hunts::no;
-  const PredictOptions& options = loop_.judging.predict;
-  const Settled settled = settle(time, *from, cycle_search(time, box, options.accuracy, options.stop));
-  switch (settled.outcome) {
-    case Outcome::rest:
-    case Outcome::sliding:
-      return Hunts::no;
-    case Outcome::cycle:
-      if (!settled.shot || settled.shot->cycle.stable != true) return Hunts::undecided;
-      hunting = settled.shot->cycle.start;
-      return Hunts::yes;
-    case Outcome::irregular:
-      return Hunts::yes;
-    case Outcome::divergence:
-      return Hunts::diverges;
-    case Outcome::family:
-      return Hunts::neutral;
-    case Outcome::undecided:
-      break;
-  }
-  return Hunts::undecided;
+  const auto settled = hunting ? settled_from(loop, *hunting, box, loop_.judging.predict) : std::nullopt;
+  if (!settled) return Hunts::no;
+  const Hunts answer = hunts_of(*settled);
+  if (answer == Hunts::yes && settled->outcome == Outcome::cycle) hunting = settled->shot->cycle.start;
+  return answer;
 }
 
 Hunts HuntingEdge::judged(double value, Care care) {

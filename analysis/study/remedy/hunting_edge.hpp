@@ -64,7 +64,4 @@ class HuntingEdge {
 inline constexpr double narrow_enough = 1e-3;  ///< relative distance of the two sides of an edge
 inline constexpr int edge_digits = 4;          ///< of the values that are tried at an edge
 
-/// The state for a loop with as many states but perhaps more elements, whose modes then begin anew; empty for others.
-std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from);
-
 }  // namespace limcycle

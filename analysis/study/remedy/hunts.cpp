@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "limcycle/analysis/motion/field/loop_field.hpp"
+#include "limcycle/analysis/study/predict/cycle_search.hpp"
+#include "limcycle/analysis/study/predict/loop_in_time.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -49,6 +53,17 @@ void judge(HuntsAnswer& answer, const std::vector<std::string>& may_diverge) {
   decide(Hunts::no, "every start comes to rest or slides steadily");
 }
 
+/// The state for a loop with as many states but perhaps more elements, whose modes then begin anew; empty for others.
+std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from) {
+  LoopField field(loop);
+  if (field.size() != from.x.size()) return std::nullopt;
+  if (from.modes.size() == loop.elements.size()) return from;
+  LoopState state{from.x, {}};
+  field.start(state.x, 0.0);
+  state.modes = field.modes();
+  return state;
+}
+
 }  // namespace
 
 std::string_view to_string(Hunts hunts) {
@@ -78,6 +93,38 @@ HuntsAnswer hunts(const Loop& loop, const Judging& judging) try {
   return answer;
 } catch (const std::invalid_argument& refused) {
   return {.hunts = Hunts::undecided, .why = std::string("could not be simulated: ") + refused.what()};
+}
+
+Hunts hunts_of(const Settled& motion) {
+  switch (motion.outcome) {
+    case Outcome::rest:
+    case Outcome::sliding:
+      return Hunts::no;
+    case Outcome::cycle:
+      return motion.shot && motion.shot->cycle.stable == true ? Hunts::yes : Hunts::undecided;
+    case Outcome::irregular:
+      return Hunts::yes;
+    case Outcome::divergence:
+      return Hunts::diverges;
+    case Outcome::family:
+      return Hunts::neutral;
+    case Outcome::undecided:
+      break;
+  }
+  return Hunts::undecided;
+}
+
+std::optional<Settled> settled_from(const Loop& loop, const LoopState& motion, const SearchBox& box,
+                                    const PredictOptions& options, long steps) {
+  const Loop time = loop_in_time(loop, 0.0).treated.loop;
+  const auto from = carried_to(time, motion);
+  if (!from) return std::nullopt;
+  SettleOptions settings = cycle_search(time, box, options.accuracy, options.stop);
+  if (steps > 0) {
+    settings.max_steps = steps;
+    settings.fewest_turns = 0;
+  }
+  return settle(time, *from, settings);
 }
 
 Judging judging_of_variants(const PredictOptions& predict, const PredictReport& found) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,16 @@ struct Judging {
 /// Asks predict() in time: from its starts, between them, from the stops of the body. Cost: that of predict() without
 /// methods; status interrupted is undecided.
 HuntsAnswer hunts(const Loop& loop, const Judging& judging);
+
+/// What one motion shows: yes only for a stable cycle or a permanent motion without a period, no for one that comes to
+/// rest or slides steadily.
+Hunts hunts_of(const Settled& motion);
+
+/// Where the loop goes from a state on the hunting motion of another one with as many states: a cycle may be stable
+/// where no start of predict() comes upon it. Elements that only this one has begin anew. `steps`: as of SettleOptions;
+/// 0: its own. Empty if the states do not fit.
+std::optional<Settled> settled_from(const Loop& loop, const LoopState& motion, const SearchBox& box,
+                                    const PredictOptions& options, long steps = 0);
 
 /// For variants of a loop that was judged with `predict`: the same starts, and those may diverge that did.
 Judging judging_of_variants(const PredictOptions& predict, const PredictReport& found);

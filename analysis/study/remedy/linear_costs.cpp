@@ -185,13 +185,15 @@ std::optional<OpenLoop> open_loop(const LoopParts& parts, std::string& why) {
 
 LinearCosts linear_costs(const LoopParts& parts, double step) {
   LinearCosts costs;
-  std::string why;
-  const auto open = open_loop(parts, why);
+  const auto open = open_loop(parts, costs.why_not);
   const auto loop = open ? linear_loop(parts) : std::nullopt;
-  if (!loop) return costs;
+  if (!loop) {
+    if (open) costs.why_not = parts.friction ? "the loop without its limits is not valid" : "there is no friction";
+    return costs;
+  }
   costs.stable = is_stable(*loop);
   if (!costs.stable) return costs;
-  add_step(*loop, step, costs);
+  if (step != 0.0) add_step(*loop, step, costs);
   const auto w = frequencies(*loop);
   if (!w.empty()) add_margins(*open, w, costs);
   return costs;

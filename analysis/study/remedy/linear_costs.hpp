@@ -26,6 +26,7 @@ std::optional<OpenLoop> open_loop(const LoopParts& parts, std::string& why);
 /// Robustness of the linear loop, as it is without friction.
 struct LinearCosts {
   bool stable = false;  ///< all poles of the closed loop have negative real parts; else none of the others is given
+  std::string why_not;  ///< reason why there is no such loop, a clause; empty: there is
   std::optional<double> phase_margin;      ///< rad, the least |arg L + pi| over all w with |L(jw)| = 1
   std::optional<double> delay_margin;      ///< s, the least additional dead time at which the loop is unstable
   std::optional<double> peak_sensitivity;  ///< Ms, the largest |1/(1 + L(jw))|
@@ -35,8 +36,8 @@ struct LinearCosts {
 };
 
 /// On a grid of 200 frequencies a decade over the poles of the loop, crossings by bisection and peaks by golden section
-/// to 1e-9; the step by the matrix exponential. `step`: its height, which does not matter. Cost: some thousand
-/// evaluations of L, O(n^3) each.
+/// to 1e-9; the step by the matrix exponential. `step`: its height, which does not matter; 0: no step, whose costs are
+/// left empty. Cost: some thousand evaluations of L, O(n^3) each.
 LinearCosts linear_costs(const LoopParts& parts, double step);
 
 /// Settling and overshoot of a run of y that begins `step` away from zero at t[0] and ends at its last value: the last

@@ -8,11 +8,8 @@
 #include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
-#include "limcycle/analysis/study/remedy/linear_costs.hpp"
 #include "limcycle/analysis/study/remedy/remedy_order.hpp"
 #include "limcycle/analysis/study/remedy/remedy_search.hpp"
-#include "limcycle/analysis/study/remedy/rest_range.hpp"
-#include "limcycle/models/diagram/assemble.hpp"
 
 namespace limcycle {
 namespace {
@@ -59,7 +56,7 @@ class RemedyStudy {
     measure_motion(loop, answer.found);
     if (!answer.found.outcomes.empty()) report_.before = std::move(answer.found.outcomes.front().trace);
     report_.step = start_displacements(output_per_input(loop), answer.found.search, 1).front();
-    report_.now = costs_of(parts_, report_.before, answer.hunts == Hunts::no);
+    report_.now = loop_costs(parts_, report_.step, report_.before, answer.hunts == Hunts::no);
     loop_.cycles = std::move(answer.found.cycles);
   }
 
@@ -110,31 +107,10 @@ class RemedyStudy {
     if (!candidate.why_not.empty()) return {candidate, std::nullopt, 0.0, {}, {}, candidate.why_not};
     Remedy remedy = RemedySearch(candidate, loop_, progress).run();
     if (remedy.ends != true || stopped()) return remedy;
-    if (const auto parts = candidate.parts(remedy.value)) remedy.costs = costs_of(*parts, remedy.after, true);
+    if (const auto parts = candidate.parts(remedy.value))
+      remedy.costs = loop_costs(*parts, report_.step, remedy.after, true);
     remedy.costs.robust_share = robust_share(remedy);
     return remedy;
-  }
-
-  /// `response`: of the loop, to the step.
-  RemedyCosts costs_of(const LoopParts& parts, const Trace& response, bool rests) const {
-    RemedyCosts costs;
-    const LinearCosts linear = linear_costs(parts, report_.step);
-    costs.linear_settling_time = linear.settling_time;
-    costs.linear_overshoot = linear.overshoot;
-    costs.phase_margin = linear.phase_margin;
-    costs.delay_margin = linear.delay_margin;
-    costs.peak_sensitivity = linear.peak_sensitivity;
-    costs.noise_gain = linear.noise_gain;
-    if (!uses_error(parts)) return costs;
-    if (!parts.diagram)
-      if (const auto range = rest_range(build_loop(parts)))
-        costs.steady_state_error = Extent{parts.reference - range->high, parts.reference - range->low};
-    if (rests && !response.y.empty()) {
-      const StepNumbers real = step_numbers(response.t, response.y, response.y.front());
-      costs.settling_time = real.settling_time;
-      costs.overshoot = real.overshoot;
-    }
-    return costs;
   }
 
   /// Empty if more than a tenth of the samples were not decided.

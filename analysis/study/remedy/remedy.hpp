@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "limcycle/analysis/energy/loop/holding_forces.hpp"
 #include "limcycle/analysis/study/remedy/cause.hpp"
+#include "limcycle/analysis/study/remedy/loop_costs.hpp"
 
 namespace limcycle {
 
@@ -27,16 +27,6 @@ struct RemedyCandidate {
   std::function<std::optional<LoopParts>(double)> parts = {};  ///< the loop with that value; empty: not valid
 
   bool is_absent() const { return own == 0.0 || std::isinf(own); }
-};
-
-/// What a loop costs its user. Empty: not known.
-struct RemedyCosts {
-  /// r - y over all states in which the loop stands still: see rest_range(). Ends may be infinite.
-  std::optional<Extent> steady_state_error = {};
-  std::optional<double> settling_time = {}, overshoot = {};  ///< s and share of the step, of the loop with its friction
-  std::optional<double> linear_settling_time = {}, linear_overshoot = {};  ///< of the loop without friction
-  std::optional<double> phase_margin = {}, delay_margin = {}, peak_sensitivity = {}, noise_gain = {};  ///< LinearCosts
-  std::optional<double> robust_share = {};  ///< of the samples of a spread, those in which the loop does not hunt
 };
 
 /// The costs of RemedyCosts by which remedies are compared, the error as its largest size.

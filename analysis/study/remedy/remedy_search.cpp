@@ -6,7 +6,6 @@
 
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/continuation/margin_side.hpp"
-#include "limcycle/analysis/study/predict/cycle_search.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
 
 namespace limcycle {
@@ -82,12 +81,11 @@ std::optional<Bracket> RemedySearch::followed_from_nothing(bool up) {
     if (!exact || edge_.stopped()) return std::nullopt;
     std::vector<Cycle> cycles;
     const PredictOptions& options = loop_.judging.predict;
-    const SettleOptions settling = cycle_search(*exact, *options.search, options.accuracy, options.stop);
     for (const Cycle& one : loop_.cycles) {
-      const auto from = one.stable == true ? carried_to(*exact, one.start) : std::nullopt;
-      if (!from) continue;
-      auto settled = settle(*exact, *from, settling);
-      if (settled.shot && settled.shot->cycle.stable == true) cycles.push_back(std::move(settled.shot->cycle));
+      if (one.stable != true) continue;
+      auto settled = settled_from(*exact, one.start, *options.search, options);
+      if (settled && settled->shot && settled->shot->cycle.stable == true)
+        cycles.push_back(std::move(settled->shot->cycle));
     }
     if (!cycles.empty()) {
       edge_.hunting = cycles.front().start;

@@ -35,3 +35,24 @@ TEST_CASE("numbers of a case: an unknown path is refused with the nearest one") 
                     Contains("--parameter loop.controller.kdd") && Contains("did you mean loop.controller.kd?"));
   CHECK_THROWS_AS(number_at(from, "--parameter", "loop.plant.kind"), InputError);
 }
+
+TEST_CASE("numbers of a case: a name that one path alone ends with stands for it, others are refused") {
+  const Case servo = load_case(LIMCYCLE_SOURCE_DIR "/cases/pid-lugre.toml");
+  for (const auto* name : {"kp", "controller.kp", "loop.controller.kp"})
+    CHECK(number_named(servo, "--vary", name).path == "loop.controller.kp");
+  CHECK_THROWS_WITH(number_named(servo, "--vary", "kq"),
+                    Contains("--vary kq: is not a parameter") && Contains("did you mean"));
+  CHECK_THROWS_WITH(number_named(servo, "--vary", "p"), Contains("is not a parameter"));
+  CHECK_THROWS_WITH(number_named(servo, "--vary", "loop.controller.kq"), Contains("did you mean loop.controller.kp?"));
+  const Case two = load_case(
+      LIMCYCLE_SOURCE_DIR "/cases/pid-lugre.toml",
+      {"loop.error={kind=\"dead-zone\", half_width=0.1}", "loop.element={kind=\"dead-zone\", half_width=0.1}"});
+  CHECK_THROWS_WITH(number_named(two, "--vary", "half_width"), Contains("is the name of several numbers; write loop."));
+}
+
+TEST_CASE("numbers of a case: a value is written in the fewest digits that read back as the same") {
+  CHECK(override_of("a.b", 0.1) == "a.b=0.1");
+  CHECK(override_of("a.b", 8.0) == "a.b=8.0");
+  CHECK(override_of("a.b", -1.0 / 3.0) == "a.b=-0.3333333333333333");
+  CHECK(override_of("a.b", 1e-7) == "a.b=1e-07");
+}

@@ -14,7 +14,7 @@ namespace {
 const std::vector<std::string> commands{"new",    "check",      "laws",     "predict",       "simulate", "df",
                                         "report", "margin",     "remedy",   "continue",      "map",      "sensitivity",
                                         "status", "precision",  "adequate", "dissipativity", "claims",   "experiment",
-                                        "manual", "completion", "identify", "synthesize"};
+                                        "manual", "completion", "identify", "synthesize",    "tune"};
 
 std::string page(const std::string& name) {
   const auto ran = run(name.empty() ? std::vector<std::string>{"manual"} : std::vector<std::string>{"manual", name});

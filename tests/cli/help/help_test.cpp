@@ -62,9 +62,9 @@ int shell(const Scratch& scratch, const std::string& line) {
 TEST_CASE("help: every command is listed, and has help in 80 columns with examples") {
   const auto commands = listed_commands();
   for (const auto* name :
-       {"predict",     "df",        "simulate", "continue", "margin",     "remedy",        "map",
-        "sensitivity", "precision", "adequate", "identify", "synthesize", "dissipativity", "claims",
-        "experiment",  "status",    "check",    "laws",     "new",        "manual",        "completion"})
+       {"predict",     "df",        "simulate", "continue", "margin",     "remedy",        "tune",   "map",
+        "sensitivity", "precision", "adequate", "identify", "synthesize", "dissipativity", "claims", "experiment",
+        "status",      "check",     "laws",     "new",      "manual",     "completion"})
     CHECK(std::ranges::find(commands, name) != commands.end());
   for (const auto& line : lines_of(run({"--help"}).out)) CHECK(limcycle::display_width(line) <= 80);
   for (const auto& name : commands) {
