@@ -163,6 +163,7 @@ std::optional<LawFit::Noisy> LawFit::fit_with_noise(Shooting shooting, const std
     result.fit = round == 0 && !from
                      ? fit_from_starts(misfit, stop_)
                      : fit_within(misfit, result.fit, felt_coordinates(misfit, result.fit.u), 60, stop_);
+    if (misfit.start_states() > 0 && round == 0) result.fit = begun_off_levels(misfit, result.fit, stop_);
     result_.evaluations += misfit.evaluations();
     if (!std::isfinite(result.fit.sum_of_squares) || stopped() || !misfit.at(result.fit.u, entries, nullptr)) break;
     const auto noise = noise_left(misfit, entries);

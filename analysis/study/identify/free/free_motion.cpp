@@ -221,6 +221,10 @@ std::optional<std::string> why_no_free_rig(const PlantModel& plant) {
 
 std::vector<PreparedRecord> prepare_free(const FrictionRecord& record, const FreeRig& rig) {
   check_in_time(record, record.t.size());
+  constexpr std::size_t most_rows = 100'000;
+  if (record.t.size() > most_rows)
+    refuse_record(record, "has " + std::to_string(record.t.size()) +
+                              " rows; a free motion, which is simulated many times, may have 100000: keep every n-th");
   if (record.kind == RecordKind::free && record.F.empty()) refuse_record(record, "needs a force column");
   const Reading reading = reading_off(record);
   std::size_t skipped = 0;

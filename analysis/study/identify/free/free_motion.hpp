@@ -50,7 +50,8 @@ struct FreeMotion {
 /// Positions and velocities that were measured (one prepared record each) with their motion. States are those of
 /// least-squares parabolas over neighbouring rows, as many as an eighth of a swing has, 400 at most. The friction
 /// force, whose size the search for a law begins with, follows from them and the equation of motion. Throws
-/// std::invalid_argument with a sentence: see check_in_time(); a body that does not move. Cost: linear in the rows.
+/// std::invalid_argument with a sentence: see check_in_time(); more than 100000 rows; a body that does not move. Cost:
+/// linear in the rows.
 std::vector<PreparedRecord> prepare_free(const FrictionRecord& record, const FreeRig& rig);
 
 }  // namespace limcycle
