@@ -200,12 +200,14 @@ const fitted_keys = [
 ];
 
 const record = table('A file of measured friction', {
-  kind: choice(['steady-velocity', 'lag', 'pre-sliding', 'break-away'], 'which experiment'),
+  kind: choice(
+    ['steady-velocity', 'lag', 'pre-sliding', 'break-away', 'free', 'free-decay'], 'which experiment',
+  ),
   file: text('relative to the folder of the case'),
   time: column('name or number of the column of times; default "time"'),
   position: column('of positions; default "position"'),
   velocity: column('of velocities; default "velocity"'),
-  force: column('of friction forces; default "force"'),
+  force: column('of friction forces, of kind free of applied ones; default "force"'),
   scale: table('factors of the columns', {
     time: number('of the times', positive),
     position: number('of the positions', { not: { const: 0 } }),
@@ -214,6 +216,7 @@ const record = table('A file of measured friction', {
   }),
   skip: number('from the first row, without comparison, s', { minimum: 0, default: 0 }),
   force_limit: number('of the force sensor: rows at it or beyond are not compared, N', positive),
+  hold: choice(['linear', 'zero-order'], 'how the applied force of kind free goes on from row to row', { default: 'linear' }),
 }, ['kind', 'file']);
 
 export const sections = {

@@ -47,6 +47,7 @@ struct RecordFile {
   std::array<double, 4> scale{1.0, 1.0, 1.0, 1.0};    ///< factors of the columns
   double skip = 0.0;                                  ///< s
   double force_limit = infinite;                      ///< N
+  bool holds_force = false;                           ///< the applied force keeps its value from row to row
 };
 
 /// [identify]: laws to be fitted to records.
@@ -108,6 +109,10 @@ const Element& df_element(const Case& from);
 
 /// The laws and records of [identify], the files read now. Throws InputError for a missing section or a bad file.
 IdentifyRequest identify_request(const Case& from);
+
+/// The plant that moves in free motions, and the load. Throws InputError if there is none, or it is not fitted for
+/// them.
+FreeRig rig_of(const Case& from);
 
 /// The case's own claims, ready to be tested.
 std::vector<Claim> claims_of(const Case& from);

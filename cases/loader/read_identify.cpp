@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t most_records = 100;
 constexpr std::string_view quantities[] = {"time", "position", "velocity", "force"};
+constexpr std::string_view force_holds[] = {"linear", "zero-order"};
 
 Element read_law(const Place& place) {
   const std::string name = read_string(place);
@@ -48,16 +49,6 @@ std::string beside(const std::string& case_file, const std::string& file) {
   return (std::filesystem::path(case_file).parent_path() / file).string();
 }
 
-RecordKind read_record_kind(const Place& place) {
-  const std::string name = read_string(place);
-  if (name == "free" || name == "free-decay")
-    throw place.error(
-        "is not fitted yet: the motion of the whole rig would have to be simulated. Measure the friction force along "
-        "the motion (force less mass times acceleration) and use one of " +
-        joined(kind_names()));
-  return static_cast<RecordKind>(read_choice(place, record_kinds));
-}
-
 CsvColumn read_key(const Place& place) {
   if (place.value.as<std::string>() != nullptr) return read_string(place);
   if (place.value.as<std::int64_t>() == nullptr) throw place.wrong_type("the name of a column, or its number from 1");
@@ -65,9 +56,10 @@ CsvColumn read_key(const Place& place) {
 }
 
 RecordFile read_record(const Section& section) {
-  section.allow({"kind", "file", "time", "position", "velocity", "force", "scale", "skip", "force_limit"});
+  section.allow({"kind", "file", "time", "position", "velocity", "force", "scale", "skip", "force_limit", "hold"});
   RecordFile record;
-  record.kind = read_record_kind(section.at("kind", "which experiment: " + joined(kind_names())));
+  const Place kind = section.at("kind", "which experiment: " + joined(kind_names()));
+  record.kind = static_cast<RecordKind>(read_choice(kind, record_kinds));
   record.path = beside(section.document().file, read_string(section.at("file", "with the columns of the record")));
   for (std::size_t k = 0; k < std::size(quantities); ++k)
     if (const auto key = section.find(quantities[k])) record.columns[k] = read_key(*key);
@@ -81,7 +73,17 @@ RecordFile read_record(const Section& section) {
       }
   }
   if (const auto skip = section.find("skip")) record.skip = read_number(*skip, not_negative, "s");
-  if (const auto limit = section.find("force_limit")) record.force_limit = read_number(*limit, positive, "N");
+  if (const auto limit = section.find("force_limit")) {
+    if (is_free(record.kind))
+      throw limit->error("is a limit of a friction force, which a free motion does not measure");
+    record.force_limit = read_number(*limit, positive, "N");
+  }
+  if (const auto force = section.find("force"); force && record.kind == RecordKind::free_decay)
+    throw force->error("is not read for free-decay, which moves without a force; the kind for a driven rig is free");
+  if (const auto hold = section.find("hold")) {
+    if (record.kind != RecordKind::free) throw hold->error("says how the applied force of a free record goes on");
+    record.holds_force = read_choice(*hold, force_holds) == 1;
+  }
   return record;
 }
 
@@ -153,23 +155,38 @@ namespace {
 
 constexpr std::size_t most_rows = 2'000'000;
 
+/// True for a column that a record of this kind cannot do without.
+bool needs(RecordKind kind, std::size_t quantity) {
+  switch (quantity) {
+    case 0:
+      return kind != RecordKind::steady_velocity;
+    case 2:
+      return kind == RecordKind::steady_velocity;
+    case 3:
+      return kind != RecordKind::free_decay;
+    default:
+      return false;
+  }
+}
+
 /// `before`: rows of other records.
 FrictionRecord read_record_file(const RecordFile& from, std::size_t before) {
-  const bool steady = from.kind == RecordKind::steady_velocity;
   CsvReader csv(from.path);
   std::vector<CsvColumn> chosen;
   std::vector<std::size_t> quantity;  // of each column chosen
   for (std::size_t k = 0; k < from.columns.size(); ++k) {
     const CsvColumn column = from.columns[k].value_or(std::string(case_file::quantities[k]));
-    const bool needed = from.columns[k] || k == 3 || (k == 2 && steady) || (k == 0 && !steady);
-    if (!needed && !csv.has(column)) continue;
+    const bool read = k != 3 || from.kind != RecordKind::free_decay;
+    const bool needed = from.columns[k] || needs(from.kind, k);
+    if (!read || (!needed && !csv.has(column))) continue;
     chosen.push_back(column);
     quantity.push_back(k);
   }
   csv.choose(chosen);
   std::array<std::vector<double>, 4> columns;
+  const auto& counted = columns[quantity.back()];
   for (std::vector<double> row; csv.next(row);) {
-    if (before + columns[3].size() == most_rows)
+    if (before + counted.size() == most_rows)
       throw csv.error("is beyond the 2 million rows that all records may have: keep every n-th");
     for (std::size_t i = 0; i < row.size(); ++i) {
       const double value = row[i] * from.scale[quantity[i]];
@@ -177,7 +194,7 @@ FrictionRecord read_record_file(const RecordFile& from, std::size_t before) {
       columns[quantity[i]].push_back(value);
     }
   }
-  if (columns[3].empty()) throw csv.error("is the last line, and no row of numbers was met");
+  if (counted.empty()) throw csv.error("is the last line, and no row of numbers was met");
   return {from.kind,
           from.path,
           std::move(columns[0]),
@@ -185,10 +202,27 @@ FrictionRecord read_record_file(const RecordFile& from, std::size_t before) {
           std::move(columns[2]),
           std::move(columns[3]),
           from.skip,
-          from.force_limit};
+          from.force_limit,
+          from.holds_force};
 }
 
 }  // namespace
+
+FreeRig rig_of(const Case& from) {
+  const auto refused = [&](const std::string& key, const std::string& rule) {
+    return InputError(
+        {.file = from.file, .line = 0, .override = {}, .key = key, .value = {}, .rule = rule, .suggestion = {}});
+  };
+  if (!from.loop)
+    throw refused("loop.plant",
+                  "is required by records of kind free and free-decay: the plant that moves, with its "
+                  "numbers");
+  if (from.loop->diagram)
+    throw refused("diagram", "has no single plant; records of kind free and free-decay need [loop.plant]");
+  FreeRig rig{model_of(from.loop->plant), from.loop->load};
+  if (const auto why = why_no_free_rig(rig.plant)) throw refused("loop.plant", *why);
+  return rig;
+}
 
 IdentifyRequest identify_request(const Case& from) {
   if (!from.identify)
@@ -203,7 +237,8 @@ IdentifyRequest identify_request(const Case& from) {
   std::size_t rows = 0;
   for (const auto& record : from.identify->records) {
     request.records.push_back(read_record_file(record, rows));
-    rows += request.records.back().F.size();
+    rows += std::max(request.records.back().t.size(), request.records.back().F.size());
+    if (is_free(record.kind) && !request.rig) request.rig = rig_of(from);
   }
   return request;
 }

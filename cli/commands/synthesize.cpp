@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "limcycle/analysis/study/identify/synthesize.hpp"
+#include "limcycle/analysis/study/identify/free/synthesize_free.hpp"
 #include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/message.hpp"
@@ -18,6 +18,7 @@ namespace {
 
 struct SynthesizeFlags : CommonFlags {
   RigFaults faults;
+  bool free = false;   ///< --free
   bool force = false;  ///< --force
 };
 
@@ -35,10 +36,13 @@ const Element& law_to_synthesize(const Case& from) {
 }
 
 /// The files that are written into the folder: records in the order of their kinds, then the case.
-std::vector<std::string> files_in(const std::string& folder) {
+std::vector<std::string> files_in(const SynthesizeFlags& flags) {
+  const std::filesystem::path folder = flags.output;
   std::vector<std::string> files;
-  for (const auto kind : record_kinds) files.push_back((std::filesystem::path(folder) / kind).string() + ".csv");
-  files.push_back((std::filesystem::path(folder) / "identify.toml").string());
+  for (std::size_t i = 0; i < std::size(record_kinds); ++i)
+    if (flags.free || !is_free(static_cast<RecordKind>(i)))
+      files.push_back((folder / record_kinds[i]).string() + ".csv");
+  files.push_back((folder / "identify.toml").string());
   return files;
 }
 
@@ -47,16 +51,28 @@ void check_folder(const SynthesizeFlags& flags) {
   std::error_code failed;
   if (std::filesystem::exists(flags.output, failed) && !std::filesystem::is_directory(flags.output, failed))
     throw refusal("--output " + flags.output, "is no folder");
-  for (const auto& file : files_in(flags.output))
+  for (const auto& file : files_in(flags))
     if (!flags.force && std::filesystem::exists(file, failed))
       throw refusal("--output " + flags.output, "holds " + file + " already", "--force replaces it");
 }
 
-std::vector<FrictionRecord> synthesized(const SynthesizeFlags& flags, const Element& law) {
+/// Free motions of the plant of the case.
+std::vector<FrictionRecord> free_motions(const SynthesizeFlags& flags, const Case& from, const Element& law) {
+  const FreeRig rig = rig_of(from);
+  try {
+    return synthesize_free(law, rig, flags.faults, flags.seed);
+  } catch (const std::invalid_argument& reason) {
+    throw refusal("--free", reason.what());
+  }
+}
+
+std::vector<FrictionRecord> synthesized(const SynthesizeFlags& flags, const Case& from, const Element& law) {
   Progress progress(flags.quiet, flags.verbose);
   const Asking asking = asking_of(flags, progress);
   std::vector<FrictionRecord> records = synthesize(law, flags.faults, flags.seed, asking.stop);
   if (records.empty()) throw NoAnswer("stopped before the records were complete, so that none is written");
+  if (flags.free)
+    for (auto& one : free_motions(flags, from, law)) records.push_back(std::move(one));
   return records;
 }
 
@@ -65,13 +81,13 @@ int run(SynthesizeFlags flags) {
   if (from.identify) throw refusal("CASE", "has an [identify] section already");
   const Element& law = law_to_synthesize(from);
   check_folder(flags);
-  const auto records = synthesized(flags, law);
-  const auto files = files_in(flags.output);
+  const auto records = synthesized(flags, from, law);
+  const auto files = files_in(flags);
   SynthesizeReport report{law, flags.faults, {}, files.back()};
   std::vector<std::string> names;
   for (std::size_t i = 0; i < records.size(); ++i) {
     names.push_back(records[i].name + ".csv");
-    report.records.push_back({records[i].kind, files[i], records[i].F.size()});
+    report.records.push_back({records[i].kind, files[i], std::max(records[i].t.size(), records[i].F.size())});
   }
   const std::string text = from.text + (from.text.ends_with('\n') ? "\n" : "\n\n") +
                            identify_section(std::string(law.kind()), records, names);
@@ -105,6 +121,7 @@ void add_synthesize(CLI::App& program, Action& action) {
   share("--ripple", flags->faults.ripple, "Ripple of the force over the position, as such a share", 1.0);
   share("--jitter", flags->faults.jitter, "Jitter of the sampling, as a share of the sample time", 0.2);
   share("--quantum", flags->faults.quantum, "Encoder step, m; then no velocity is recorded", 1.0);
+  command->add_flag("--free", flags->free, "Also the free motion of the case's plant: under a force, and let go");
   command->add_flag("--force", flags->force, "Replace the files in FOLDER that it writes");
 }
 

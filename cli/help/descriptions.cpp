@@ -145,12 +145,14 @@ std::vector<Description> enough() {
        trust_group,
        "Fits the friction laws of [identify] to measured records: force against steady velocity, sliding with a "
        "varying "
-       "velocity, small motions before sliding, break-away. It prints each number with its 95 % interval, names those "
+       "velocity, small motions before sliding, break-away, or the free motion of the case's plant. It prints each "
+       "number with its 95 % interval, names those "
        "that the records do not determine, and chooses the simplest law that the records support. -o FILE.toml writes "
        "the case with the fitted law, for `predict`, `sensitivity` and `report`; -o FILE.svg draws measured and fitted "
        "forces.",
        {{"limcycle identify cases/records/servo.toml -o fitted.toml",
          "fit three laws, and write the case with the best"},
+        {"limcycle identify cases/records/carriage.toml", "the friction force was not measured, only the motion"},
         {"limcycle identify cases/records/servo.toml -o fit.svg", "measured and fitted forces as a picture"}}},
       {"synthesize",
        trust_group,
@@ -158,7 +160,8 @@ std::vector<Description> enough() {
        "measurement, and a case that `identify` fits to them. As the true numbers are known, it shows what such "
        "records "
        "can determine.",
-       {{"limcycle synthesize cases/pid-lugre.toml --noise 0.02 --seed 3 -o rig", "2 % noise of the force"}}},
+       {{"limcycle synthesize cases/pid-lugre.toml --noise 0.02 --seed 3 -o rig", "2 % noise of the force"},
+        {"limcycle synthesize cases/pid-lugre.toml --free -o rig", "free motions of the mass too"}}},
       {"precision",
        trust_group,
        "Measures the accuracy and cost of every method on this case, against a verified reference. With --stability it "

@@ -163,7 +163,7 @@ std::string record_csv(const FrictionRecord& record) {
   for (const auto& [name, values] : columns)
     if (!values->empty()) out += (out.empty() ? "" : ",") + std::string(name);
   out += "\n";
-  for (std::size_t i = 0; i < record.F.size(); ++i) {
+  for (std::size_t i = 0; i < std::max(record.t.size(), record.F.size()); ++i) {
     bool first = true;
     for (const auto& [name, values] : columns) {
       if (values->empty()) continue;

@@ -17,8 +17,13 @@ std::string identify_json(const Provenance& provenance, const IdentifyReport& re
 std::string identify_csv(const IdentifyReport& report);
 
 /// Measured and fitted forces of the chosen law (else of the first), one panel a record: over velocity, position or
-/// time. Readable on light and dark backgrounds.
+/// time; of free motions positions and velocities over time. Readable on light and dark backgrounds.
 std::string identify_picture(const IdentifyReport& report);
+
+/// "free, position"; only the kind where the force was measured.
+std::string record_label(const PreparedRecord& record);
+/// What shares are shares of: "the largest force", "the largest displacement or speed".
+std::string largest_measured(const IdentifyReport& report);
 
 /// The law to show: the chosen one, else the first with records; null if there is none.
 const IdentifiedLaw* shown_law(const IdentifyReport& report);

@@ -54,6 +54,7 @@ Json law_json(const IdentifiedLaw& law) {
                        {"white_probability", number(one.whiteness.probability)}});
   return {{"kind", law.law.kind()},
           {"fitted", law.fitted},
+          {"start_states", law.start_states},
           {"bic", number(law.bic)},
           {"held_out", number(law.held_out)},
           {"parameters", parameters},
@@ -79,8 +80,11 @@ std::string identify_json(const Provenance& provenance, const IdentifyReport& re
                               {"kind", to_string(record.kind)},
                               {"rows", record.compared.size()},
                               {"break_aways", record.break_aways.size()},
-                              {"largest_force", number(record.largest_force)},
+                              {"quantity", to_string(record.quantity)},
+                              {"size", number(record.size)},
+                              {"largest_force", record.motion ? Json(nullptr) : number(record.largest_force)},
                               {"notes", record.notes}});
+  top["shooting"] = report.shooting ? Json(to_string(*report.shooting)) : Json(nullptr);
   top["status"] = to_string(report.status);
   return json_document("identify", provenance, json_text(top));
 }

@@ -21,20 +21,24 @@ constexpr std::size_t most_points = 700;
 /// What a panel shows: the force over something.
 struct PanelCurve {
   std::vector<double> x, measured, fitted;
-  std::string over;      ///< "velocity", with its unit
-  bool by_size = false;  ///< x is the logarithm of a speed
+  std::string over;       ///< "velocity", with its unit
+  bool by_size = false;   ///< x is the logarithm of a speed
+  bool from_zero = true;  ///< the axis includes 0
 };
 
 PanelCurve curve_of(const PreparedRecord& record, const RecordFit& fit) {
   PanelCurve curve;
-  for (const auto& row : record.compared) curve.measured.push_back(row.F);
-  curve.fitted = fit.forces;
+  for (const auto& row : record.compared) curve.measured.push_back(row.measured);
+  curve.fitted = fit.fitted;
+  curve.from_zero = record.quantity != MeasuredQuantity::position;
   switch (record.kind) {
     case RecordKind::pre_sliding:
       for (const auto& row : record.compared) curve.x.push_back(row.x);
       curve.over = "position, m";
       break;
     case RecordKind::break_away:
+    case RecordKind::free:
+    case RecordKind::free_decay:
       for (const auto& row : record.compared) curve.x.push_back(row.t);
       curve.over = "time, s";
       break;
@@ -67,6 +71,7 @@ struct RecordFrame {
 RecordFrame frame_of(const PanelCurve& curve, double left, double up) {
   const auto [x_low, x_high] = std::ranges::minmax(curve.x);
   double y_low = 0.0, y_high = 0.0;
+  if (!curve.from_zero) y_low = y_high = curve.measured.front();
   for (const auto* values : {&curve.measured, &curve.fitted}) {
     const auto [low, high] = std::ranges::minmax(*values);
     y_low = std::min(y_low, low);
@@ -82,7 +87,8 @@ std::string panel(const PreparedRecord& record, const RecordFit& fit, double lef
   std::string out =
       fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", left, up,
                   record_width, record_height);
-  out += line_of(left, frame.py(0.0), left + record_width, frame.py(0.0), "zero");
+  if (frame.y_low <= 0.0 && frame.y_high >= 0.0)
+    out += line_of(left, frame.py(0.0), left + record_width, frame.py(0.0), "zero");
   const std::size_t every = curve.x.size() / most_points + 1;
   for (std::size_t i = 0; i < curve.x.size(); i += every)
     out += fmt::format("<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.8\"/>\n", frame.px(curve.x[i]),
@@ -95,9 +101,12 @@ std::string panel(const PreparedRecord& record, const RecordFit& fit, double lef
     d += fmt::format("{}{:.1f},{:.1f}", d.empty() ? "M" : " L", frame.px(curve.x[order[i]]),
                      frame.py(curve.fitted[order[i]]));
   out += fmt::format("<path class=\"law\" d=\"{}\"/>\n", d);
-  out += words_at(left, up - 6.0, "",
-                  fmt::format("{}: error {} N; largest force {} N", to_string(record.kind), with_digits(fit.error, 2),
-                              with_digits(record.largest_force, 3)));
+  const auto unit = unit_of(record.quantity);
+  out +=
+      words_at(left, up - 6.0, "",
+               fmt::format("{}: error {} {}; largest {} {} {}", record_label(record), with_digits(fit.error, 2), unit,
+                           record.quantity == MeasuredQuantity::position ? "displacement" : to_string(record.quantity),
+                           with_digits(record.size, 3), unit));
   const auto edge = [&](double x) { return with_digits(curve.by_size ? std::pow(10.0, x) : x, 2); };
   const auto [low, high] = std::ranges::minmax(curve.x);
   out += words_at(left, up + record_height + 15.0, "", edge(low));
@@ -113,15 +122,17 @@ std::string identify_picture(const IdentifyReport& report) {
   if (law == nullptr || law->records.empty())
     return svg_picture(760, 36, "no law was fitted", identify_style, "No law was fitted", "");
   std::string body =
-      words_at(10.0, 38.0, "", "dots: measured friction force; line: the fitted law, driven by the measured motion");
+      words_at(10.0, 38.0, "",
+               report.shooting ? "dots: measured; line: the fitted law, driven by the measured motion or moving freely"
+                               : "dots: measured friction force; line: the fitted law, driven by the measured motion");
   const std::size_t rows = (law->records.size() + 1) / 2;
   for (std::size_t r = 0; r < law->records.size(); ++r) {
     const std::size_t row = r / 2, column = r % 2;
     body += panel(report.records[r], law->records[r], 10.0 + static_cast<double>(column) * (record_width + gap),
                   head_height + static_cast<double>(row) * (record_height + below));
   }
-  const std::string title = fmt::format("{}: error on rows that it was not fitted to, {} of the largest force",
-                                        law->law.kind(), as_percent(law->held_out));
+  const std::string title = fmt::format("{}: error on rows that it was not fitted to, {} of {}", law->law.kind(),
+                                        as_percent(law->held_out), largest_measured(report));
   return svg_picture(20.0 + 2.0 * record_width + gap, head_height + static_cast<double>(rows) * (record_height + below),
                      title, identify_style, title, body);
 }

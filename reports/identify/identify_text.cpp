@@ -71,11 +71,11 @@ std::string answer_text(const IdentifyReport& report) {
   if (report.laws.size() > 1)
     text = fmt::format(
         "The simplest law that these records support is {}, with {} numbers. Its error on rows that it "
-        "was not fitted to is {} of the largest force.",
-        kind, law->fitted, as_percent(law->held_out));
+        "was not fitted to is {} of {}.",
+        kind, law->fitted, as_percent(law->held_out), largest_measured(report));
   else
-    text = fmt::format("{} fits these records; its error on rows that it was not fitted to is {} of the largest force.",
-                       kind, as_percent(law->held_out));
+    text = fmt::format("{} fits these records; its error on rows that it was not fitted to is {} of {}.", kind,
+                       as_percent(law->held_out), largest_measured(report));
   if (const auto names = not_determined(*law); !names.empty())
     text += fmt::format(" The records do not determine {}.", names_text(names));
   const auto coloured = std::ranges::count_if(
@@ -117,14 +117,17 @@ Table number_table(const IdentifiedLaw& law) {
 }
 
 Table record_table(const IdentifyReport& report, const IdentifiedLaw& law) {
-  Table table{{{"record", "", Align::left}, {"rows", ""}, {"error", "N"}, {"of largest", ""}, {"white", ""}}, {}};
+  const std::string unit = report.shooting ? "" : "N";  // the same for all records, or one for each
+  Table table{{{"record", "", Align::left}, {"rows", ""}, {"error", unit}, {"of largest", ""}, {"white", ""}}, {}};
   for (std::size_t r = 0; r < law.records.size(); ++r) {
     const auto& record = report.records[r];
     const auto& fit = law.records[r];
     const double p = fit.whiteness.probability;
+    const std::string error = with_digits(fit.error, 3);
     table.rows.push_back(
-        {std::string(to_string(record.kind)), std::to_string(record.compared.size()), with_digits(fit.error, 3),
-         as_percent(fit.error / record.largest_force),
+        {record_label(record), std::to_string(record.compared.size()),
+         unit.empty() ? Units::attach(error, std::string(unit_of(record.quantity))) : error,
+         as_percent(fit.error / record.size),
          p < surely_not_white ? fmt::format("no (p = {:.0e})", p) : fmt::format("yes (p = {:.2f})", p)});
   }
   return table;
@@ -155,6 +158,14 @@ std::string details(const IdentifyReport& report, const IdentifiedLaw& law) {
         notes.push_back(fmt::format("{} and {} are correlated by {:.3f}", law.correlated[static_cast<std::size_t>(k)],
                                     law.correlated[static_cast<std::size_t>(i)], law.correlations(i, k)));
   for (const auto& note : law.notes) notes.push_back(note);
+  if (report.shooting == Shooting::single)
+    notes.emplace_back("free motions: each simulated in one run from its first row, whose state is fitted too");
+  if (report.shooting == Shooting::multiple)
+    notes.push_back(
+        fmt::format("free motions: simulated in {} short runs, as no law follows them in one run from the first row; "
+                    "are the numbers "
+                    "of the plant right?",
+                    law.start_states / 2));
   if (law.march_error > 0.1)
     notes.push_back(fmt::format("the integration error is {} of the noise, more than it should be",
                                 with_digits(law.march_error, 2)));
@@ -164,6 +175,23 @@ std::string details(const IdentifyReport& report, const IdentifiedLaw& law) {
 }
 
 }  // namespace
+
+std::string record_label(const PreparedRecord& record) {
+  const std::string kind(to_string(record.kind));
+  return record.motion ? kind + ", " + std::string(to_string(record.quantity)) : kind;
+}
+
+std::string largest_measured(const IdentifyReport& report) {
+  std::vector<std::string> list;
+  for (const auto& [quantity, name] :
+       {std::pair(MeasuredQuantity::force, "force"), std::pair(MeasuredQuantity::position, "displacement"),
+        std::pair(MeasuredQuantity::velocity, "speed")})
+    if (std::ranges::find(report.records, quantity, &PreparedRecord::quantity) != report.records.end())
+      list.emplace_back(name);
+  std::string text = "the largest ";
+  for (std::size_t i = 0; i < list.size(); ++i) text += (i == 0 ? "" : i + 1 == list.size() ? " or " : ", ") + list[i];
+  return text;
+}
 
 const IdentifiedLaw* shown_law(const IdentifyReport& report) {
   if (report.chosen) return &report.laws[*report.chosen];

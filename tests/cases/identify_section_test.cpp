@@ -52,6 +52,25 @@ TEST_CASE("identify section: columns, scales and choices are read") {
       5);
 }
 
+TEST_CASE("identify section: free motions need the plant that moves") {
+  const std::string record =
+      "[identify]\nlaw = \"coulomb\"\n[[identify.record]]\nkind = \"free\"\nhold = \"zero-order\"\n";
+  const auto said = [&](const std::string& loop) {
+    try {
+      rig_of(read_case(loop + record + "file = \"a.csv\"\n", "a.toml"));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("fine");
+  };
+  const std::string friction = "[loop.friction]\nkind = \"coulomb\"\nFc = 1.0\n";
+  CHECK_THAT(said(""), Contains("loop.plant") && Contains("is required by records of kind free"));
+  CHECK_THAT(said("[loop.plant]\nkind = \"two-mass\"\nmotor_mass = 1.0\nload_mass = 1.0\nstiffness = 9.0\n" + friction),
+             Contains("loop.plant") && Contains("has 4 states"));
+  CHECK(said("[loop.plant]\nkind = \"mass\"\nmass = 1.0\n" + friction) == "fine");
+  CHECK(read_case(record + "file = \"a.csv\"\n", "a.toml").identify->records.front().holds_force);
+}
+
 TEST_CASE("identify section: what is wrong is said") {
   CHECK_THAT(identify_message("law = \"lugr\""), Contains("identify.law") && Contains("did you mean lugre?"));
   CHECK_THAT(identify_message("law = \"dahl\""), Contains("cannot be identified yet") && Contains("elasto-plastic"));
@@ -66,8 +85,12 @@ TEST_CASE("identify section: what is wrong is said") {
   CHECK_THAT(identify_message("free = [\"delta\"]\nfixed = {delta = 1.0}"), Contains("is in `free` too"));
   CHECK_THAT(message("[identify]\nlaw = \"lugre\"\n"), Contains("identify.record") && Contains("required"));
   const auto with_record = [](const std::string& keys) { return identify_message("", "[[identify.record]]\n" + keys); };
-  CHECK_THAT(with_record("kind = \"free-decay\"\nfile = \"a.csv\"\n"),
-             Contains("is not fitted yet") && Contains("Measure the friction force"));
+  CHECK_THAT(with_record("kind = \"free-decay\"\nfile = \"a.csv\"\nforce = 2\n"),
+             Contains("record[0].force") && Contains("moves without a force"));
+  CHECK_THAT(with_record("kind = \"free\"\nfile = \"a.csv\"\nforce_limit = 2.0\n"),
+             Contains("record[0].force_limit") && Contains("does not measure"));
+  CHECK_THAT(with_record("kind = \"free\"\nfile = \"a.csv\"\nhold = \"first-order\"\n"), Contains("zero-order"));
+  CHECK_THAT(with_record("kind = \"lag\"\nfile = \"a.csv\"\nhold = \"linear\"\n"), Contains("record[0].hold"));
   CHECK_THAT(with_record("kind = \"leg\"\nfile = \"a.csv\"\n"), Contains("did you mean"));
   CHECK_THAT(with_record("kind = \"lag\"\n"), Contains("file"));
   CHECK_THAT(with_record("kind = \"lag\"\nfile = \"a.csv\"\ntime = 0\n"), Contains("time"));

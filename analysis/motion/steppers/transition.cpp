@@ -1,36 +1,16 @@
 #include "limcycle/analysis/motion/steppers/transition.hpp"
 
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "limcycle/analysis/dense_elimination.hpp"
 #include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/steppers/radau_stages.hpp"
 
 namespace limcycle {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-namespace {
-
-/// Nodes and coefficients of the three-stage Radau IIA method.
-struct RadauStages {
-  std::array<double, 3> c;
-  std::array<std::array<double, 3>, 3> a;
-};
-
-const RadauStages& radau_stages() {
-  static const double s6 = std::sqrt(6.0);
-  static const RadauStages stages{
-      {(4.0 - s6) / 10.0, (4.0 + s6) / 10.0, 1.0},
-      {{{(88.0 - 7.0 * s6) / 360.0, (296.0 - 169.0 * s6) / 1800.0, (-2.0 + 3.0 * s6) / 225.0},
-        {(296.0 + 169.0 * s6) / 1800.0, (88.0 + 7.0 * s6) / 360.0, (-2.0 - 3.0 * s6) / 225.0},
-        {(16.0 - s6) / 36.0, (16.0 + s6) / 36.0, 1.0 / 9.0}}}};
-  return stages;
-}
-
-}  // namespace
 
 Eigen::MatrixXd transition(LoopField& field, const Step& step) { return transition(field, step, 0, {}); }
 

@@ -12,12 +12,13 @@
 
 namespace limcycle {
 
-Misfit::Misfit(const ParameterSpace& space, const std::vector<PreparedRecord>& records, std::vector<double> noise)
+Misfit::Misfit(const ParameterSpace& space, const std::vector<PreparedRecord>& records, std::vector<double> noise,
+               Shooting shooting)
     : space_(space),
       records_(records),
       noise_(std::move(noise)),
-      response_(response_of(space.law(space.values(space.start(std::vector<double>(space.numbers().size(), 0.5)))),
-                            space.places(), space.own_rows())) {
+      response_(response_of(space.kind(), space.places(), space.own_rows())),
+      free_(space.kind(), space.places(), space.own_rows(), shooting) {
   for (const auto& record : records_) {
     first_.push_back(size_);
     size_ += std::ssize(record.compared);
@@ -41,7 +42,46 @@ void Misfit::add_break_aways(const Element& law, Eigen::VectorXd& entries, Eigen
     }
 }
 
-bool Misfit::at(const Eigen::VectorXd& u, Eigen::VectorXd& entries, Eigen::MatrixXd* slopes, double fineness) const {
+bool Misfit::add_forces(const Element& law, std::size_t record, Eigen::VectorXd& entries, Eigen::MatrixXd* by_values,
+                        double fineness) const {
+  const auto& compared = records_[record].compared;
+  if (!response_->run(law, records_[record], forces_, by_values != nullptr ? &by_numbers_ : nullptr, fineness))
+    return false;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    entries(first_[record] + static_cast<Eigen::Index>(i)) = (forces_[i] - compared[i].measured) / noise_[record];
+  if (by_values != nullptr) by_values->middleRows(first_[record], std::ssize(compared)) = by_numbers_ / noise_[record];
+  return true;
+}
+
+/// `first`: of the records of one motion.
+bool Misfit::add_motion(const Element& law, std::size_t first, Eigen::VectorXd& entries, Eigen::MatrixXd* by_values,
+                        double fineness, const Eigen::VectorXd* known) const {
+  std::vector<FreeResponse::Series> series;
+  for (std::size_t r = first; r < records_.size() && records_[r].motion == records_[first].motion; ++r)
+    series.push_back({&records_[r], noise_[r], first_[r]});
+  return free_.run(law, series, known, entries, by_values, fineness);
+}
+
+bool Misfit::at(const Eigen::VectorXd& u, Eigen::VectorXd& entries, Eigen::MatrixXd* slopes, double fineness,
+                const Eigen::VectorXd* known) const {
+  if (start_states() == 0 || fineness != 1.0 || known != nullptr) return evaluate(u, entries, slopes, fineness, known);
+  if (last_.u.size() != u.size() || last_.u != u) {
+    last_.u = u;
+    last_.known = evaluate(u, last_.entries, &last_.slopes, fineness, known);
+  }
+  entries = last_.entries;
+  if (slopes != nullptr) *slopes = last_.slopes;
+  return last_.known;
+}
+
+void Misfit::start_from(const Eigen::VectorXd& u) {
+  Eigen::VectorXd entries;
+  if (start_states() > 0 && at(u, entries, nullptr)) free_.keep_starts();
+  last_ = {};
+}
+
+bool Misfit::evaluate(const Eigen::VectorXd& u, Eigen::VectorXd& entries, Eigen::MatrixXd* slopes, double fineness,
+                      const Eigen::VectorXd* known) const {
   ++evaluations_;
   const Eigen::VectorXd values = space_.values(u);
   if (!space_.inside(values)) return false;
@@ -49,24 +89,28 @@ bool Misfit::at(const Eigen::VectorXd& u, Eigen::VectorXd& entries, Eigen::Matri
   entries.setZero(size_);
   Eigen::MatrixXd by_values;
   if (slopes != nullptr) by_values.setZero(size_, values.size());
+  Eigen::MatrixXd* const wanted = slopes != nullptr ? &by_values : nullptr;
   for (std::size_t r = 0; r < records_.size(); ++r) {
     if (!uses(r)) continue;
-    if (!response_->run(law, records_[r], forces_, slopes != nullptr ? &by_numbers_ : nullptr, fineness)) return false;
-    const auto rows = std::ssize(records_[r].compared);
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      entries(first_[r] + i) = (forces_[k] - records_[r].compared[k].F) / noise_[r];
-    }
-    if (slopes != nullptr) by_values.middleRows(first_[r], rows) = by_numbers_ / noise_[r];
+    const auto& motion = records_[r].motion;
+    if (!motion && !add_forces(law, r, entries, wanted, fineness)) return false;
+    const bool is_first = r == 0 || records_[r - 1].motion != motion;
+    if (motion && is_first && !add_motion(law, r, entries, wanted, fineness, known)) return false;
   }
-  if (has_break_aways()) add_break_aways(law, entries, slopes != nullptr ? &by_values : nullptr);
-  if (weights_.size() > 0) entries = entries.cwiseProduct(weights_);
+  if (has_break_aways()) add_break_aways(law, entries, wanted);
   if (slopes != nullptr) {
     slopes->noalias() = by_values * space_.chain(values);
-    if (weights_.size() > 0) *slopes = weights_.asDiagonal() * *slopes;
     if (!slopes->allFinite()) return false;
   }
   return entries.allFinite();
+}
+
+Eigen::Index Misfit::start_states() const {
+  Eigen::Index count = 0;
+  for (std::size_t r = 0; r < records_.size(); ++r)
+    if (records_[r].motion && (r == 0 || records_[r - 1].motion != records_[r].motion))
+      count += free_.start_states(*records_[r].motion);
+  return count;
 }
 
 Groups each_by_itself(const std::vector<Eigen::Index>& coordinates) {

@@ -5,16 +5,20 @@
 #include <vector>
 
 #include "limcycle/analysis/status.hpp"
+#include "limcycle/analysis/study/identify/free/free_response.hpp"
 #include "limcycle/analysis/study/identify/parameter_space.hpp"
 
 namespace limcycle {
 
-/// Weighted differences between the forces of a law and those of the records, as a function of the coordinates of a
-/// ParameterSpace: compared rows over the noise of their record, then, for laws that stick, break-aways, |F| = Fs.
+/// Weighted differences between what a law gives and the records, as a function of the coordinates of a ParameterSpace:
+/// compared rows over the noise of their record, then, for laws that stick, break-aways, |F| = Fs. The states at which
+/// free motions begin are fitted to them for any coordinates, and are none: see FreeResponse.
 class Misfit {
  public:
-  /// Keeps references to the space and the records. `noise`: standard deviation of the force in each record, N.
-  Misfit(const ParameterSpace& space, const std::vector<PreparedRecord>& records, std::vector<double> noise);
+  /// Keeps references to the space and the records. `noise`: standard deviation of the measured quantity in each
+  /// record.
+  Misfit(const ParameterSpace& space, const std::vector<PreparedRecord>& records, std::vector<double> noise,
+         Shooting shooting = Shooting::single);
 
   Eigen::Index size() const { return size_; }
   const ParameterSpace& space() const { return space_; }
@@ -24,28 +28,48 @@ class Misfit {
   Eigen::Index first_of(std::size_t record) const { return first_[record]; }
 
   /// Only these records, or (empty) all; the entries of the others are 0.
-  void use(std::vector<bool> records) { used_ = std::move(records); }
-  /// Entries with weight 0 here do not count; empty: all count.
-  void weigh(Eigen::VectorXd weights) { weights_ = std::move(weights); }
+  void use(std::vector<bool> records) {
+    used_ = std::move(records);
+    last_ = {};
+  }
+  Shooting shooting() const { return free_.shooting(); }
+  /// States at starts that are fitted to the records, besides the coordinates.
+  Eigen::Index start_states() const;
+  /// Fits of starts begin at those for these coordinates from now on.
+  void start_from(const Eigen::VectorXd& u);
 
-  /// Entries at u, and their derivatives by u if `slopes` is not null. False where the law has no answer.
-  bool at(const Eigen::VectorXd& u, Eigen::VectorXd& entries, Eigen::MatrixXd* slopes, double fineness = 1.0) const;
+  /// Entries at u, and their derivatives by u if `slopes` is not null. `known`: see FreeResponse::run(). False where
+  /// the law has no answer.
+  bool at(const Eigen::VectorXd& u, Eigen::VectorXd& entries, Eigen::MatrixXd* slopes, double fineness = 1.0,
+          const Eigen::VectorXd* known = nullptr) const;
   /// Evaluations of the law over all records so far, with and without derivatives.
   long evaluations() const { return evaluations_; }
 
  private:
+  struct Evaluation {
+    Eigen::VectorXd u = {}, entries = {};
+    Eigen::MatrixXd slopes = {};
+    bool known = false;  ///< the law has an answer
+  };
+  bool evaluate(const Eigen::VectorXd& u, Eigen::VectorXd& entries, Eigen::MatrixXd* slopes, double fineness,
+                const Eigen::VectorXd* known) const;
   bool has_break_aways() const { return size_ > first_.back(); }
   bool uses(std::size_t record) const { return used_.empty() || used_[record]; }
   void add_break_aways(const Element& law, Eigen::VectorXd& entries, Eigen::MatrixXd* by_values) const;
+  bool add_forces(const Element& law, std::size_t record, Eigen::VectorXd& entries, Eigen::MatrixXd* by_values,
+                  double fineness) const;
+  bool add_motion(const Element& law, std::size_t first, Eigen::VectorXd& entries, Eigen::MatrixXd* by_values,
+                  double fineness, const Eigen::VectorXd* known) const;
 
   const ParameterSpace& space_;
   const std::vector<PreparedRecord>& records_;
   std::vector<double> noise_;
   std::unique_ptr<FrictionResponse> response_;
+  mutable FreeResponse free_;
   std::vector<Eigen::Index> first_;
   std::vector<bool> used_;
-  Eigen::VectorXd weights_;
   Eigen::Index size_ = 0;
+  mutable Evaluation last_;  ///< with free motions, whose slopes cost little more: a fit asks for them afterwards
   mutable long evaluations_ = 0;
   mutable std::vector<double> forces_;
   mutable Eigen::MatrixXd by_numbers_;

@@ -12,7 +12,7 @@
 namespace limcycle {
 namespace {
 
-/// Root mean square of the entries of each record, N.
+/// Root mean square of the entries of each record, in the unit of what was measured.
 std::vector<double> errors_of(const Misfit& misfit, const Eigen::VectorXd& entries) {
   std::vector<double> errors;
   for (std::size_t r = 0; r < misfit.records().size(); ++r) {
@@ -23,8 +23,8 @@ std::vector<double> errors_of(const Misfit& misfit, const Eigen::VectorXd& entri
   return errors;
 }
 
-/// Standard deviation of the force in each record, as the fit leaves it. Records with few rows for the numbers of the
-/// law might be fitted exactly; they count as no more precise, for their size, than all others together.
+/// Standard deviation of what was measured in each record, as the fit leaves it. Records with few rows for the numbers
+/// of the law might be fitted exactly; they count as no more precise, for their size, than all others together.
 std::vector<double> noise_left(const Misfit& misfit, const Eigen::VectorXd& entries) {
   constexpr Eigen::Index fewest_rows_a_number = 5;
   const auto& records = misfit.records();
@@ -38,11 +38,13 @@ std::vector<double> noise_left(const Misfit& misfit, const Eigen::VectorXd& entr
   for (std::size_t r = 0; r < records.size(); ++r) {
     if (few[r] && !all_few) continue;
     const auto n = static_cast<double>(records[r].compared.size());
-    sum += n * std::pow(noise[r] / records[r].largest_force, 2);
+    sum += n * std::pow(noise[r] / records[r].size, 2);
     rows += n;
   }
-  for (std::size_t r = 0; r < records.size(); ++r)
-    noise[r] = std::max(noise[r], records[r].largest_force * std::max(1e-9, few[r] ? std::sqrt(sum / rows) : 0.0));
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const double march_error = records[r].motion ? 1e-6 : 1e-9;
+    noise[r] = std::max(noise[r], records[r].size * std::max(march_error, few[r] ? std::sqrt(sum / rows) : 0.0));
+  }
   return noise;
 }
 
@@ -71,6 +73,7 @@ void add_records(const Misfit& misfit, const Eigen::VectorXd& u, IdentifiedLaw& 
   into.march_error = misfit.at(u, finer, nullptr, 2.0) ? (finer - entries).cwiseAbs().maxCoeff() : NAN;
   const auto errors = errors_of(misfit, entries);
   double rows = 0.0;
+  into.start_states = static_cast<std::size_t>(misfit.start_states());
   into.bic = 0.0;
   for (std::size_t r = 0; r < misfit.records().size(); ++r) {
     const auto& record = misfit.records()[r];
@@ -84,16 +87,17 @@ void add_records(const Misfit& misfit, const Eigen::VectorXd& u, IdentifiedLaw& 
     left.reserve(order.size());
     for (std::size_t i = 0; i < record.compared.size(); ++i) {
       const double entry = misfit.noise()[r] * entries(misfit.first_of(r) + static_cast<Eigen::Index>(i));
-      result.forces.push_back(record.compared[i].F + entry);
+      result.fitted.push_back(record.compared[i].measured + entry);
     }
-    for (const auto i : order) left.push_back(result.forces[i] - record.compared[i].F);
-    result.whiteness = whiteness(left);
+    for (const auto i : order) left.push_back(result.fitted[i] - record.compared[i].measured);
+    // Below the error of the simulation nothing is noise.
+    if (!record.motion || errors[r] > 0.5 * misfit.noise()[r]) result.whiteness = whiteness(left);
     const double n = static_cast<double>(record.compared.size()), noise = misfit.noise()[r];
     into.bic += n * (2.0 * std::log(noise) + std::pow(errors[r] / noise, 2) - 1.0);
     rows += n;
     into.records.push_back(std::move(result));
   }
-  into.bic += static_cast<double>(into.fitted) * std::log(rows);
+  into.bic += static_cast<double>(into.fitted + into.start_states) * std::log(rows);
 }
 
 }  // namespace
@@ -102,41 +106,80 @@ LawFit::LawFit(const Element& kind, const std::vector<PreparedRecord>& records, 
                std::function<bool()> stop)
     : stop_(std::move(stop)), space_(kind, records, choice), records_(records), result_{.law = kind} {
   result_.fitted = static_cast<std::size_t>(space_.size());
-  for (const auto& record : records_) noise_.push_back(0.01 * record.largest_force);
-  if (Misfit(space_, records_, noise_).size() <= space_.size()) {
+  for (const auto& record : records_) noise_.push_back(0.01 * record.size);
+  if (const Misfit misfit(space_, records_, noise_); misfit.size() <= space_.size() + misfit.start_states()) {
     result_.status = Status::undefined;
     result_.notes.emplace_back("has more numbers than there are rows");
     return;
   }
-  fit_with_noise();
-  if (!std::isfinite(best_.sum_of_squares)) {
+  // In several short runs a law that is far off still follows the motion; in one run only a law that is nearly right.
+  const bool long_motion =
+      std::ranges::any_of(records_, [](const auto& one) { return one.motion && one.motion->pieces.size() > 1; });
+  auto& [single, multiple] = fits_;
+  if (long_motion) multiple = fit_with_noise(Shooting::multiple, {});
+  single = fit_with_noise(Shooting::single, multiple);
+}
+
+Misfit LawFit::misfit_now() const {
+  Misfit misfit(space_, records_, noise_, shooting_);
+  misfit.start_from(best_.u);
+  return misfit;
+}
+
+double LawFit::error_of_motion(Shooting shooting) const {
+  const auto& from = fits_[static_cast<std::size_t>(shooting)];
+  double sum = 0.0, rows = 0.0;
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    if (!records_[r].motion) continue;
+    if (!from) return infinite;
+    const auto n = static_cast<double>(records_[r].compared.size());
+    sum += n * std::pow(from->noise[r] / records_[r].size, 2);
+    rows += n;
+  }
+  return rows > 0.0 ? std::sqrt(sum / rows) : 0.0;
+}
+
+void LawFit::settle(Shooting shooting) {
+  if (result_.status == Status::undefined) return;
+  const auto& chosen = fits_[static_cast<std::size_t>(shooting)];
+  shooting_ = shooting;
+  if (!chosen) {
     result_.status = stopped() ? Status::interrupted : Status::not_finite;
     return;
   }
+  best_ = chosen->fit;
+  noise_ = chosen->noise;
   answered_ = true;
   refit();
 }
 
-void LawFit::fit_with_noise() {
+std::optional<LawFit::Noisy> LawFit::fit_with_noise(Shooting shooting, const std::optional<Noisy>& from) {
   constexpr int most_rounds = 4;
   Eigen::VectorXd entries;
+  Noisy result{from ? from->fit : Fit{}, from ? from->noise : noise_};
   for (int round = 0; round < most_rounds; ++round) {
-    Misfit misfit(space_, records_, noise_);
-    best_ = round == 0 ? fit_from_starts(misfit, stop_)
-                       : fit_within(misfit, best_, felt_coordinates(misfit, best_.u), 60, stop_);
+    Misfit misfit(space_, records_, result.noise, shooting);
+    if (round > 0 || from) misfit.start_from(result.fit.u);
+    result.fit = round == 0 && !from
+                     ? fit_from_starts(misfit, stop_)
+                     : fit_within(misfit, result.fit, felt_coordinates(misfit, result.fit.u), 60, stop_);
+    if (misfit.start_states() > 0 && round == 0) result.fit = begun_off_levels(misfit, result.fit, stop_);
     result_.evaluations += misfit.evaluations();
-    if (!std::isfinite(best_.sum_of_squares) || stopped() || !misfit.at(best_.u, entries, nullptr)) break;
+    if (!std::isfinite(result.fit.sum_of_squares) || stopped() || !misfit.at(result.fit.u, entries, nullptr)) break;
     const auto noise = noise_left(misfit, entries);
     double change = 0.0;
-    for (std::size_t r = 0; r < noise.size(); ++r) change = std::max(change, std::abs(std::log(noise[r] / noise_[r])));
-    noise_ = noise;
+    for (std::size_t r = 0; r < noise.size(); ++r)
+      change = std::max(change, std::abs(std::log(noise[r] / result.noise[r])));
+    result.noise = noise;
     if (change < 1e-3) break;
   }
-  best_.u = space_.coordinates(in_order_of_yield(space_, space_.values(best_.u)));
+  if (!std::isfinite(result.fit.sum_of_squares)) return std::nullopt;
+  result.fit.u = space_.coordinates(in_order_of_yield(space_, space_.values(result.fit.u)));
+  return result;
 }
 
 void LawFit::refit() {
-  const Misfit misfit(space_, records_, noise_);
+  const Misfit misfit = misfit_now();
   if (!stopped()) best_ = fit_within(misfit, best_, felt_coordinates(misfit, best_.u), 60, stop_);
   result_.notes.clear();
   result_.records.clear();
@@ -156,7 +199,7 @@ void LawFit::refit() {
 IdentifiedLaw LawFit::with_intervals(bool profiled) {
   constexpr int most_rounds = 4;
   for (int round = 0; answered_; ++round) {
-    const Misfit misfit(space_, records_, noise_);
+    const Misfit misfit = misfit_now();
     std::optional<Fit> better;
     if (const auto at = with_slopes(misfit, best_)) {
       add_numbers(*at, profiled, result_, better, stop_);

@@ -2,45 +2,12 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <variant>
 
+#include "limcycle/analysis/study/identify/identified_laws.hpp"
 #include "limcycle/analysis/study/identify/record_march.hpp"
-#include "limcycle/models/friction/bristle/elasto_plastic.hpp"
-#include "limcycle/models/friction/bristle/lugre.hpp"
-#include "limcycle/models/friction/dry/coulomb.hpp"
-#include "limcycle/models/friction/dry/stribeck.hpp"
-#include "limcycle/models/friction/sliders/gms.hpp"
-#include "limcycle/models/laws.hpp"
 
 namespace limcycle {
 namespace {
-
-using IdentifiedLaws = KindList<Coulomb, Stribeck, LuGre, ElastoPlastic, Gms>;
-
-/// The law on dual numbers, with the numbers from `first` on as its variables.
-template <template <class> class Law>
-Law<MarchDual> seeded(const Law<double>& law, std::span<const LawNumber> numbers,
-                      const std::vector<std::size_t>& own_rows) {
-  auto result = recast<Law, MarchDual>(law);
-  const auto table = Law<MarchDual>::parameters();
-  using Number = MarchDual Law<MarchDual>::*;
-  using List = std::vector<MarchDual> Law<MarchDual>::*;
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const auto& member = table.at(numbers[k].row).member;
-    MarchDual* number = nullptr;
-    if (const auto* one = std::get_if<Number>(&member)) number = &(result.*(*one));
-    if (const auto* list = std::get_if<List>(&member)) number = &(result.*(*list)).at(numbers[k].entry);
-    if (number == nullptr) throw std::invalid_argument(std::string(table[numbers[k].row].key) + " is no number");
-    number->d[k] = 1.0;
-  }
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (table[i].default_from.empty() || std::ranges::find(own_rows, i) != own_rows.end()) continue;
-    const auto from = std::ranges::find(table, table[i].default_from, &ParameterRow::key);
-    if (const auto* to = std::get_if<Number>(&table[i].member), *of = std::get_if<Number>(&from->member); to && of)
-      result.*(*to) = result.*(*of);
-  }
-  return result;
-}
 
 /// Force of a law that sticks at rest, in sliding; at rest 0, as such rows are not compared.
 template <class S, template <class> class Law>
@@ -64,12 +31,12 @@ class ResponseOf final : public FrictionResponse {
     const auto probe = recast<Law, Dual<1>>(law);
     if (slopes == nullptr) {
       const auto set = [&](std::size_t i, double force) { forces[i] = force; };
-      return march(law, probe, seeded<Law>(law, {}, own_rows_), record, fineness, set) && finite(forces);
+      return march(law, probe, seeded<Law, MarchDual>(law, {}, own_rows_), record, fineness, set) && finite(forces);
     }
     slopes->setZero(rows, std::ssize(numbers_));
     for (std::size_t first = 0; first < numbers_.size() || first == 0; first += time_slot) {
       const auto part = std::span(numbers_).subspan(first, std::min(time_slot, numbers_.size() - first));
-      const auto dual = seeded<Law>(law, part, own_rows_);
+      const auto dual = seeded<Law, MarchDual>(law, part, own_rows_);
       const auto set = [&](std::size_t i, const MarchDual& force) {
         forces[i] = force.value;
         for (std::size_t k = 0; k < part.size(); ++k)

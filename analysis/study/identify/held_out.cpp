@@ -46,15 +46,17 @@ double held_out_error(const Misfit& misfit, const Fit& best) {
   const Groups groups = groups_on(misfit.space(), best.held, felt_coordinates(misfit, u), u);
   double sum = 0.0, rows = 0.0;
   for (Eigen::Index part = 0; part < parts; ++part) {
-    const Eigen::VectorXd out = part_of(misfit, part);
-    Eigen::VectorXd step = step_to_fit(groups, Eigen::VectorXd::Ones(out.size()) - out, entries, slopes);
+    const Eigen::VectorXd out = part_of(misfit, part), in = Eigen::VectorXd::Ones(out.size()) - out;
+    if (misfit.start_states() > 0 && !misfit.at(best.u, entries, &slopes, 1.0, &in)) return NAN;
+    Eigen::VectorXd step = step_to_fit(groups, in, entries, slopes);
     // Along what is hardly determined a step may leave the laws that there are; at their very edge none is left.
-    for (int halvings = 0; !misfit.at(put_within(misfit.space(), best.u - step), there, nullptr); ++halvings) {
+    for (int halvings = 0; !misfit.at(put_within(misfit.space(), best.u - step), there, nullptr, 1.0, &in);
+         ++halvings) {
       if (step.isZero(0.0)) return NAN;
       step *= halvings < 10 ? 0.5 : 0.0;
     }
     for (std::size_t r = 0; r < misfit.records().size(); ++r) {
-      const double unit = misfit.noise()[r] / misfit.records()[r].largest_force;
+      const double unit = misfit.noise()[r] / misfit.records()[r].size;
       const Eigen::Index count = std::ssize(misfit.records()[r].compared), first = misfit.first_of(r);
       sum += unit * unit * there.segment(first, count).cwiseProduct(out.segment(first, count)).squaredNorm();
       rows += out.segment(first, count).sum();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limcycle/analysis/status.hpp"
+#include "limcycle/analysis/study/identify/free/free_response.hpp"
 #include "limcycle/analysis/study/identify/parameter_space.hpp"
 #include "limcycle/analysis/study/identify/residuals.hpp"
 
@@ -15,6 +16,7 @@ struct IdentifyRequest {
   std::vector<Element> laws;  ///< their numbers are not used
   std::vector<FrictionRecord> records;
   FreeChoice choice;
+  std::optional<FreeRig> rig = {};  ///< what moves in free motions
 };
 
 struct IdentifyOptions {
@@ -34,9 +36,9 @@ struct IdentifiedNumber {
 
 /// How a law fits one record.
 struct RecordFit {
-  double error = 0.0;  ///< root of the mean square of what is left over, N
+  double error = 0.0;  ///< root of the mean square of what is left over, in the unit of what was measured
   Whiteness whiteness;
-  std::vector<double> forces;  ///< of the law, at the compared rows, N
+  std::vector<double> fitted;  ///< by the law, at the compared rows
 };
 
 /// A combination of numbers that the records do not determine: a weight for each, in the coordinates.
@@ -50,13 +52,14 @@ struct IdentifiedLaw {
   Element law;
   std::vector<IdentifiedNumber> numbers = {};
   std::size_t fitted = 0;             ///< free numbers
+  std::size_t start_states = 0;       ///< fitted besides, of free motions
   double bic = NAN;                   ///< see identify(); less is better
   double held_out = NAN;              ///< see held_out_error()
   Eigen::MatrixXd correlations = {};  ///< of the numbers with a coordinate, by derivatives; NaN where not determined
   std::vector<std::string> correlated = {};  ///< their names
   std::vector<Undetermined> undetermined = {};
   std::vector<RecordFit> records = {};
-  double march_error = NAN;  ///< largest change of a force when the steps are halved, over its record's noise
+  double march_error = NAN;  ///< largest change of an entry when the steps are halved, over its record's noise
   long evaluations = 0;
   Status status = Status::converged;
   std::vector<std::string> notes = {};
@@ -64,7 +67,8 @@ struct IdentifiedLaw {
 
 struct IdentifyReport {
   std::vector<PreparedRecord> records;
-  std::vector<IdentifiedLaw> laws;  ///< in the order of the request
+  std::optional<Shooting> shooting;  ///< of the free motions, if there are any
+  std::vector<IdentifiedLaw> laws;   ///< in the order of the request
   std::optional<std::size_t> chosen;
   Status status = Status::converged;
 };
@@ -74,8 +78,13 @@ struct IdentifyReport {
 /// numbers >= 0 and Fs >= Fc. Chosen, once all laws are fitted: of the converged ones whose held-out error is within
 /// 1 % of the least, the one with the fewest fitted numbers; of two with as many, the one of the lesser BIC: the sum
 /// over records of n (ln s^2 + m/s^2 - 1), with the mean square m and the deviation s of the n errors, plus
-/// fitted ln(rows). Laws that need as many numbers as there are rows are not fitted, with a note. Throws
-/// std::invalid_argument for a record that cannot be used, or a key of the choice that none of the laws has.
+/// fitted ln(rows), with the states at starts among the fitted ones. Laws that need as many numbers as there are rows
+/// are not fitted, with a note.
+///
+/// Free motions are simulated under each law, and the errors are those of position and velocity. Each is first fitted
+/// in several runs, then in one; all laws keep to several if no law leaves less than 1.3 times the error in one. Throws
+/// std::invalid_argument for a record that cannot be used, a free one without a rig, or a key of the choice that none
+/// of the laws has.
 IdentifyReport identify(const IdentifyRequest& request, const IdentifyOptions& options = {});
 
 }  // namespace limcycle

@@ -17,7 +17,9 @@ RecordSizes sizes_of(const std::vector<PreparedRecord>& records) {
   double least = infinite;
   for (const auto& record : records) {
     sizes.force = std::max(sizes.force, record.largest_force);
-    if (record.displacement > 0.0) least = std::min(least, record.displacement);
+    // A rig slides far beyond what stretches its contact.
+    const double stretch = is_free(record.kind) ? 0.01 * record.displacement : record.displacement;
+    if (stretch > 0.0) least = std::min(least, stretch);
     sizes.duration = std::max(sizes.duration, record.duration);
     if (record.kind == RecordKind::pre_sliding) continue;
     sizes.slowest = std::min(sizes.slowest, record.slowest);
@@ -78,6 +80,8 @@ Element with_elements(const Element& kind, int elements) {
 
 /// How far beyond its typical range a number > 0 may be fitted; on the way there methods may go further.
 constexpr double farthest_factor = 1e3, never_beyond = 1e4;
+/// The same of a share, as a logit: from 0.002 to 0.998.
+constexpr double farthest_logit = 6.0;
 
 Coordinate coordinate_for(const Range& range) {
   if (range.high < infinite) return Coordinate::logit;
@@ -172,10 +176,11 @@ std::vector<Bound> ParameterSpace::bounds() const {
     const auto c = coordinate_of(k);
     if (number.coordinate == Coordinate::linear && number.range.low == 0.0)
       list.push_back({c, -1, 0.0, number.name + " comes out at its bound, 0"});
-    if (number.coordinate != Coordinate::log) continue;
+    if (number.coordinate == Coordinate::linear || is_share_of_sum(k)) continue;
     const std::string note = number.name + " comes out at the end of the range in which it was looked for";
-    list.push_back({c, -1, std::log(number.low / farthest_factor), note, false});
-    list.push_back({-1, c, std::log(number.high * farthest_factor), note, false});
+    const bool share = number.coordinate == Coordinate::logit;
+    list.push_back({c, -1, share ? -farthest_logit : std::log(number.low / farthest_factor), note, false});
+    list.push_back({-1, c, share ? farthest_logit : std::log(number.high * farthest_factor), note, false});
   }
   for (const auto& [above, below] : {std::pair("Fs", "Fc"), std::pair("Fs_minus", "Fc_minus")}) {
     const auto high = source_of(above), low = source_of(below);

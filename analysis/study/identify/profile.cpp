@@ -135,6 +135,8 @@ class AroundFit {
   NumberInterval profiled(std::optional<Fit>& better, const std::function<bool()>& stop) const {
     using Kind = ProfileEnd::Kind;
     NumberInterval result = linear();
+    // A free motion that no small change moves jumps somewhere: where a body that came to rest would have gone on.
+    if (at_.misfit.start_states() > 0 && !std::isfinite(half_)) return result;
     Profile profile(at_, k_, stop);
     const Room room = room_around();
     const auto end = [&](double sign, double most) {
@@ -200,9 +202,10 @@ NumberInterval with_coordinate(const FitWithSlopes& at, std::size_t index, const
   if (other == space.numbers().size())  // the only share
     return {.low = 1.0, .high = 1.0, .linear_low = 1.0, .linear_high = 1.0, .identifiable = true};
   const ParameterSpace turned = space.with_dependent(other);
-  const Misfit same(turned, at.misfit.records(), at.misfit.noise());
+  Misfit same(turned, at.misfit.records(), at.misfit.noise(), at.misfit.shooting());
   Fit there = at.fit;
   there.u = turned.coordinates(space.values(at.fit.u));
+  same.start_from(there.u);
   const auto turned_at = with_slopes(same, there);
   if (!turned_at) return {.complete = false};
   return ask(AroundFit(*turned_at, index),
@@ -244,18 +247,20 @@ LinearCovariance linear_covariance(const Eigen::MatrixXd& slopes) {
   return result;
 }
 
-double interval_rise(double sum_of_squares, Eigen::Index entries, Eigen::Index coordinates) {
+double interval_rise(double sum_of_squares, Eigen::Index entries, Eigen::Index coordinates, double least) {
   const auto freedom = static_cast<double>(std::max<Eigen::Index>(entries - coordinates, 1));
   const double t = gsl_cdf_tdist_Pinv(0.975, freedom);
-  return t * t * std::max(sum_of_squares / freedom, 1e-6);  // an exact fit
+  return t * t * std::max(sum_of_squares / freedom, least);
 }
 
 std::optional<FitWithSlopes> with_slopes(const Misfit& misfit, const Fit& fit) {
   Eigen::VectorXd entries;
   Eigen::MatrixXd slopes;
   if (fit.u.size() == 0 || !misfit.at(fit.u, entries, &slopes)) return std::nullopt;
-  return FitWithSlopes{misfit, fit, linear_covariance(slopes),
-                       interval_rise(fit.sum_of_squares, misfit.size(), misfit.space().size())};
+  const Eigen::Index starts = misfit.start_states();
+  return FitWithSlopes{
+      misfit, fit, linear_covariance(slopes),
+      interval_rise(fit.sum_of_squares, misfit.size(), misfit.space().size() + starts, starts > 0 ? 1.0 : 1e-6)};
 }
 
 NumberInterval profile_interval(const FitWithSlopes& at, std::size_t index, std::optional<Fit>& better,

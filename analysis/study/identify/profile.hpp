@@ -26,8 +26,9 @@ struct LinearCovariance {
 LinearCovariance linear_covariance(const Eigen::MatrixXd& slopes);
 
 /// Largest rise of the sum of squares within a 95 % interval: t^2 s^2, with Student's t for n - k degrees of freedom
-/// and the variance s^2 = sum/(n - k) of an entry.
-double interval_rise(double sum_of_squares, Eigen::Index entries, Eigen::Index coordinates);
+/// and the variance s^2 = sum/(n - k) of an entry, which is `least` at least where the fit is exact: with free motions
+/// that of the error of the simulation.
+double interval_rise(double sum_of_squares, Eigen::Index entries, Eigen::Index coordinates, double least);
 
 /// A fit within the bounds of its space, and what the derivatives there say. Keeps references.
 struct FitWithSlopes {

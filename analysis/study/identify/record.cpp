@@ -6,29 +6,30 @@
 #include <stdexcept>
 
 namespace limcycle {
-namespace {
 
-[[noreturn]] void refuse_record(const FrictionRecord& record, const std::string& why) {
+void refuse_record(const FrictionRecord& record, const std::string& why) {
   throw std::invalid_argument(record.name + ": " + why);
 }
 
+namespace {
+
 std::string row_name(std::size_t i) { return "row " + std::to_string(i + 1); }
 
-void check_columns(const FrictionRecord& record) {
-  const std::size_t n = record.F.size();
-  const bool steady = record.kind == RecordKind::steady_velocity;
-  const std::size_t fewest = steady ? 3 : 10;
-  if (n < fewest)
-    refuse_record(record, "has " + std::to_string(n) + " rows; a " + std::string(to_string(record.kind)) +
+void check_count(const FrictionRecord& record, std::size_t rows, std::size_t fewest) {
+  if (rows < fewest)
+    refuse_record(record, "has " + std::to_string(rows) + " rows; a " + std::string(to_string(record.kind)) +
                               " record needs at least " + std::to_string(fewest));
-  if (steady && record.v.empty()) refuse_record(record, "needs a velocity column");
-  if (!steady && record.t.empty()) refuse_record(record, "needs a time column");
-  if (!steady && record.v.empty() && record.x.empty()) refuse_record(record, "needs a position or velocity column");
-  for (const auto* column : {&record.t, &record.x, &record.v})
-    if (!column->empty() && column->size() != n) refuse_record(record, "has columns of different length");
-  if (steady) return;
-  for (std::size_t i = 1; i < n; ++i)
-    if (!(record.t[i] > record.t[i - 1])) refuse_record(record, "time does not rise at " + row_name(i));
+}
+
+void check_lengths(const FrictionRecord& record, std::size_t rows) {
+  for (const auto* column : {&record.t, &record.x, &record.v, &record.F})
+    if (!column->empty() && column->size() != rows) refuse_record(record, "has columns of different length");
+}
+
+void check_steady(const FrictionRecord& record) {
+  check_count(record, record.F.size(), 3);
+  if (record.v.empty()) refuse_record(record, "needs a velocity column");
+  check_lengths(record, record.F.size());
 }
 
 /// Slope at a row of the parabola through it and its neighbours.
@@ -48,14 +49,18 @@ std::vector<double> velocities(const FrictionRecord& record) {
 
 /// A position in mm beside a velocity in m/s, or the like.
 void check_units(const FrictionRecord& record) {
-  if (record.x.empty() || record.v.empty() || record.kind == RecordKind::steady_velocity) return;
-  double both = 0.0, own = 0.0, other = 0.0;
-  for (std::size_t i = 1; i < record.t.size(); ++i) {
-    const double dx = record.x[i] - record.x[i - 1];
-    const double by_v = 0.5 * (record.v[i] + record.v[i - 1]) * (record.t[i] - record.t[i - 1]);
+  if (record.x.empty() || record.v.empty()) return;
+  // The position of a free motion is as noisy as its velocity: from row to row it moves less than its noise.
+  const std::size_t n = record.t.size(), stride = is_free(record.kind) ? std::max<std::size_t>(n / 20, 1) : 1;
+  double both = 0.0, own = 0.0, other = 0.0, by_v = 0.0;
+  for (std::size_t i = 1; i < n; ++i) {
+    by_v += 0.5 * (record.v[i] + record.v[i - 1]) * (record.t[i] - record.t[i - 1]);
+    if (i % stride != 0) continue;
+    const double dx = record.x[i] - record.x[i - stride];
     both += dx * by_v;
     own += by_v * by_v;
     other += dx * dx;
+    by_v = 0.0;
   }
   if (!(own > 0.0) || !(other > 0.0)) return;
   const double ratio = both / own, alike = both / std::sqrt(own * other);
@@ -187,7 +192,7 @@ void choose_rows(const FrictionRecord& record, const std::vector<double>& v, boo
 /// Gives the rows their places, and the record its sizes.
 void measure(const FrictionRecord& record, PreparedRecord& into) {
   for (const auto& row : into.compared) {
-    into.largest_force = std::max(into.largest_force, std::abs(row.F));
+    into.largest_force = std::max(into.largest_force, std::abs(row.measured));
     const double speed = std::abs(row.v);
     if (speed == 0.0) continue;
     into.slowest = into.slowest == 0.0 ? speed : std::min(into.slowest, speed);
@@ -205,14 +210,27 @@ void measure(const FrictionRecord& record, PreparedRecord& into) {
   }
   if (into.fastest == 0.0) refuse_record(record, "the body does not move");
   if (into.largest_force == 0.0) refuse_record(record, "the force is 0 throughout");
+  into.size = into.largest_force;
 }
 
 }  // namespace
 
-PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing) {
-  check_columns(record);
+void check_in_time(const FrictionRecord& record, std::size_t rows) {
+  check_count(record, rows, 10);
+  if (record.t.empty()) refuse_record(record, "needs a time column");
+  if (record.v.empty() && record.x.empty()) refuse_record(record, "needs a position or velocity column");
+  check_lengths(record, rows);
+  for (std::size_t i = 1; i < rows; ++i)
+    if (!(record.t[i] > record.t[i - 1])) refuse_record(record, "time does not rise at " + row_name(i));
   check_units(record);
+}
+
+PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing) {
   const bool steady = record.kind == RecordKind::steady_velocity;
+  if (steady)
+    check_steady(record);
+  else
+    check_in_time(record, record.F.size());
   const std::vector<double> v = velocities(record);
   PreparedRecord result;
   result.kind = record.kind;

@@ -93,4 +93,30 @@ Fit fit_from_starts(Misfit& misfit, const std::function<bool()>& stop) {
   return best;
 }
 
+Fit begun_off_levels(const Misfit& misfit, const Fit& best, const std::function<bool()>& stop) {
+  constexpr double factor_above = 0.3;  // as a logarithm
+  const auto bounds = misfit.space().bounds();
+  const auto between = [&](std::size_t b) { return bounds[b].above >= 0 && bounds[b].below >= 0; };
+  Fit better = best;
+  if (std::ranges::none_of(best.held, between)) return better;
+  const auto felt = felt_coordinates(misfit, best.u);
+  for (const double share : {0.2, 0.5, 0.8}) {
+    if (stop && stop()) break;
+    Fit from = best;
+    from.held.clear();
+    const Eigen::VectorXd middle = misfit.space().start(std::vector<double>(misfit.space().numbers().size(), share));
+    for (Eigen::Index k = 0; k < from.u.size(); ++k)
+      if (std::ranges::find(felt, k) == felt.end()) from.u(k) = middle(k);
+    for (const auto b : best.held) {
+      if (between(b))
+        from.u(bounds[b].above) = from.u(bounds[b].below) + factor_above;
+      else
+        from.held.push_back(b);
+    }
+    const Fit next = fit_within(misfit, from, felt_coordinates(misfit, from.u), 60, stop);
+    if (next.sum_of_squares < better.sum_of_squares - 1e-4) better = next;
+  }
+  return better;
+}
+
 }  // namespace limcycle

@@ -11,4 +11,9 @@ namespace limcycle {
 /// end from the best of these. The same records give the same fit. Records in use: all, afterwards.
 Fit fit_from_starts(Misfit& misfit, const std::function<bool()>& stop);
 
+/// The same or a better fit: one whose break-away level came out at the sliding level, so that the records say nothing
+/// of the velocity between them, is begun anew from a higher level and three velocities. A noisy free motion has such
+/// minima.
+Fit begun_off_levels(const Misfit& misfit, const Fit& best, const std::function<bool()>& stop);
+
 }  // namespace limcycle

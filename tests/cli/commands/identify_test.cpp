@@ -138,3 +138,67 @@ TEST_CASE("identify: bad input ends with 2 and a sentence with file and row") {
   CHECK(run({"check", scratch.file("c.toml")}).code == 0);
   CHECK(run({"synthesize", shipped("van-der-pol.toml"), "-o", scratch.file("rig")}).code == 2);
 }
+
+TEST_CASE("synthesize, identify: free motions of the plant, from a law to records and back") {
+  const Scratch scratch;
+  const std::string plant = "[loop.plant]\nkind = \"mass\"\nmass = 1.0\nstiffness = 2000.0\n";
+  const std::string law = scratch.put("law.toml", rig_law + plant), rig = scratch.file("rig");
+  REQUIRE(run({"synthesize", law, "--free", "--seed", "2", "-o", rig, "--json", scratch.file("s.json")}).code == 0);
+  const auto made = Json::parse(scratch.get("s.json"));
+  REQUIRE(made["records"].size() == 6);
+  CHECK(made["records"][5]["kind"] == "free-decay");
+  CHECK(made["records"][5]["rows"] == 601);
+  CHECK_THAT(scratch.get("rig/free-decay.csv"), Contains("time,position,velocity\n"));
+
+  const auto fitted =
+      run({"identify", rig + "/identify.toml", "--set",
+           "identify.record=[{kind=\"steady-velocity\",file=\"steady-velocity.csv\"},{kind=\"free-decay\","
+           "file=\"free-decay.csv\"}]",
+           "--json", scratch.file("i.json"), "--svg", scratch.file("i.svg"), "--fitted", scratch.file("fitted.toml")});
+  REQUIRE(fitted.code == 0);
+  CHECK_THAT(squeezed(fitted.out), Contains("free-decay, velocity") && Contains("each simulated in one run"));
+  const auto document = Json::parse(scratch.get("i.json"));
+  CHECK(document["shooting"] == "single");
+  CHECK(document["laws"][0]["start_states"] == 2);
+  REQUIRE(document["records"].size() == 3);
+  CHECK(document["records"][2]["quantity"] == "velocity");
+  CHECK(document["records"][2]["largest_force"].is_null());
+  CHECK_THAT(scratch.get("i.svg"), Contains("free-decay, position") && !Contains("nan"));
+  CHECK(run({"check", scratch.file("fitted.toml")}).code == 0);
+  CHECK(run({"synthesize", scratch.put("lone.toml", rig_law), "--free", "-o", scratch.file("other")}).code == 2);
+}
+
+TEST_CASE("identify: bad free records end with 2 and a sentence with file and row") {
+  const Scratch scratch;
+  const auto said = [&](const std::string& csv, const std::string& keys = "kind = \"free\"\n",
+                        const std::string& loop =
+                            "[loop.plant]\nkind = \"mass\"\nmass = 1.0\n[loop.friction]\nkind = "
+                            "\"coulomb\"\nFc = 1.0\n") {
+    scratch.put("r.csv", csv);
+    const auto ran = run({"identify", scratch.put("c.toml", loop +
+                                                                "[identify]\nlaw = \"coulomb\"\n[[identify.record]]\n"
+                                                                "file = \"r.csv\"\n" +
+                                                                keys)});
+    CHECK(ran.code == 2);
+    CHECK(ran.out.empty());
+    return squeezed(ran.err);
+  };
+  std::string good = "time,position,force\n", backwards = good, still = good;
+  for (int i = 0; i < 40; ++i) {
+    const auto row = [&](double time, double position) {
+      return std::to_string(time) + "," + std::to_string(position) + "," + std::to_string(std::sin(0.3 * i)) + "\n";
+    };
+    good += row(0.01 * i, std::sin(0.3 * i));
+    backwards += row(i == 17 ? 0.0 : 0.01 * i, std::sin(0.3 * i));
+    still += row(0.01 * i, 0.7);
+  }
+  CHECK_THAT(said(good, "kind = \"free\"\n", ""), Contains("loop.plant") && Contains("the plant that moves"));
+  CHECK_THAT(said("time,position\n0,0\n"), Contains("has no column \"force\""));
+  CHECK_THAT(said("time,force\n0,0\n1,1\n", "kind = \"free\"\n"), Contains("has 2 rows"));
+  CHECK_THAT(said("time,position,force\n0,0,0\n1,1,1\n"),
+             Contains("r.csv: has 2 rows; a free record needs at least 10"));
+  CHECK_THAT(said(backwards), Contains("time does not rise at row 18"));
+  CHECK_THAT(said(still), Contains("the body does not move"));
+  CHECK_THAT(said(good + "0.5,NaN,0\n"), Contains("r.csv:42: \"NaN\" in column 2 (position)"));
+  CHECK_THAT(said("position,force\n0,0\n"), Contains("has no column \"time\""));
+}

@@ -41,7 +41,8 @@ double largest_error(const Element& law, const PreparedRecord& record, double fi
   std::vector<double> forces;
   REQUIRE(response_of(law, {})->run(law, record, forces, nullptr, fineness));
   double error = 0.0;
-  for (std::size_t k = 0; k < forces.size(); ++k) error = std::max(error, std::abs(forces[k] - record.compared[k].F));
+  for (std::size_t k = 0; k < forces.size(); ++k)
+    error = std::max(error, std::abs(forces[k] - record.compared[k].measured));
   return error;
 }
 

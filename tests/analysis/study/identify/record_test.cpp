@@ -89,7 +89,7 @@ TEST_CASE("record: rows at the limit of the force sensor are left out, once the 
   record.force_limit = 1.5;
   prepared = prepare(record, false);
   CHECK(prepared.compared.size() < 301);
-  for (const auto& row : prepared.compared) CHECK(std::abs(row.F) < 1.5);
+  for (const auto& row : prepared.compared) CHECK(std::abs(row.measured) < 1.5);
   REQUIRE(prepared.notes.size() == 1);
   CHECK_THAT(prepared.notes.front(), Contains("force_limit"));
 }

@@ -1,0 +1,445 @@
+#include "limcycle/analysis/study/identify/free/free_march.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limcycle/analysis/motion/steppers/radau_stages.hpp"
+
+namespace limcycle {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr double tolerance = 1e-6;  ///< of the error estimate, which is of third order: that of the step is far less
+constexpr int most_events = 200;    ///< between two stops
+
+}  // namespace
+
+FreeMarch::FreeMarch(const FreeMotion& motion, const Element& law, NumberSlopes* slopes, double fineness)
+    : motion_(motion),
+      A_(motion.rig.plant.A),
+      B_u_(motion.rig.plant.B_u),
+      B_F_(motion.rig.plant.B_F),
+      C_v_(motion.rig.plant.C_v),
+      v0_(motion.rig.plant.v0),
+      law_(law),
+      slopes_(slopes),
+      own_slopes_(law),
+      fineness_(fineness),
+      mobility_(motion.rig.plant.C_v.dot(motion.rig.plant.B_F)),
+      n_(plant_states + law.states()),
+      scale_(n_) {
+  if (const auto& gravity = motion.rig.plant.gravity) {
+    B_gravity_ = motion.rig.plant.B_gravity;
+    C_gravity_ = motion.rig.plant.C_gravity;
+    torque_ = gravity->mass * gravity->gravity * gravity->arm;
+  }
+  z_.resize(static_cast<std::size_t>(law.states()));
+  dz_.resize(z_.size());
+  scale_.head<plant_states>() = motion.state_sizes;
+  for (Index i = 0; i < law.states(); ++i) scale_(plant_states + i) = law.state_scale(static_cast<int>(i));
+  for (auto* list : {&increments_, &rates_})
+    for (auto& one : *list) one.setZero(n_);
+  for (auto* one : {&x_, &rate_, &work_, &probe_, &error_}) one->setZero(n_);
+}
+
+void FreeMarch::take_input(std::size_t stop) {
+  const auto& stops = motion_.stops;
+  t_input_ = stops[stop].t;
+  u_ = stops[stop].u;
+  u_slope_ = 0.0;
+  if (!motion_.holds_force && stop + 1 < stops.size())
+    u_slope_ = (stops[stop + 1].u - u_) / (stops[stop + 1].t - t_input_);
+}
+
+/// d(gravity)/d(its input).
+double FreeMarch::torque_slope(const Eigen::Vector2d& x) const {
+  return torque_ == 0.0 ? 0.0 : torque_ * std::cos(C_gravity_.dot(x));
+}
+
+void FreeMarch::rate(double t, const State& x, State& dx) {
+  const Eigen::Vector2d at = x.head<plant_states>();
+  Eigen::Vector2d f = A_ * at + B_u_ * (u_ + u_slope_ * (t - t_input_));
+  if (torque_ != 0.0) f -= B_gravity_ * (torque_ * std::sin(C_gravity_.dot(at)));
+  in_ = {0.0, C_v_.dot(at) + v0_, C_v_.dot(f) / mobility_};
+  for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = x(plant_states + static_cast<Index>(i));
+  output_ = law_.respond(in_, mode_, z_, dz_);
+  dx.head<plant_states>() = f - B_F_ * output_;
+  for (std::size_t i = 0; i < z_.size(); ++i) dx(plant_states + static_cast<Index>(i)) = dz_[i];
+}
+
+/// d(drive)/d(states of the plant).
+Eigen::RowVector2d FreeMarch::drive_row(const Eigen::Vector2d& x) const {
+  return (C_v_ * A_ - C_v_.dot(B_gravity_) * torque_slope(x) * C_gravity_) / mobility_;
+}
+
+/// d(rates)/d(states) at x, in J_.
+void FreeMarch::jacobian(double t, const State& x) {
+  rate(t, x, work_);
+  const Eigen::Vector2d at = x.head<plant_states>();
+  const bool by_drive = law_.may_stick();
+  const auto& law = own_slopes_.response(in_, mode_, z_.data(), by_drive);
+  const Index m = n_ - plant_states;
+  Eigen::RowVector2d force = law(0, 1) * C_v_;
+  if (by_drive) force += law(0, 2 + m) * drive_row(at);
+  J_.resize(n_, n_);
+  J_.topLeftCorner<plant_states, plant_states>() = A_ - B_F_ * force - B_gravity_ * torque_slope(at) * C_gravity_;
+  for (Index i = 0; i < m; ++i) {
+    J_.block<plant_states, 1>(0, plant_states + i) = -B_F_ * law(0, 2 + i);
+    J_.block<1, plant_states>(plant_states + i, 0) = law(1 + i, 1) * C_v_;
+    for (Index k = 0; k < m; ++k) J_(plant_states + i, plant_states + k) = law(1 + i, 2 + k);
+  }
+}
+
+/// Adds d(rates)/d(numbers of the law), at the point where rate() was called last, to forced_.
+void FreeMarch::add_number_rates() {
+  if (slopes_ == nullptr) return;
+  const auto& law = slopes_->response(in_, mode_, z_);
+  for (Index k = 0; k < law.cols(); ++k) {
+    for (Index i = 0; i < plant_states; ++i) forced_(i, k) -= B_F_(i) * law(0, k);
+    for (Index i = plant_states; i < n_; ++i) forced_(i, k) += law(i - 1, k);
+  }
+}
+
+/// The law's own guards, then that of a reversal.
+void FreeMarch::guards(double t, const State& x) {
+  rate(t, x, work_);
+  guards_.resize(static_cast<std::size_t>(law_.guards(mode_)));
+  law_.guard(in_, mode_, z_, guards_);
+  // What a velocity of this size does is rounding, for the law too.
+  const double least = (has_reversals() ? 1e-8 : 1e-12) * motion_.rubbing_speed;
+  if (!has_reversals()) {
+    if (law_.held(mode_) == Held::nothing) guards_.front() += least;
+  } else {
+    guards_.push_back(forward_ * in_.v + least);
+  }
+}
+
+bool FreeMarch::begin(const FreeWindow& window, const Eigen::Vector2d& start) {
+  t_ = motion_.stops[window.first].t;
+  take_input(window.first);
+  x_.setZero();
+  x_.head<plant_states>() = start;
+  deviations_.setZero(n_, columns());
+  deviations_.topRightCorner(plant_states, plant_states).setIdentity();
+  const double span = motion_.stops[window.last].t - t_;
+  h_ = 1e-3 * span;
+  steps_left_ = 100000 + 200 * static_cast<long>(window.last - window.first);
+  mode_ = {};
+  last_step_ = 0.0;
+  begin_contact(window.sliding);
+  rate(t_, x_, rate_);
+  forward_ = in_.v < 0.0 ? -1.0 : 1.0;
+  return x_.allFinite();
+}
+
+/// State of the contact at the start: that of long sliding, or a share of that of incipient sliding which balances the
+/// body. In both the rate of each state vanishes, and depends on that state alone.
+void FreeMarch::begin_contact(bool sliding) {
+  rate(t_, x_, work_);
+  const double drive = in_.drive, least = 1e-9 * motion_.rubbing_speed;
+  if (z_.empty()) {
+    mode_ = law_.start(in_, z_);
+    return;
+  }
+  Input<double> in = in_;
+  if (!sliding) in.v = drive < 0.0 ? -least : least;
+  if (std::abs(in.v) < least) in.v = in.v < 0.0 ? -least : least;
+  std::ranges::fill(z_, 0.0);
+  mode_ = law_.knows_sliding() ? law_.after_sliding(in, z_) : law_.has_modes() ? law_.start(in, z_) : Mode{};
+  const Index m = n_ - plant_states;
+  ElementSlopes::Table by_state = own_slopes_.response(in, mode_, z_.data());
+  for (int pass = 0; pass < 4; ++pass) {
+    law_.rate(in, mode_, z_, dz_);
+    for (Index i = 0; i < m; ++i)
+      if (const double slope = by_state(1 + i, 2 + i); slope < 0.0)
+        z_[static_cast<std::size_t>(i)] -= dz_[static_cast<std::size_t>(i)] / slope;
+    by_state = own_slopes_.response(in, mode_, z_.data());
+  }
+  const double force = law_.output(in, mode_, z_);
+  const double share = sliding ? 1.0 : std::abs(drive) < std::abs(force) ? drive / force : 0.0;
+  if (share != 0.0) {
+    const MatrixXd by_numbers = slopes_ != nullptr ? slopes_->response(in, mode_, z_) : MatrixXd(1 + m, 0);
+    MatrixXd own = MatrixXd::Zero(m, columns());  // d(state of sliding)
+    for (Index i = 0; i < m; ++i) {
+      const double slope = by_state(1 + i, 2 + i);
+      if (!(slope < 0.0)) continue;
+      own.row(i).head(numbers()) = -by_numbers.row(1 + i) / slope;
+      if (sliding) own.row(i).tail(plant_states) = -by_state(1 + i, 1) / slope * C_v_;
+    }
+    if (!sliding) {  // share = drive/force
+      Eigen::RowVectorXd of_force = by_state.block(0, 2, 1, m) * own, of_drive = Eigen::RowVectorXd::Zero(columns());
+      of_force.head(numbers()) += by_numbers.row(0);
+      of_drive.tail(plant_states) = drive_row(x_.head<plant_states>());
+      const Eigen::RowVectorXd of_share = (of_drive - share * of_force) / force;
+      own *= share;
+      for (Index i = 0; i < m; ++i) own.row(i) += z_[static_cast<std::size_t>(i)] * of_share;
+    }
+    deviations_.bottomRows(m) = own;
+  }
+  for (Index i = 0; i < m; ++i) x_(plant_states + i) = share * z_[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = x_(plant_states + static_cast<Index>(i));
+  if (!sliding && law_.has_modes()) mode_ = law_.start(in_, z_);
+}
+
+/// First guess of the stages: on the polynomial through those of the step before, if that led here.
+void FreeMarch::predict(double h) {
+  const auto& c = radau_stages().c;
+  if (!(last_step_ > 0.0)) {
+    for (std::size_t i = 0; i < stages; ++i) increments_[i] = c[i] * h * rate_;
+    return;
+  }
+  const double nodes[] = {0.0, c[0], c[1], c[2]};
+  for (std::size_t i = 0; i < stages; ++i) {
+    const double s = 1.0 + c[i] * h / last_step_;
+    increments_[i] = -last_increments_[2];
+    for (std::size_t j = 1; j < 4; ++j) {
+      double weight = 1.0;
+      for (std::size_t k = 0; k < 4; ++k)
+        if (k != j) weight *= (s - nodes[k]) / (nodes[j] - nodes[k]);
+      increments_[i] += weight * last_increments_[j - 1];
+    }
+  }
+}
+
+/// Stages of a step of length h, in increments_, with the derivative at its start. False if Newton's method fails.
+bool FreeMarch::solve(double h) {
+  const auto& [c, a] = radau_stages();
+  rate(t_, x_, rate_);
+  jacobian(t_, x_);
+  predict(h);
+  const auto m = static_cast<std::size_t>(3 * n_);
+  system_.assign(m * m, 0.0);
+  for (Index k = 0; k < n_; ++k)
+    for (std::size_t i = 0; i < stages; ++i) {
+      double* const row = system_.data() + (static_cast<std::size_t>(k) * stages + i) * m;
+      for (Index l = 0; l < n_; ++l)
+        for (std::size_t j = 0; j < stages; ++j)
+          row[static_cast<std::size_t>(l) * stages + j] = (k == l && i == j ? 1.0 : 0.0) - h * a[i][j] * J_(k, l);
+    }
+  if (!factors_.take(system_, m)) return false;
+  change_.resize(m);
+  double before = infinite;
+  for (int pass = 0; pass < 15; ++pass) {
+    for (std::size_t i = 0; i < stages; ++i) rate(t_ + c[i] * h, probe_ = x_ + increments_[i], rates_[i]);
+    for (Index k = 0; k < n_; ++k)
+      for (std::size_t i = 0; i < stages; ++i) {
+        double& left = change_[static_cast<std::size_t>(k) * stages + i];
+        left = -increments_[i](k);
+        for (std::size_t j = 0; j < stages; ++j) left += h * a[i][j] * rates_[j](k);
+      }
+    factors_.solve(change_);
+    double size = 0.0;
+    for (Index k = 0; k < n_; ++k)
+      for (std::size_t i = 0; i < stages; ++i) {
+        const double change = change_[static_cast<std::size_t>(k) * stages + i];
+        increments_[i](k) += change;
+        size = std::max(size, std::abs(change) / scale_(k));
+      }
+    if (!std::isfinite(size)) return false;
+    if (size < 1e-11) return true;
+    if (size > 0.9 * before) return before < 1e-9;
+    before = size;
+  }
+  return false;
+}
+
+/// Estimated error of the step just solved over the tolerance: the difference from an embedded method of third order.
+double FreeMarch::error_of(double h) {
+  static const double root = std::sqrt(6.0);
+  static const double gamma = 1.0 / ((6.0 + std::cbrt(81.0) - std::cbrt(9.0)) / 30.0);
+  const double weights[] = {-(13.0 + 7.0 * root) / 3.0, (-13.0 + 7.0 * root) / 3.0, -1.0 / 3.0};
+  const auto n = static_cast<std::size_t>(n_), width = n + 1;
+  const auto filtered = [&](const State& at_start) {
+    system_.assign(n * width, 0.0);
+    for (Index k = 0; k < n_; ++k) {
+      double* const row = system_.data() + static_cast<std::size_t>(k) * width;
+      for (Index l = 0; l < n_; ++l) row[static_cast<std::size_t>(l)] = (k == l ? gamma / h : 0.0) - J_(k, l);
+      row[n] = at_start(k);
+      for (std::size_t i = 0; i < stages; ++i) row[n] += weights[i] / h * increments_[i](k);
+    }
+    if (!eliminate(system_, n, 1)) return infinite;
+    double sum = 0.0;
+    for (Index k = 0; k < n_; ++k) {
+      error_(k) = system_[static_cast<std::size_t>(k) * width + n];
+      sum += std::pow(error_(k) / scale_(k), 2);
+    }
+    return std::sqrt(sum / static_cast<double>(n_));
+  };
+  const double allowed = tolerance / std::pow(fineness_, 4);
+  double error = filtered(rate_);
+  if (error > allowed && std::isfinite(error)) {  // the estimate itself is not bounded for stiff components
+    State again(n_);
+    rate(t_, probe_ = x_ + error_, again);
+    error = std::min(error, filtered(again));
+  }
+  return error / allowed;
+}
+
+/// Carries the deviations over a solved step of length h.
+bool FreeMarch::carry(double h) {
+  const auto& [c, a] = radau_stages();
+  const Index q = columns();
+  const auto m = static_cast<std::size_t>(3 * n_), width = m + static_cast<std::size_t>(q);
+  system_.assign(m * width, 0.0);
+  forced_.resize(n_, q);
+  for (std::size_t j = 0; j < stages; ++j) {
+    jacobian(t_ + c[j] * h, probe_ = x_ + increments_[j]);
+    for (Index r = 0; r < q; ++r) forced_.col(r).noalias() = J_.lazyProduct(deviations_.col(r));
+    add_number_rates();
+    for (Index k = 0; k < n_; ++k)
+      for (std::size_t i = 0; i < stages; ++i) {
+        double* const row = system_.data() + (static_cast<std::size_t>(k) * stages + i) * width;
+        for (Index l = 0; l < n_; ++l)
+          row[static_cast<std::size_t>(l) * stages + j] = (k == l && i == j ? 1.0 : 0.0) - h * a[i][j] * J_(k, l);
+        for (Index r = 0; r < q; ++r) row[m + static_cast<std::size_t>(r)] += h * a[i][j] * forced_(k, r);
+      }
+  }
+  if (!eliminate(system_, m, static_cast<std::size_t>(q))) return false;
+  for (Index k = 0; k < n_; ++k) {
+    const double* const end = system_.data() + (static_cast<std::size_t>(k) * stages + 2) * width + m;
+    for (Index r = 0; r < q; ++r) deviations_(k, r) += end[r];
+  }
+  return true;
+}
+
+bool FreeMarch::accept(double h) {
+  if (!carry(h)) return false;
+  x_ += increments_[2];
+  t_ += h;
+  last_step_ = h;
+  last_increments_ = increments_;
+  return x_.allFinite();
+}
+
+/// Share of the step at which a guard that is negative after `share` of it breaks; by regula falsi (Illinois), each
+/// time with a step of its own.
+double FreeMarch::share_of_break(double h, double share, std::size_t guard, double at_end) {
+  guards(t_, x_);
+  double a = 0.0, b = share, fa = guards_[guard], fb = at_end;
+  if (!(fa > 0.0)) return 0.0;
+  const double close = 1e-13 * (fa - fb);
+  for (int i = 0, side = 0; i < 60 && b - a > 1e-15; ++i) {
+    const double c = b - fb * (b - a) / (fb - fa);
+    if (!solve(h * c)) return 0.5 * (a + b);
+    guards(t_ + h * c, probe_ = x_ + increments_[2]);
+    const double fc = guards_[guard];
+    if (std::abs(fc) <= close) return c;
+    if (fc < 0.0) {
+      b = c;
+      fb = fc;
+      if (side < 0) fa *= 0.5;
+      side = -1;
+    } else {
+      a = c;
+      fa = fc;
+      if (side > 0) fb *= 0.5;
+      side = 1;
+    }
+  }
+  return b;
+}
+
+/// The guard that breaks first within the solved step, looked for at its stages.
+FreeMarch::Broken FreeMarch::first_broken(double h) {
+  const auto& c = radau_stages().c;
+  Broken first;
+  for (std::size_t i = 0; i < stages; ++i) {
+    guards(t_ + c[i] * h, probe_ = x_ + increments_[i]);
+    guards_at_[i] = guards_;
+  }
+  for (std::size_t k = 0; k < guards_at_[0].size(); ++k)
+    for (std::size_t i = 0; i < stages; ++i) {
+      if (!(guards_at_[i][k] < 0.0)) continue;
+      const double share = share_of_break(h, c[i], k, guards_at_[i][k]);
+      if (first.guard < 0 || share < first.share) first = {static_cast<std::ptrdiff_t>(k), share};
+      break;
+    }
+  return first;
+}
+
+/// The switch of a guard, and the deviations behind it.
+void FreeMarch::fire(std::size_t guard) {
+  last_step_ = 0.0;
+  const auto own = static_cast<std::size_t>(law_.guards(mode_));
+  if (guard == own) {  // a reversal: the rates go on without a jump
+    forward_ = -forward_;
+    return;
+  }
+  State before(n_), after(n_);
+  rate(t_, x_, before);
+  const ElementSlopes::Table row = own_slopes_.guard(in_, mode_, z_.data(), guard);
+  const Eigen::RowVector2d by_plant = row(0, 1) * C_v_ + row(0, 2) * drive_row(x_.head<plant_states>());
+  Eigen::RowVectorXd gradient(n_), shift = Eigen::RowVectorXd::Zero(columns());  // of the moment
+  gradient << by_plant, row.block(0, 3, 1, n_ - plant_states);
+  const double crossing = gradient.dot(before) + row(0, 2) * C_v_.dot(B_u_) / mobility_ * u_slope_;
+  if (crossing < 0.0) {
+    shift = -gradient * deviations_ / crossing;
+    if (slopes_ != nullptr) shift.head(numbers()) -= slopes_->guard(in_, mode_, z_, guard).row(0) / crossing;
+  }
+  mode_ = law_.next(in_, mode_, z_, static_cast<int>(guard));
+  for (std::size_t i = 0; i < z_.size(); ++i) x_(plant_states + static_cast<Index>(i)) = z_[i];
+  if (law_.held(mode_) != Held::nothing) x_.head<plant_states>() -= B_F_ * (in_.v / mobility_);
+  rate(t_, x_, after);
+  deviations_ += (before - after) * shift;
+}
+
+bool FreeMarch::cross(double until) {
+  events_ = 0;
+  const double longest = (until - t_) / fineness_;
+  while (t_ < until) {
+    if (--steps_left_ < 0) return false;
+    const double left = until - t_;
+    double h = std::min(h_, longest);
+    if (h > left * (1.0 - 1e-9)) h = left;
+    if (!(t_ + h > t_)) return false;
+    if (!solve(h)) {
+      h_ = 0.3 * h;
+      continue;
+    }
+    const double error = error_of(h);
+    const double factor = std::clamp(0.9 / std::pow(std::max(error, 1e-10), 0.25), 0.2, 5.0);
+    if (!(error <= 1.0)) {
+      h_ = h * std::min(factor, 0.8);
+      continue;
+    }
+    const auto [guard, share] = first_broken(h);
+    if (guard < 0) {
+      h_ = h < h_ ? std::max(h_, factor * h) : factor * h;
+      if (!accept(h)) return false;
+      if (h == left) t_ = until;
+      continue;
+    }
+    if (++events_ > most_events) return false;
+    if (share > 0.0 && (!solve(h * share) || !accept(h * share))) return false;
+    fire(static_cast<std::size_t>(guard));
+  }
+  return true;
+}
+
+bool FreeMarch::run(const FreeWindow& window, const Eigen::Vector2d& start, FreeRun& result) {
+  const Eigen::RowVector2d y_row = motion_.rig.plant.C_y, rate_row = y_row * A_;
+  result.samples.clear();
+  result.y.clear();
+  result.rate.clear();
+  if (!begin(window, start)) return false;
+  const auto most = static_cast<Index>(window.last - window.first + 1);
+  result.y_slopes.resize(columns(), most);
+  result.rate_slopes.resize(columns(), most);
+  for (std::size_t i = window.first; i <= window.last; ++i) {
+    if (i > window.first && !cross(motion_.stops[i].t)) return false;
+    take_input(i);
+    if (motion_.stops[i].sample < 0) continue;
+    const Index k = std::ssize(result.samples);
+    result.samples.push_back(motion_.stops[i].sample);
+    result.y.push_back(y_row.dot(x_.head<plant_states>()));
+    result.rate.push_back(rate_row.dot(x_.head<plant_states>()));
+    const auto deviations = deviations_.topRows<plant_states>();
+    result.y_slopes.col(k) = y_row(0) * deviations.row(0) + y_row(1) * deviations.row(1);
+    result.rate_slopes.col(k) = rate_row(0) * deviations.row(0) + rate_row(1) * deviations.row(1);
+  }
+  return true;
+}
+
+}  // namespace limcycle
