@@ -74,9 +74,10 @@ struct TuneQuestion {
   }
 };
 
-/// The cheap part: whether the values are valid, the linear loop is stable, the costs and their limits. A run in time
-/// is made only where a cost needs it. The outcome stays not_judged if nothing speaks against the point; without a cost
-/// if it was interrupted.
+/// The cheap part: whether the values are valid, the linear loop is stable, the costs and their limits. For ise a run
+/// over the horizon is made, for settling one until it has come to rest: a motion that needs more than 5000 steps for
+/// it was not decided, and one that ends more than a tenth of the step from the set-point exceeds a limit. The outcome
+/// stays not_judged if nothing speaks against the point; without a cost if it was interrupted.
 void look_at(TunePoint& point, const TuneQuestion& question);
 
 /// The run of a loop from the step, until its outcome is decided or this many steps are made.

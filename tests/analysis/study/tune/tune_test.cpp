@@ -172,6 +172,19 @@ TEST_CASE("tune: an optimum at the edge of hunting, confirmed by predict, the sa
   }
 }
 
+TEST_CASE("tune: a step that friction holds far from the set-point has not settled") {
+  LoopParts parts = servo_parts(coulomb(1.0, 1.0));
+  std::get<Pid>(parts.controller).ki = 0.0;
+  TuneOptions options = few(TuneCost::settling, 16);
+  options.predict.search = SearchBox{1e-3, 1.0, 0.01, 100.0};
+  const TuneReport report = tuned(parts, {{&Pid::kp, 0.5, 50.0}}, options);  // below 1 N/m it does not even start
+  REQUIRE(report.best);
+  CHECK(report.best_cost().value() > 0.0);
+  CHECK(std::abs(report.after.y.back()) <= 0.1);
+  for (const TunePoint& point : report.points)
+    if (point.values[0] < 1.0) CHECK(point.outcome == TuneOutcome::above_limit);
+}
+
 TEST_CASE("tune: with a margin the loop does not hunt beside the result either") {
   const LoopParts parts = over_compensated();
   TuneOptions options = few(TuneCost::settling);
