@@ -22,8 +22,8 @@ ClampedPi<double> clamped(double kp, double ki, double limit) {
   return element;
 }
 
-constexpr int n = 1'000'000;
-double step_of(double w) { return 2.0 * pi / w / n; }
+constexpr int instants = 1'000'000;
+double step_of(double w) { return 2.0 * pi / w / instants; }
 
 /// First harmonic of the clamped PI by the rule itself at a million instants a period: u = kp x + z is limited, z moves
 /// unless that would take u further beyond the limit. Error: some steps, where z chatters along the limit.
@@ -33,14 +33,14 @@ Complex by_small_steps(const ClampedPi<double>& pi_of, double A, double w, doubl
   Complex sum = 0.0;
   for (int period = 0; period < periods; ++period) {
     sum = 0.0;
-    for (int i = 0; i < n; ++i) {
-      const double phase = 2.0 * pi * (i + 0.5) / n, x = bias + A * std::sin(phase), u = pi_of.kp * x + z;
+    for (int i = 0; i < instants; ++i) {
+      const double phase = 2.0 * pi * (i + 0.5) / instants, x = bias + A * std::sin(phase), u = pi_of.kp * x + z;
       const double y = std::clamp(u, -pi_of.limit, pi_of.limit);
       if (!((u > pi_of.limit && pi_of.ki * x > 0.0) || (u < -pi_of.limit && pi_of.ki * x < 0.0))) z += h * pi_of.ki * x;
       sum += y * Complex(std::sin(phase), std::cos(phase));
     }
   }
-  return 2.0 / n / A * sum;
+  return 2.0 / instants / A * sum;
 }
 
 }  // namespace
@@ -106,11 +106,11 @@ TEST_CASE("window: its describing function, against sums over a period") {
   element.half_width = 0.8;
   for (const double A : {0.5, 0.81, 1.0, 7.0}) {
     double sum = 0.0;
-    for (int i = 0; i < n; ++i) {
-      const double s = std::sin(2.0 * pi * (i + 0.5) / n);
+    for (int i = 0; i < instants; ++i) {
+      const double s = std::sin(2.0 * pi * (i + 0.5) / instants);
       if (A * std::abs(s) <= element.half_width) sum += s * s;
     }
-    CHECK(element.exact_describing_function(A, 1.0, 0.0)->real() == Approx(2.0 * sum / n).margin(3e-6));
-    CHECK(describing_function(element, {A, 1.0, 0.0}).gain.real() == Approx(2.0 * sum / n).margin(3e-6));
+    CHECK(element.exact_describing_function(A, 1.0, 0.0)->real() == Approx(2.0 * sum / instants).margin(3e-6));
+    CHECK(describing_function(element, {A, 1.0, 0.0}).gain.real() == Approx(2.0 * sum / instants).margin(3e-6));
   }
 }
