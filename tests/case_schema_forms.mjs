@@ -44,6 +44,7 @@ export const forms = {
     skip = 0.5
     force_limit = 10.0`),
   'identify: alone': () => '[identify]\nlaw = "lugre"\n[[identify.record]]\nkind = "lag"\nfile = "a.csv"\n',
+  'identify: a driven rig': also('[identify]\n[[identify.record]]\nkind = "free"\nfile = "a.csv"\nhold = "zero-order"'),
   'units: a symbol': also('[units]\ny = "mm"'),
   'units: a table': also('[units]\ny = {symbol = "in", per_si = 39.37}'),
   'a diagram with every linear block': () => `[diagram]

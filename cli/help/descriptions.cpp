@@ -161,7 +161,7 @@ std::vector<Description> enough() {
        "records "
        "can determine.",
        {{"limcycle synthesize cases/pid-lugre.toml --noise 0.02 --seed 3 -o rig", "2 % noise of the force"},
-        {"limcycle synthesize cases/pid-lugre.toml --free -o rig", "free motions of the mass too"}}},
+        {"limcycle synthesize cases/pid-lugre.toml --free -o free-rig", "free motions of the mass too"}}},
       {"precision",
        trust_group,
        "Measures the accuracy and cost of every method on this case, against a verified reference. With --stability it "

@@ -102,11 +102,11 @@ std::string panel(const PreparedRecord& record, const RecordFit& fit, double lef
                      frame.py(curve.fitted[order[i]]));
   out += fmt::format("<path class=\"law\" d=\"{}\"/>\n", d);
   const auto unit = unit_of(record.quantity);
+  const std::string error = with_digits(fit.error, 2), largest = with_digits(record.size, 3);
   out +=
       words_at(left, up - 6.0, "",
-               fmt::format("{}: error {} {}; largest {} {} {}", record_label(record), with_digits(fit.error, 2), unit,
-                           record.quantity == MeasuredQuantity::position ? "displacement" : to_string(record.quantity),
-                           with_digits(record.size, 3), unit));
+               record.motion ? fmt::format("{}: error {} of {} {}", record_label(record), error, largest, unit)
+                             : fmt::format("{}: error {} N; largest force {} N", record_label(record), error, largest));
   const auto edge = [&](double x) { return with_digits(curve.by_size ? std::pow(10.0, x) : x, 2); };
   const auto [low, high] = std::ranges::minmax(curve.x);
   out += words_at(left, up + record_height + 15.0, "", edge(low));

@@ -31,11 +31,10 @@ FrictionRecord only(const std::vector<FrictionRecord>& records, RecordKind kind)
 }  // namespace
 
 TEST_CASE("identify free: without noise the numbers come out to the error of the simulation") {
-  const Element soft = lugre_rig().with("sigma0", 1e4).with("sigma1", 100.0);
-  for (const Element& truth : {coulomb_rig(), stribeck_rig(), soft}) {
+  for (const Element& truth : {coulomb_rig(), stribeck_rig(), lugre_rig()}) {
     INFO(truth.kind());
     const FreeRig rig = mass_rig();
-    const auto records = synthesize_free(truth, rig, {.noise = 0.0}, 1, 151);
+    const auto records = synthesize_free(truth, rig, {.noise = 0.0}, 1, truth.states() > 0 ? 201 : 151);
     const auto report = fitted_to({only(records, RecordKind::free)}, rig, {std::string(truth.kind())});
     REQUIRE(report.chosen);
     CHECK(report.shooting == Shooting::single);
@@ -52,7 +51,7 @@ TEST_CASE("identify free: without noise the numbers come out to the error of the
 
 TEST_CASE("identify free: 95 % intervals hold the true numbers as often as they say") {
   int inside = 0, all = 0;
-  for (int i = 1; i <= samples(6); ++i) {
+  for (int i = 1; i <= samples(4); ++i) {
     const Element truth = i % 2 == 0 ? coulomb_rig() : stribeck_rig();
     const FreeRig rig = mass_rig();
     const auto records = synthesize_free(truth, rig, {}, static_cast<std::uint64_t>(i), 151);
@@ -121,7 +120,7 @@ TEST_CASE("identify free: beside a record of the force, each by its own noise") 
 
 TEST_CASE("identify free: the right law among several, and the same bytes again") {
   const FreeRig rig = mass_rig();
-  const auto record = only(synthesize_free(stribeck_rig(), rig, {}, 5, 201), RecordKind::free);
+  const auto record = only(synthesize_free(stribeck_rig(), rig, {}, 5, 151), RecordKind::free);
   const auto one = fitted_to({record}, rig, {"coulomb", "stribeck"}),
              two = fitted_to({record}, rig, {"coulomb", "stribeck"});
   REQUIRE(one.chosen);
