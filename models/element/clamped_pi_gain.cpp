@@ -11,7 +11,7 @@ namespace limcycle {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr int most_turns = 1000;
+constexpr int most_turns = 100;
 constexpr double turn = 2.0 * std::numbers::pi, never = std::numeric_limits<double>::infinity();
 
 /// First angle after `now` that is `angle` and whole turns.
@@ -79,6 +79,7 @@ class Turns {
     return false;
   }
   double integral() const { return z_; }
+  void begin_with(double z) { z_ = z; }
   std::int64_t mode() const { return mode_.value; }
 
  private:
@@ -131,12 +132,20 @@ std::optional<Complex> clamped_pi_gain(double kp, double ki, double limit, doubl
   if (A * std::abs(within) <= limit) return within;
   Turns turns(kp, ki, limit, A, w);
   Complex sum;
+  double last_before = 0.0, last_after = 0.0;
   for (int i = 0; i < most_turns; ++i) {
     const double before = turns.integral();
     const std::int64_t mode = turns.mode();
     if (!turns.turn_once(sum)) return std::nullopt;
-    if (i > 0 && mode == turns.mode() && std::abs(turns.integral() - before) <= 1e-13 * limit)
-      return sum / (std::numbers::pi * A);
+    const double after = turns.integral();
+    const bool repeats = i > 0 && mode == turns.mode();
+    if (repeats && std::abs(after - before) <= 1e-13 * limit) return sum / (std::numbers::pi * A);
+    // Where a turn changes the integral little, the periodic state is far: a secant leads there.
+    const double slope = (after - last_after) / (before - last_before);
+    if (repeats && mode == 0 && slope > 0.2 && slope < 1.0)
+      turns.begin_with(std::clamp(before + (after - before) / (1.0 - slope), -limit, limit));
+    last_before = before;
+    last_after = after;
   }
   return std::nullopt;
 }

@@ -118,6 +118,8 @@ constexpr std::array typical_rows{
     TypicalRow{"guarded controller", "", "lag", {"0.005", "what the actuator needs to follow"}},
     TypicalRow{"controller", "pid", "kp", {"3.0", "mass (bandwidth in rad/s)^2"}},
     TypicalRow{"controller", "pid", "ki", {"4.0", "0 to kp kd/mass"}},
+    TypicalRow{"controller", "pid", "integral_limit", {"1.0", "below Fs", true}},
+    TypicalRow{"controller", "pid", "integral_band", {"0.01", "", true}},
     TypicalRow{"controller", "pid", "kd", {"6.0", "2 sqrt(kp mass)"}},
     TypicalRow{"controller", "cascade", "position_kp", {"1.0", "a third of the velocity loop's bandwidth in rad/s"}},
     TypicalRow{"controller", "cascade", "velocity_kp", {"6.0", "mass (bandwidth in rad/s)"}},

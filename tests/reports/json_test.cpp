@@ -82,7 +82,7 @@ TEST_CASE("predict: a sampled loop tells of each cycle if it is locked, and of a
 TEST_CASE("predict: keys and values") {
   const auto document = OrderedJson::parse(predict_json(provenance(), sample::relay()));
   CHECK(keys(document) == Keys{"schema", "command", "case", "provenance", "cycles", "predictions", "missed", "outcomes",
-                               "search", "absence", "notes", "status"});
+                               "search", "absence", "cause", "notes", "status"});
   const auto& cycle = document["cycles"][0];
   CHECK(keys(cycle) == Keys{"amplitude", "first_harmonic", "period", "frequency", "offset", "stable", "multipliers",
                             "multiplier_error", "sticking_fraction", "method", "error", "residual",

@@ -156,7 +156,7 @@ TEST_CASE("predict: a page that cannot be opened is refused before anything is c
   CHECK_THAT(ran.err, Contains("--html /no/such/folder/page.html"));
 }
 
-TEST_CASE("predict: why the loop hunts, as remedy says it; nothing where it does not hunt") {
+TEST_CASE("predict: why the loop hunts, as remedy says it, and nothing where it does not hunt") {
   const auto ran = run({"predict", shipped("pid-lugre.toml"), "--json", "-"});
   REQUIRE(ran.code == 0);
   const Json cause = Json::parse(ran.out)["cause"];
