@@ -171,10 +171,10 @@ void look_at(TunePoint& point, const TuneQuestion& question) try {
   if (is_stopped(question)) return;
   conclude_by(point, run);
   if (point.outcome != TuneOutcome::not_judged || run.trace.y.empty()) return;
-  const double apart = std::abs(parts->reference - run.trace.y_origin - run.trace.y.back());
-  if (apart > still_settled * question.step)  // friction that holds the body at the start settles nothing
+  const double off = std::abs(parts->reference - run.trace.y_origin - run.trace.y.back());
+  if (off > still_settled * question.step)  // friction that holds the body at the start settles nothing
     return conclude(point, TuneOutcome::above_limit,
-                    "it comes to rest " + short_number(apart) + " from the set-point, more than a tenth of the step");
+                    "it comes to rest " + short_number(off) + " from the set-point, more than a tenth of the step");
   set_cost(point, TuneCost::settling, step_numbers(run.trace.t, run.trace.y, run.trace.y.front()).settling_time);
   is_above_limit(point, question);
 } catch (const std::invalid_argument& refused) {
