@@ -24,7 +24,7 @@ void ErrorWeights::require_size(std::size_t n) const {
 double ErrorWeights::norm(const State& x_old, const State& x_new, const State& error) const {
   double worst = 0;
   for (std::size_t i = 0; i < atol.size(); ++i) {
-    const double reach = std::max(std::abs(x_old[i]), std::abs(x_new[i]));
+    const double reach = std::max(size(i, x_old[i]), size(i, x_new[i]));
     const double ratio = std::abs(error[i]) / (atol[i] + rtol * reach);
     // std::max(a, NaN) would drop a NaN, so each component is checked.
     if (!std::isfinite(ratio) || !std::isfinite(x_new[i])) return std::numeric_limits<double>::infinity();

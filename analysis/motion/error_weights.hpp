@@ -12,7 +12,8 @@
 
 namespace limcycle {
 
-/// Tolerances of a step: component i may be wrong by atol[i] + rtol max(|x_old[i]|, |x_new[i]|).
+/// Tolerances of a step: component i may be wrong by atol[i] + rtol max(|x_old[i]|, |x_new[i]|), both measured from
+/// `origin`.
 ///
 /// One absolute tolerance for all components is wrong for friction: sticking creeps at 1e-6 to 1e-4 m/s, and a step
 /// that may miss that breaks stiction early and settles on a false but plausible cycle. Use atol = tol vs for a
@@ -20,6 +21,7 @@ namespace limcycle {
 struct ErrorWeights {
   double rtol = 0;    ///< relative tolerance, 0 or more, finite
   State atol;         ///< absolute tolerance of each component, more than 0, finite, in the component's own unit
+  State origin = {};  ///< value of each component from which its size counts; empty: 0
   double time = 1.0;  ///< s, a time scale of the whole motion: times are short or long to the march relative to it
 
   /// Throws std::invalid_argument, quoting the value, unless every tolerance is in its range and there is at least one.
@@ -30,10 +32,13 @@ struct ErrorWeights {
 
   /// The same for another relative tolerance, with the absolute ones in proportion.
   ErrorWeights scaled_to(double other_rtol) const {
-    ErrorWeights other{other_rtol, atol, time};
+    ErrorWeights other{other_rtol, atol, origin, time};
     for (double& value : other.atol) value *= other_rtol / rtol;
     return other;
   }
+
+  /// How large component i is.
+  double size(std::size_t i, double value) const { return std::abs(origin.empty() ? value : value - origin[i]); }
 
   /// Largest weighted error, max_i |error[i]| / (atol[i] + rtol max(|x_old[i]|, |x_new[i]|)); a step is good if this is
   /// at most 1. +infinity if any component of the error or of x_new is NaN or infinite, so that `norm <= 1` and
@@ -64,7 +69,7 @@ class WeightedErrorChecker {
     weights_.require_size(x_old.size());
     double worst = 0;
     for (std::size_t i = 0; i < x_old.size(); ++i) {
-      const double reach = std::max(std::abs(x_old[i]), std::abs(x_old[i] + dt * dxdt_old[i]));
+      const double reach = std::max(weights_.size(i, x_old[i]), weights_.size(i, x_old[i] + dt * dxdt_old[i]));
       const double ratio = std::abs(x_err[i]) / (weights_.atol[i] + weights_.rtol * reach);
       if (!std::isfinite(ratio) || !std::isfinite(reach)) return std::numeric_limits<double>::infinity();
       worst = std::max(worst, ratio);

@@ -157,7 +157,7 @@ void March::reset() {
 double March::first_dt() {
   double size = 0.0, speed = 0.0;
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    const double scale = weights_.atol[i] + weights_.rtol * std::abs(x_[i]);
+    const double scale = weights_.atol[i] + weights_.rtol * weights_.size(i, x_[i]);
     size = std::max(size, std::abs(x_[i]) / scale);
     speed = std::max(speed, std::abs(step_.dx0[i]) / scale);
   }
@@ -259,7 +259,7 @@ bool March::is_linearised() {
   Eigen::VectorXd scale(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    scale(i) = weights_.atol[k] + weights_.rtol * std::abs(step_.x0[k]);
+    scale(i) = weights_.atol[k] + weights_.rtol * weights_.size(k, step_.x0[k]);
   }
   const double defect = (step_.transition * before - after).cwiseQuotient(scale).norm();
   const double rate = std::max(before.cwiseQuotient(scale).norm(), after.cwiseQuotient(scale).norm());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -170,6 +171,21 @@ double steepness(const Element& element, double rtol) {
   return delta < 1.0 ? 1e-3 * std::pow(std::max(rtol, tightest), 1.0 / delta - 1.0) : 1.0;
 }
 
+/// On a belt a body is at rest at the belt's speed. Where the curve is infinitely steep there, the velocity is as small
+/// as it differs from that: relative to itself, an error would be as large as a whole start of slip.
+void count_from_rest(const Port& port, const External& external, ErrorWeights& weights) {
+  const double speed = port.c_v.dot(external);
+  std::optional<std::size_t> only;
+  for (Index i = 0; i < port.C_v.size(); ++i) {
+    if (port.C_v(i) == 0.0) continue;
+    if (only) return;
+    only = static_cast<std::size_t>(i);
+  }
+  if (!only || speed == 0.0) return;
+  weights.origin.resize(weights.atol.size(), 0.0);
+  weights.origin[*only] = -speed / port.C_v(static_cast<Index>(*only));
+}
+
 }  // namespace
 
 MatrixXd working_loop(const Loop& loop) {
@@ -267,7 +283,7 @@ ErrorWeights loop_weights(const Loop& loop, double rtol) { return loop_weights(l
 ErrorWeights loop_weights(const Loop& loop, double rtol, State typical, bool stuck) {
   if (!(rtol > 0.0 && rtol <= 0.1))
     throw std::invalid_argument("rtol must be in (0, 0.1], got " + std::to_string(rtol));
-  ErrorWeights weights{rtol, std::move(typical), std::exp2(std::round(std::log2(slow_time(loop))))};
+  ErrorWeights weights{rtol, std::move(typical), {}, std::exp2(std::round(std::log2(slow_time(loop))))};
   const auto n = static_cast<std::size_t>(loop.states());
   for (std::size_t i = 0; i < n; ++i) weights.atol[i] *= 1e-3;
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
@@ -281,6 +297,7 @@ ErrorWeights loop_weights(const Loop& loop, double rtol, State typical, bool stu
     if (!loop.ports[k].rubs) continue;
     limit(loop.ports[k].C, scales.displacement);
     limit(loop.ports[k].C_v, scales.velocity * (stuck ? 1.0 : steepness(loop.elements[k], rtol)));
+    if (loop.elements[k].steep_exponent() < 1.0) count_from_rest(loop.ports[k], loop.external, weights);
     // The rubbing velocity of a belt is a difference from its speed: no tolerance may ask for less than its rounding.
     const double speed = std::abs(loop.ports[k].c_v.dot(loop.external));
     for (std::size_t i = 0; i < n; ++i)

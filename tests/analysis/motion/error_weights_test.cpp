@@ -62,3 +62,11 @@ TEST_CASE("Tolerances out of range are refused with their value", "[error_weight
   CHECK_THROWS_AS((ErrorWeights{1e-6, {infinity}}.require_valid()), std::invalid_argument);
   CHECK_THROWS_AS(WeightedErrorChecker(ErrorWeights{1e-6, {0}}), std::invalid_argument);
 }
+
+TEST_CASE("error weights: a component counts from its origin, also at another tolerance") {
+  const ErrorWeights weights{1e-3, {1e-9, 1e-9}, {2.0, 0.0}};
+  CHECK(weights.size(0, 2.5) == 0.5);
+  CHECK(weights.norm({2.0, 1.0}, {2.0, 1.0}, {1e-9, 0.0}) == Approx(1.0));  // relative to nothing
+  CHECK(weights.norm({2.5, 1.0}, {2.0, 1.0}, {5e-4, 0.0}) == Approx(1.0).epsilon(1e-5));
+  CHECK(weights.scaled_to(1e-6).size(0, 2.5) == 0.5);
+}

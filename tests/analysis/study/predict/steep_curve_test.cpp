@@ -97,3 +97,24 @@ TEST_CASE("stribeck: a body that slides off ever faster is not stopped at the in
     }
   }
 }
+
+TEST_CASE("steep curve: on a belt without damping every slip begins from the same state, so there is one cycle") {
+  // The velocity of the body is that of the belt while it sticks. Relative to that, an error is a whole start of slip:
+  // three cycles were found, with periods of 49.336 s, 49.338 s and 148.008 s.
+  for (const double unit : {1.0, 1e3}) {
+    LoopParts parts;
+    parts.plant = Belt{837115.0 * unit, 23456.2 * unit, 0.0, 0.00285178};
+    auto law = test::stribeck(7915.4 * unit, 7115.55 * unit, 0.000476006);
+    law.delta = 0.5;
+    parts.friction = law;
+    PredictOptions options;
+    options.methods = {false, false, false};
+    options.nyquist = false;
+    const auto report = predict(build_loop(parts), options);
+    REQUIRE(report.cycles.size() == 1);
+    const Cycle& cycle = report.cycles.front();
+    // From SciPy's DOP853 at 1e-12 in the square root of the rubbing velocity, from break-away to stick.
+    CHECK(cycle.period == Approx(49.3360393).epsilon(1e-7));
+    CHECK(cycle.error < 1e-7);
+  }
+}
