@@ -26,6 +26,7 @@ std::vector<double> polynomial(const Roots& roots, double gain) {
     for (std::size_t i = all.size() - 1; i > 0; --i) all[i] -= root * all[i - 1];
   }
   std::vector<double> real;
+  real.reserve(all.size());
   for (const auto& one : all) real.push_back(one.real());
   return real;
 }

@@ -15,7 +15,7 @@ namespace limcycle {
 namespace {
 
 constexpr std::size_t most_searches = 3, judged_at_once = 4;
-constexpr double apart = 0.2;  ///< of two starts of local searches, in shares of the box
+constexpr double starts_apart = 0.2;  ///< of two starts of local searches, in shares of the box
 constexpr double same_cost_by = 0.01, same_place_by = 0.05, near_cost_by = 0.05;
 constexpr int most_results = 5;  ///< that are confirmed one after another, each better than the one before
 /// Where the parts of the progress bar begin: design, starts, searches, confirmation.
@@ -112,7 +112,7 @@ class TuneStudy {
     const auto is_apart = [&](std::size_t i) {
       const auto place = space_.place(report_.points[i].values);
       return std::ranges::all_of(starts, [&](std::size_t k) {
-        return distance_between(place, space_.place(report_.points[k].values)) > apart;
+        return distance_between(place, space_.place(report_.points[k].values)) > starts_apart;
       });
     };
     const auto open = open_points();

@@ -16,13 +16,13 @@ Eigen::Matrix2d reading_of(const PlantModel& plant) {
 }
 
 /// Value and first two derivatives of a least-squares parabola at the time of a row.
-struct Parabola {
+struct LocalParabola {
   double value = 0.0, slope = 0.0, bend = 0.0;
 };
 
 /// Through the rows from `first` to `last` (three at least), about row i.
-Parabola parabola_about(const std::vector<double>& t, const std::vector<double>& values, std::size_t i,
-                        std::size_t first, std::size_t last) {
+LocalParabola parabola_about(const std::vector<double>& t, const std::vector<double>& values, std::size_t i,
+                             std::size_t first, std::size_t last) {
   const double scale = std::max(t[last] - t[i], t[i] - t[first]);
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -36,8 +36,8 @@ Parabola parabola_about(const std::vector<double>& t, const std::vector<double>&
   return {values[i] + at(0), at(1) / scale, 2.0 * at(2) / (scale * scale)};
 }
 
-std::vector<Parabola> smoothed(const std::vector<double>& t, const std::vector<double>& values, std::size_t half) {
-  std::vector<Parabola> result;
+std::vector<LocalParabola> smoothed(const std::vector<double>& t, const std::vector<double>& values, std::size_t half) {
+  std::vector<LocalParabola> result;
   for (std::size_t i = 0; i < t.size(); ++i) {
     const std::size_t first = std::min(i < half ? 0 : i - half, t.size() - 3);
     result.push_back(parabola_about(t, values, i, first, std::max(std::min(i + half, t.size() - 1), first + 2)));
