@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "limcycle/questions/argument_error.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
@@ -16,15 +17,7 @@ std::string range_text(const DissipativityWishes& wishes) {
 /// The number of the element whose values are searched, checked against the element.
 PassivityRange range_of(const Case& from, const DissipativityWishes& range) {
   const std::string path = !from.loop ? from.element_path : subject_of(*from.loop).path;
-  const auto refuse = [&](const std::string& rule) {
-    return InputError({.file = {},
-                       .line = 0,
-                       .override = {},
-                       .key = range.argument,
-                       .value = range_text(range),
-                       .rule = rule,
-                       .suggestion = {}});
-  };
+  const auto refuse = [&](const std::string& rule) { return argument_error(range.argument, range_text(range), rule); };
   if (!range.path.starts_with(path + ".")) throw refuse("must be a number of the element examined, " + path + ".KEY");
   if (!(range.from < range.to)) throw refuse("must begin below its end");
   const std::string key = range.path.substr(path.size() + 1);

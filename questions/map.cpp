@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "limcycle/cases/loader/case_numbers.hpp"
+#include "limcycle/questions/argument_error.hpp"
 #include "limcycle/questions/need_memory.hpp"
 #include "limcycle/reports/number.hpp"
 
@@ -15,16 +16,7 @@ Methods map_methods(const std::string& argument, const std::vector<std::string>&
   Methods chosen{names.empty(), false, false};
   bool* const switches[] = {&chosen.describing_function, &chosen.composite, &chosen.harmonic_balance};
   for (const auto& name : names) {
-    const auto found = std::ranges::find(known, name);
-    if (found == known.end())
-      throw InputError({.file = {},
-                        .line = 0,
-                        .override = {},
-                        .key = argument,
-                        .value = name,
-                        .rule = "unknown method",
-                        .suggestion = suggest(name, known)});
-    *switches[found - known.begin()] = true;
+    *switches[position_named(argument, name, known, "unknown method")] = true;
   }
   return chosen;
 }
@@ -34,14 +26,7 @@ MapReport map_over(const Case& from, const MapAxis& x, const MapAxis& y, const M
   MapReport report;
   report.x_unit = number_at(from, dashes + "x", x.path).unit;
   report.y_unit = number_at(from, dashes + "y", y.path).unit;
-  if (x.path == y.path)
-    throw InputError({.file = {},
-                      .line = 0,
-                      .override = {},
-                      .key = dashes + "y",
-                      .value = y.path,
-                      .rule = "must be another parameter than " + dashes + "x",
-                      .suggestion = {}});
+  if (x.path == y.path) throw argument_error(dashes + "y", y.path, "must be another parameter than " + dashes + "x");
   HuntingMap& map = report.map;
   map.x = x;
   map.y = y;

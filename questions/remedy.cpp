@@ -4,41 +4,23 @@
 
 #include "limcycle/cases/loader/remedy_candidates.hpp"
 #include "limcycle/questions/answer_of.hpp"
+#include "limcycle/questions/argument_error.hpp"
 
 namespace limcycle {
-namespace {
-
-InputError unknown(const std::string& argument, const std::string& name, const std::string& rule,
-                   const std::vector<std::string>& known) {
-  return InputError({.file = {},
-                     .line = 0,
-                     .override = {},
-                     .key = argument,
-                     .value = name,
-                     .rule = rule,
-                     .suggestion = suggest(name, known)});
-}
-
-}  // namespace
-
 std::vector<RemedyCandidate> chosen_remedies(const Case& from, const std::string& argument,
                                              const std::vector<std::string>& names) {
   auto candidates = remedy_candidates(from);
   std::vector<std::string> known;
   known.reserve(candidates.size());
   for (const auto& one : candidates) known.push_back(one.name);
-  for (const auto& name : names)
-    if (std::ranges::find(known, name) == known.end()) throw unknown(argument, name, "is not a remedy", known);
+  for (const auto& name : names) position_named(argument, name, known, "is not a remedy");
   if (!names.empty())
     std::erase_if(candidates, [&](const auto& one) { return std::ranges::find(names, one.name) == names.end(); });
   return candidates;
 }
 
 std::size_t cost_named(const std::string& argument, const std::string& name) {
-  const auto found = std::ranges::find(cost_names, name);
-  if (found == std::end(cost_names))
-    throw unknown(argument, name, "is not a cost", {std::begin(cost_names), std::end(cost_names)});
-  return static_cast<std::size_t>(found - std::begin(cost_names));
+  return position_named(argument, name, {std::begin(cost_names), std::end(cost_names)}, "is not a cost");
 }
 
 std::vector<std::string> overrides_of_remedy(const RemedyReport& report, const std::string& name) {

@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/study/continuation/margin.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
+#include "limcycle/questions/argument_error.hpp"
 
 namespace limcycle {
 
@@ -28,13 +29,7 @@ std::vector<CaseNumber> threshold_numbers(const Case& from, const std::string& a
   for (const auto& path : paths) {
     chosen.push_back(number_at(from, argument, path));
     if (chosen.back().value == 0.0 || !std::isfinite(chosen.back().value))
-      throw InputError({.file = {},
-                        .line = 0,
-                        .override = {},
-                        .key = argument,
-                        .value = path,
-                        .rule = "is zero or absent: no factor changes it",
-                        .suggestion = {}});
+      throw argument_error(argument, path, "is zero or absent: no factor changes it");
   }
   return chosen;
 }

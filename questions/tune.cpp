@@ -8,18 +8,13 @@
 #include "limcycle/cases/loader/loop_variation.hpp"
 #include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/questions/answer_of.hpp"
+#include "limcycle/questions/argument_error.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
 
 constexpr std::size_t most_numbers = 8;
-
-InputError refused(const std::string& argument, const std::string& value, const std::string& rule,
-                   const std::string& suggestion = {}) {
-  return InputError(
-      {.file = {}, .line = 0, .override = {}, .key = argument, .value = value, .rule = rule, .suggestion = suggestion});
-}
 
 bool wants(const TuneWishes& wishes, TuneCost cost) {
   return wishes.minimised == cost || wishes.limits[static_cast<std::size_t>(cost)];
@@ -37,18 +32,20 @@ void check_costs(const Case& from, const TuneWishes& wishes) {
   };
   if (wants(wishes, TuneCost::ms)) {
     const std::string why = linear_costs(parts, 0.0).why_not;
-    if (!why.empty()) throw refused(key(TuneCost::ms), "ms", "this loop has no peak sensitivity: " + why);
+    if (!why.empty()) throw argument_error(key(TuneCost::ms), "ms", "this loop has no peak sensitivity: " + why);
   }
   for (const TuneCost cost : {TuneCost::settling, TuneCost::ise}) {
     if (!wants(wishes, cost)) continue;
     const std::string name(to_string(cost));
-    if (!uses_error(parts)) throw refused(key(cost), name, "this loop has no set-point to settle at: no controller");
-    if (parts.reference_rate != 0.0) throw refused(key(cost), name, "needs a set-point that stands still, not a ramp");
+    if (!uses_error(parts))
+      throw argument_error(key(cost), name, "this loop has no set-point to settle at: no controller");
+    if (parts.reference_rate != 0.0)
+      throw argument_error(key(cost), name, "needs a set-point that stands still, not a ramp");
   }
   if (wants(wishes, TuneCost::ise) && !(horizon_of(from, wishes) > 0.0))
-    throw refused(key(TuneCost::ise), "ise",
-                  "is an integral over a time that the case does not state: add " + wishes.names.horizon +
-                      ", or [simulate] with duration");
+    throw argument_error(key(TuneCost::ise), "ise",
+                         "is an integral over a time that the case does not state: add " + wishes.names.horizon +
+                             ", or [simulate] with duration");
 }
 
 /// What the reader of cases says of a value; may be empty.
@@ -67,36 +64,33 @@ TuneNumber tune_number(const Case& from, const TuneWishes::Bounds& bounds, const
   const CaseNumber number = number_named(from, argument, bounds.name);
   const auto text = [&](double value) { return number.path + "=" + shortest(value); };
   if (!std::isfinite(bounds.low) || !std::isfinite(bounds.high) || !(bounds.low < bounds.high))
-    throw refused(argument, bounds.name, "the lower bound must be below the upper one, and both finite");
+    throw argument_error(argument, bounds.name, "the lower bound must be below the upper one, and both finite");
   const LoopVariation variation(from, argument, number.path);
   for (const double bound : {bounds.low, bounds.high})
     if (!variation.parts({&bound, 1}))
-      throw refused(argument, text(bound), "this bound is not a valid value with the other numbers as they stand",
-                    broken_rule(from, override_of(number.path, bound)));
+      throw argument_error(argument, text(bound),
+                           "this bound is not a valid value with the other numbers as they stand",
+                           broken_rule(from, override_of(number.path, bound)));
   return {number.path, number.unit, number.value, bounds.low, bounds.high};
 }
 
 }  // namespace
 
 TuneCost tune_cost_named(const std::string& argument, const std::string& name) {
-  const auto found = std::ranges::find(tune_cost_names, name);
-  if (found == std::end(tune_cost_names)) {
-    const std::vector<std::string> known{std::begin(tune_cost_names), std::end(tune_cost_names)};
-    throw refused(argument, name, "is not a cost", suggest(name, known));
-  }
-  return static_cast<TuneCost>(found - std::begin(tune_cost_names));
+  return static_cast<TuneCost>(
+      position_named(argument, name, {std::begin(tune_cost_names), std::end(tune_cost_names)}, "is not a cost"));
 }
 
 std::vector<TuneNumber> tune_numbers(const Case& from, const TuneWishes& wishes) {
   need_loop(from);
   const std::string& argument = wishes.names.vary;
   if (wishes.vary.empty() || wishes.vary.size() > most_numbers)
-    throw refused(argument, {}, "needs 1 to 8 numbers with their bounds, such as kp=1:100");
+    throw argument_error(argument, {}, "needs 1 to 8 numbers with their bounds, such as kp=1:100");
   std::vector<TuneNumber> numbers;
   for (const auto& bounds : wishes.vary) {
     numbers.push_back(tune_number(from, bounds, argument));
     if (std::ranges::count(numbers, numbers.back().path, &TuneNumber::path) > 1)
-      throw refused(argument, bounds.name, "is named twice");
+      throw argument_error(argument, bounds.name, "is named twice");
   }
   check_costs(from, wishes);
   return numbers;

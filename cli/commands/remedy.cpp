@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "limcycle/cases/loader/remedy_candidates.hpp"
-#include "limcycle/cases/loader/with_overrides.hpp"
 #include "limcycle/cli/asking_of.hpp"
+#include "limcycle/cli/changed_case.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/message.hpp"
 #include "limcycle/cli/option_values.hpp"
@@ -44,12 +44,8 @@ CostWeights weights_of(const std::vector<std::string>& written) {
 
 /// The case file with the remedy of --apply.
 std::string fixed_case(const Case& from, const RemedyReport& report, const std::string& name) {
-  const auto overrides = overrides_of_remedy(report, name);
-  auto text = text_with_overrides(from, overrides, "limcycle remedy: " + name);
-  if (text) return *std::move(text);
-  std::string flags;
-  for (const auto& one : overrides) flags += " --set '" + one + "'";
-  throw NoAnswer(name + ": this file cannot be changed in its place; the remedy is" + flags);
+  return changed_case(from, overrides_of_remedy(report, name), "limcycle remedy: " + name, name + ": ",
+                      "the remedy is");
 }
 
 int exit_code(const RemedyReport& report) {

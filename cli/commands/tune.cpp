@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "limcycle/cases/loader/with_overrides.hpp"
 #include "limcycle/cli/asking_of.hpp"
+#include "limcycle/cli/changed_case.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/message.hpp"
 #include "limcycle/cli/option_values.hpp"
@@ -64,12 +64,7 @@ TuneWishes wishes_of(const TuneFlags& flags) {
 
 /// The case file with the numbers that were found.
 std::string tuned_case(const Case& from, const TuneReport& report) {
-  const auto overrides = overrides_of_tuning(report);
-  auto text = text_with_overrides(from, overrides, "limcycle tune");
-  if (text) return *std::move(text);
-  std::string flags;
-  for (const auto& one : overrides) flags += " --set '" + one + "'";
-  throw NoAnswer("this file cannot be changed in its place; the numbers are" + flags);
+  return changed_case(from, overrides_of_tuning(report), "limcycle tune", "", "the numbers are");
 }
 
 int run(TuneFlags flags) {

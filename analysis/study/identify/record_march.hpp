@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "limcycle/analysis/illinois.hpp"
 #include "limcycle/analysis/study/identify/record.hpp"
 #include "limcycle/models/dual.hpp"
 #include "limcycle/models/element/concepts.hpp"
@@ -219,28 +221,14 @@ class RecordMarch {
   }
   double share_of_break(const MotionPiece& piece, const S& time, double step, std::size_t k, double at_end) {
     guards_at(piece, time, z_);
-    double a = 0.0, b = 1.0, fa = value_of(guards_[k]), fb = at_end;
-    if (!(fa > 0.0)) return 0.0;
-    const double close = 1e-14 * (fa - fb);
-    for (int i = 0, side = 0; i < 60 && b - a > 1e-15; ++i) {
-      const double c = b - fb * (b - a) / (fb - fa);
-      advance(piece, time, S(step * c), stop_);
-      guards_at(piece, time + step * c, stop_);
-      const double fc = value_of(guards_[k]);
-      if (std::abs(fc) <= close) return c;
-      if (fc < 0.0) {
-        b = c;
-        fb = fc;
-        if (side < 0) fa *= 0.5;
-        side = -1;
-      } else {
-        a = c;
-        fa = fc;
-        if (side > 0) fb *= 0.5;
-        side = 1;
-      }
-    }
-    return b;
+    const double at_start = value_of(guards_[k]);
+    if (!(at_start > 0.0)) return 0.0;
+    const auto guard = [&](double share) -> std::optional<double> {
+      advance(piece, time, S(step * share), stop_);
+      guards_at(piece, time + step * share, stop_);
+      return value_of(guards_[k]);
+    };
+    return falling_zero(guard, 0.0, at_start, 1.0, at_end, 1e-14 * (at_start - at_end));
   }
 
   /// The length `h` of the step to the switch, with its derivatives: those at which the guard stays 0.

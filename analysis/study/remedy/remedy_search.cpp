@@ -1,7 +1,6 @@
 #include "limcycle/analysis/study/remedy/remedy_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "limcycle/analysis/short_number.hpp"

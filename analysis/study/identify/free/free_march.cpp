@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/illinois.hpp"
 #include "limcycle/analysis/motion/steppers/radau_stages.hpp"
 
 namespace limcycle {
@@ -146,28 +147,14 @@ bool FreeMarch::accept(double h) {
 /// time with a step of its own.
 double FreeMarch::share_of_break(double h, double share, std::size_t guard, double at_end) {
   guards(t_, x_);
-  double a = 0.0, b = share, fa = guards_[guard], fb = at_end;
-  if (!(fa > 0.0)) return 0.0;
-  const double close = 1e-13 * (fa - fb);
-  for (int i = 0, side = 0; i < 60 && b - a > 1e-15; ++i) {
-    const double c = b - fb * (b - a) / (fb - fa);
-    if (!solve(h * c)) return 0.5 * (a + b);
-    guards(t_ + h * c, probe_ = x_ + increments_[2]);
-    const double fc = guards_[guard];
-    if (std::abs(fc) <= close) return c;
-    if (fc < 0.0) {
-      b = c;
-      fb = fc;
-      if (side < 0) fa *= 0.5;
-      side = -1;
-    } else {
-      a = c;
-      fa = fc;
-      if (side > 0) fb *= 0.5;
-      side = 1;
-    }
-  }
-  return b;
+  const double at_start = guards_[guard];
+  if (!(at_start > 0.0)) return 0.0;
+  const auto value_at = [&](double part) -> std::optional<double> {
+    if (!solve(h * part)) return std::nullopt;
+    guards(t_ + h * part, probe_ = x_ + increments_[2]);
+    return guards_[guard];
+  };
+  return falling_zero(value_at, 0.0, at_start, share, at_end, 1e-13 * (at_start - at_end));
 }
 
 /// The guard that breaks first within the solved step, looked for at its stages.

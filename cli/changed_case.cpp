@@ -1,0 +1,17 @@
+#include "limcycle/cli/changed_case.hpp"
+
+#include "limcycle/cases/loader/with_overrides.hpp"
+#include "limcycle/questions/answer_of.hpp"
+
+namespace limcycle {
+
+std::string changed_case(const Case& from, const std::vector<std::string>& overrides, const std::string& remark,
+                         const std::string& who, const std::string& what) {
+  auto text = text_with_overrides(from, overrides, remark);
+  if (text) return *std::move(text);
+  std::string flags;
+  for (const auto& one : overrides) flags += " --set '" + one + "'";
+  throw NoAnswer(who + "this file cannot be changed in its place; " + what + flags);
+}
+
+}  // namespace limcycle

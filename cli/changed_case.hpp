@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "limcycle/cases/loader/case.hpp"
+
+namespace limcycle {
+
+/// The text of a case file with numbers that a command found; see text_with_overrides(). Where it cannot be changed
+/// throws NoAnswer, which says so between `who` and `what`, and has the flags that do the same.
+std::string changed_case(const Case& from, const std::vector<std::string>& overrides, const std::string& remark,
+                         const std::string& who, const std::string& what);
+
+}  // namespace limcycle
