@@ -77,6 +77,7 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
   field_->modes() = from.modes;
   March& march = this->march();
   march.begin(from.x, 0.0, target);
+  carried_ = Eigen::MatrixXd::Identity(std::ssize(from.x), std::ssize(from.x));
   result.largest.assign(from.x.size(), 0.0);
   if (options_.trace) append(result.trace, *field_, march);
   double first_switch = infinite, last_switch = -infinite;
@@ -86,7 +87,6 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
     if (result.status == Status::converged) result.status = march.step(options_.longest);
     if (result.status == Status::converged && march.last().crept) result.status = Status::no_cycle;
     if (result.status != Status::converged) break;
-    if (options_.derivative) result.factors.push_back(march.last().transition);
     if (options_.extremes) result.extremes.include(*field_, march, static_cast<std::size_t>(march.steps() - 1));
     if (options_.trace) append(result.trace, *field_, march);
     if (march.last().switched) {
@@ -98,6 +98,7 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
       const double centre = half_ && k < half_->centre.size() ? half_->centre(k) : 0.0;
       result.largest[i] = std::max(result.largest[i], std::abs(march.x()[i] - centre));
     }
+    if (options_.derivative && !result.time_shift) carry(result, march);
   } while (!march.last().on_section);
   steps_ += march.steps();
   result.state = {march.x(), field_->modes()};
@@ -105,6 +106,57 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
   result.switch_distance = std::min(first_switch, result.time - last_switch) / result.time;
   if (options_.derivative && result.status == Status::converged) close_derivative(result, from, target);
   return result;
+}
+
+Eigen::VectorXd ReturnMap::sizes(const Result& result) const {
+  const auto n = std::ssize(typical_);
+  return Eigen::Map<const Eigen::VectorXd>(result.largest.data(), n)
+      .cwiseMax(1e-6 * Eigen::Map<const Eigen::VectorXd>(typical_.data(), n));
+}
+
+/// Carries deviations through the last step. After a switch: if all of them are shifts in time, M = f rho with f the
+/// rate, nothing else has to be carried.
+void ReturnMap::carry(Result& result, March& march) {
+  constexpr double rounding = 1e-11;
+  result.factors.push_back(march.last().transition);
+  if (result.factors.back().size() == 0) carried_.resize(0, 0);
+  if (carried_.size() == 0) return;
+  carried_ = result.factors.back() * carried_;
+  if (!march.last().switched) return;
+  State rate;
+  field_->rate(march.x(), rate, march.t());
+  const Eigen::VectorXd size = sizes(result);
+  const Eigen::VectorXd f = Eigen::Map<const Eigen::VectorXd>(rate.data(), size.size()).cwiseQuotient(size);
+  const Eigen::MatrixXd M = size.cwiseInverse().asDiagonal() * carried_;
+  if (!(f.squaredNorm() > 0.0)) return;
+  const Eigen::RowVectorXd rho = f.transpose() * M / f.squaredNorm();
+  if ((M - f * rho).norm() > rounding * M.norm()) return;
+  result.time_shift = rho;
+  march.track(false);
+}
+
+/// Product of the factors, and the gradients of the extremes on the way.
+Eigen::MatrixXd ReturnMap::product(Result& result) const {
+  const auto n = std::ssize(typical_);
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Identity(n, n);
+  // An extreme moves with the state there; its moment does not matter, since y stands still.
+  const auto extreme = [&](double at, std::size_t step, const Eigen::MatrixXd& next, Eigen::RowVectorXd& gradient) {
+    const double share = at - static_cast<double>(step);
+    if (!options_.extremes || share < 0.0 || share > 1.0) return;
+    if (at == 0.0 || at == static_cast<double>(result.factors.size()))  // on the section, or in shifts of time
+      gradient = Eigen::RowVectorXd::Zero(n);
+    else
+      gradient = loop_->C_y * ((1.0 - share) * whole + share * next).topRows(loop_->states());
+  };
+  for (auto* gradient : {&result.low_gradient, &result.high_gradient})
+    if (options_.extremes && result.time_shift) *gradient = Eigen::RowVectorXd::Zero(n);
+  for (std::size_t k = 0; k < result.factors.size(); ++k) {
+    const Eigen::MatrixXd next = result.factors[k] * whole;
+    extreme(result.extremes.low_at, k, next, result.low_gradient);
+    extreme(result.extremes.high_at, k, next, result.high_gradient);
+    whole = next;
+  }
+  return whole;
 }
 
 /// Projects along the flow onto the section, multiplies the factors, and checks that the derivative carries the flow to
@@ -120,28 +172,19 @@ void ReturnMap::close_derivative(Result& result, const LoopState& from, const Se
   const Eigen::Map<const Eigen::VectorXd> f0(rate_start.data(), n), f1(rate_end.data(), n);
   Eigen::RowVectorXd normal = Eigen::RowVectorXd::Zero(n);
   normal.head(target.C.size()) = target.C;
-  const double crossing = normal * f1;
-  Eigen::MatrixXd whole = Eigen::MatrixXd::Identity(n, n);
-  // An extreme moves with the state there; its moment does not matter, since y stands still.
-  const auto extreme = [&](double at, std::size_t step, const Eigen::MatrixXd& next, Eigen::RowVectorXd& gradient) {
-    const double share = at - static_cast<double>(step);
-    if (!options_.extremes || share < 0.0 || share > 1.0) return;
-    if (at == 0.0 || at == static_cast<double>(result.factors.size()))  // on the section
-      gradient = Eigen::RowVectorXd::Zero(n);
-    else
-      gradient = loop_->C_y * ((1.0 - share) * whole + share * next).topRows(loop_->states());
-  };
-  for (std::size_t k = 0; k < result.factors.size(); ++k) {
-    const Eigen::MatrixXd next = result.factors[k] * whole;
-    extreme(result.extremes.low_at, k, next, result.low_gradient);
-    extreme(result.extremes.high_at, k, next, result.high_gradient);
-    whole = next;
+  Eigen::MatrixXd whole = product(result);
+  const Eigen::VectorXd size = sizes(result);
+  if (result.time_shift) {  // the least change with which the motion at the start shifts as it should
+    const Eigen::VectorXd along = f0.cwiseQuotient(size);
+    const Eigen::RowVectorXd dual = along.cwiseQuotient(size).transpose() / along.squaredNorm();
+    *result.time_shift += (1.0 - result.time_shift->dot(f0)) * dual;
+    whole = f1 * *result.time_shift;
+    result.factors = {whole};
   }
-  const Eigen::VectorXd size = Eigen::Map<const Eigen::VectorXd>(result.largest.data(), n)
-                                   .cwiseMax(1e-6 * Eigen::Map<const Eigen::VectorXd>(typical_.data(), n));
   result.flow_defect = (whole * f0 - f1).cwiseQuotient(size).norm() / f1.cwiseQuotient(size).norm();
-  result.time_gradient = -normal * whole / crossing;
+  result.time_gradient = -normal * whole / (normal * f1);
   result.derivative = whole + f1 * result.time_gradient;
+  if (result.time_shift) result.derivative.setZero();
 }
 
 /// Middle of the swing: the centre of reflection of a half map, else halfway between the extremes.

@@ -53,6 +53,10 @@ class ReturnMap {
     Eigen::RowVectorXd time_gradient;  ///< d(time)/d(from)
     Eigen::RowVectorXd low_gradient, high_gradient;  ///< d(extremes)/d(from), if they were requested too (one return)
     std::vector<Eigen::MatrixXd> factors;            ///< step by step, the first acts first, before the projection
+    /// Present if a switch leaves nothing of a deviation but a time shift (s, a row over the states at the start): a
+    /// body that sticks, all of whose states but the position are then known. From there on the motion is the same one,
+    /// earlier or later. That is exact, so the derivative is zero, and one factor stands for all.
+    std::optional<Eigen::RowVectorXd> time_shift;
     double flow_defect = 0.0;  ///< relative error of the unprojected derivative in carrying the rate at the start to
                                ///< that at the end: the error of the trivial multiplier 1
   };
@@ -85,13 +89,17 @@ class ReturnMap {
   Result once(const LoopState& from);
   March& march();
   double middle(const Result& result) const;
+  void carry(Result& result, March& march);
   void close_derivative(Result& result, const LoopState& from, const Section& target);
+  Eigen::MatrixXd product(Result& result) const;
+  Eigen::VectorXd sizes(const Result& result) const;
 
   const Loop* loop_;
   State typical_;
   ErrorWeights weights_;
   StepperKind kind_;
   std::unique_ptr<LoopField> field_;
+  Eigen::MatrixXd carried_;     ///< product of the factors so far
   std::optional<March> march_;  ///< for the tolerance and the kind of the last map
   double march_rtol_ = 0.0;
   Section section_;

@@ -118,3 +118,20 @@ TEST_CASE("steep curve: on a belt without damping every slip begins from the sam
     CHECK(cycle.error < 1e-7);
   }
 }
+
+TEST_CASE(
+    "stribeck: the multiplier of a mass that sticks to its belt is zero, whatever the slope of the curve at rest") {
+  // While it sticks only its place is free, and that is a shift in time: nothing of a deviation is left.
+  for (const double delta : {0.5, 1.0, 2.0}) {
+    auto law = stribeck(12.1865, 7.08891, 7.11449e-4);
+    law.delta = delta;
+    INFO("delta " << delta);
+    const PredictReport report = predict(loop_of(Belt{0.857457, 734.132, 0.0, 0.0825526}, NoController{}, law));
+    REQUIRE(report.cycles.size() == 1);
+    const Cycle& cycle = report.cycles.front();
+    CHECK(cycle.stable == true);
+    REQUIRE(cycle.multipliers.size() == 1);
+    CHECK(std::abs(cycle.multipliers.front()) < 1e-10);
+    CHECK(cycle.multiplier_error < 1e-6);
+  }
+}
