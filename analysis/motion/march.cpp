@@ -372,7 +372,8 @@ Status March::step(double t_end) {
     if (step_.t1 != t_ + tried) shortened = false;  // a difference of times would be rounded
     const double length = step_.t1 - step_.t0;
     field_.rate(step_.x1, step_.dx1, step_.t1);
-    if (const auto passage = passage_of_layer()) {
+    const auto passage = passage_of_layer();
+    if (passage && length > 4.0 * shortest_step()) {  // after a wait of 1e9 s no shorter step can be told from none
       within_layer = 0.25 * *passage;
       shortened = truncated_ = false;
       continue;

@@ -149,3 +149,15 @@ TEST_CASE("predict: a hunting cycle just above a jump of the map from stop to st
   CHECK(report.cycles.front().period == Approx(1.8196089667).epsilon(1e-6));  // along a branch, from ki where it hunts
   CHECK(report.cycles.front().amplitude == Approx(1.5059603e-4).epsilon(1e-6));
 }
+
+TEST_CASE("map of stops: a flight that waits until no step can be told from none ends") {
+  auto law = stribeck(149.13887521989727, 149.13887521989727, 0.016989244554288064);
+  law.delta = 1.0;
+  Pid controller = pid(27289.065109563155, 87734.41624008738, 891.9918385924402);
+  controller.saturation = 736.5400488263477;
+  const Loop loop = loop_of(Mass{5.988762394979704, 0.0, 0.0}, controller, law);
+  auto map = StopMap::of(loop, 1e-8, {});
+  REQUIRE(map);
+  for (double p = 27.0; p > 5.0; p /= 1.25) map->ratio(p);
+  CHECK(map->steps() < 8 * 3000);
+}
