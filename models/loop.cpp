@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "limcycle/models/diagram/assemble.hpp"
+#include "limcycle/models/diagram/on_clock.hpp"
 #include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/discrete.hpp"
+#include "limcycle/models/sampled_response.hpp"
 
 namespace limcycle {
 namespace {
@@ -155,6 +157,21 @@ std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {
       return BrokenRule{block.path, "needs the applied force: it can only act on a body, with `on`"};
   }
   if (!nonlinear) return BrokenRule{"diagram", "needs a nonlinear element, such as a friction law"};
+  return broken_clocks(diagram);
+}
+
+/// What does not go together with a sampled controller yet.
+std::optional<BrokenRule> validate_sampled_diagram(const LoopParts& parts) {
+  if (!parts.diagram || !is_sampled(*parts.diagram)) return std::nullopt;
+  if (parts.reference_rate != 0.0)
+    return BrokenRule{"diagram.reference", "a ramp cannot stand beside a sample_time yet: it must be constant"};
+  for (const Block& block : parts.diagram->blocks) {
+    const auto* plant = std::get_if<Plant>(&block.what);
+    const auto* linear = std::get_if<LinearBlock>(&block.what);
+    const bool late = (plant != nullptr && model_of(*plant).delay > 0.0) ||
+                      (linear != nullptr && std::holds_alternative<DelayBlock>(*linear));
+    if (late) return BrokenRule{block.path + ".delay", "a dead time cannot stand beside a sample_time yet"};
+  }
   return std::nullopt;
 }
 
@@ -177,6 +194,7 @@ Subject subject_of(const LoopParts& parts) {
 
 std::optional<BrokenRule> validate(const LoopParts& parts) try {
   if (auto broken = parts.diagram ? validate_diagram(*parts.diagram) : validate_slots(parts)) return broken;
+  if (auto broken = validate_sampled_diagram(parts)) return broken;
   Loop loop = assemble(parts);
   const std::string reference = parts.diagram ? "diagram.reference" : "loop.reference";
   if (parts.reference_rate != 0.0 && loop.delay > 0.0)
@@ -227,6 +245,7 @@ Loop::Resolved Loop::resolved(std::complex<double> s) const {
 }
 
 Eigen::MatrixXcd Loop::element_response(std::complex<double> s) const {
+  if (sampled) return sampled_response(*this, s).elements;
   const auto [X, shift] = respond(*this, s);
   const auto ne = std::ssize(elements);
   Eigen::MatrixXcd H(ne, ne);
@@ -244,6 +263,7 @@ Eigen::MatrixXcd Loop::element_response(std::complex<double> s) const {
 }
 
 Eigen::RowVectorXcd Loop::output_response(double w) const {
+  if (sampled) return sampled_response(*this, {0.0, w}).output;
   return C_y.cast<std::complex<double>>() * respond(*this, {0.0, w}).X;
 }
 

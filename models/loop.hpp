@@ -85,7 +85,7 @@ struct Loop {
   std::vector<std::string> state_names;  ///< as written in the case; see own_states
   /// Of a loop with a sampled controller: the same loop as it moves, its controller an element with a clock (see
   /// Sampled). This one has the continuous controller that acts as it does on average, and the dead time of hold and
-  /// computation: it is right to first order in the sample time.
+  /// computation: it is right to first order in the sample time. Its responses are those of the sampled controller.
   std::shared_ptr<const Loop> sampled;
   /// Of that loop with an element in place of its controller: the loop with the continuous controller and without that
   /// dead time, from which sizes and time scales are taken.
@@ -99,7 +99,8 @@ struct Loop {
   Eigen::Index states() const { return A.rows(); }
 
   /// Closed-loop matrix H(jw) from element outputs w to element inputs x, n_e x n_e, exact with delay. The condition
-  /// for a harmonic balance with one element is 1 - N H = 0; the loop's G of the literature is -H. Cost O(n^3).
+  /// for a harmonic balance with one element is 1 - N H = 0; the loop's G of the literature is -H. Of a loop with a
+  /// sampled controller that of its pulse transfer function and hold (see sampled_response()). Cost O(n^3).
   Eigen::MatrixXcd element_response(double w) const { return element_response(std::complex<double>(0.0, w)); }
   /// The same at any s off the poles.
   Eigen::MatrixXcd element_response(std::complex<double> s) const;

@@ -27,9 +27,10 @@ struct SampledSizes {
   /// is a rate.
   double output(const Loop& loop, std::size_t k) const {
     const Sampled<double>& sampled = *sampled_at(loop, k);
-    const bool commands =
-        loop.ports[k].path == "loop.controller" && sampled_at(loop, loop.elements.size() - 1) == nullptr;
-    if (commands) return output_level(loop, loop.elements.size() - 1);
+    const bool drives =
+        loop.ports[k].path == "loop.controller" || !loop.B.col(static_cast<Eigen::Index>(k)).isZero(0.0);
+    if (drives && sampled_at(loop, loop.elements.size() - 1) == nullptr)
+      return output_level(loop, loop.elements.size() - 1);
     double mean = sampled.D, size = 0.0;
     for (std::size_t i = 0; i < sampled.C.size(); ++i) {
       if (i < states.size()) size += std::abs(sampled.C[i]) * states[i];
@@ -40,26 +41,37 @@ struct SampledSizes {
   }
 };
 
-/// Which entries of X belong to the plant and what follows it, and which to the controller.
+/// Which entries of X belong to the plant and what follows it, and which, with their names, to controllers.
 struct Shares {
-  State plant, controller;
+  State plant;
+  std::vector<std::pair<std::string, double>> controllers;
+
+  /// The next `count` values of the controller at a path, which they leave: of a diagram those whose names begin with
+  /// that of the block.
+  State take(const std::string& path, std::size_t count) {
+    constexpr std::string_view diagram = "diagram.";
+    const std::string block = path.starts_with(diagram) ? path.substr(diagram.size()) + "." : "";
+    State some;
+    std::erase_if(controllers, [&](const auto& one) {
+      const bool own = some.size() < count && one.first.starts_with(block);
+      if (own) some.push_back(one.second);
+      return own;
+    });
+    return some;
+  }
 };
 template <class Values>
 Shares shares_of(const Loop& loop, const Values& X) {
   Shares shares;
   for (std::size_t i = 0; i < loop.continuous->state_names.size(); ++i) {
-    const bool linear = std::ranges::find(loop.state_names, loop.continuous->state_names[i]) != loop.state_names.end();
-    (linear ? shares.plant : shares.controller).push_back(X[static_cast<decltype(X.size())>(i)]);
+    const std::string& name = loop.continuous->state_names[i];
+    const double value = X[static_cast<decltype(X.size())>(i)];
+    if (std::ranges::find(loop.state_names, name) != loop.state_names.end())
+      shares.plant.push_back(value);
+    else
+      shares.controllers.emplace_back(name, value);
   }
   return shares;
-}
-
-/// The next `count` of some values.
-State taken(const State& values, std::size_t& from, std::size_t count) {
-  const std::size_t to = std::min(values.size(), from + count);
-  State some(values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(to));
-  from = to;
-  return some;
 }
 
 }  // namespace
@@ -79,10 +91,10 @@ double repetition_time(const Loop& loop) {
 }
 
 State sampled_sizes(const Loop& loop, const State& continuous) {
-  auto [result, of_controller] = shares_of(loop, continuous);
+  Shares shares = shares_of(loop, continuous);
+  State result = shares.plant;
   const Eigen::VectorXd X = Eigen::Map<const Eigen::VectorXd>(result.data(), loop.states());
   Eigen::VectorXd outputs = Eigen::VectorXd::Zero(std::ssize(loop.elements));
-  std::size_t next = 0;
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
     const Element& element = loop.elements[k];
     const Port& port = loop.ports[k];
@@ -92,7 +104,7 @@ State sampled_sizes(const Loop& loop, const State& continuous) {
     output = sizes.input;
     const auto* sampled = sampled_at(loop, k);
     if (sampled) {
-      sizes.states = taken(of_controller, next, states_of_controller(*sampled));
+      sizes.states = shares.take(port.path, states_of_controller(*sampled));
       output = sizes.output(loop, k);
     }
     for (int i = 0; i < element.states(); ++i) {
@@ -109,12 +121,12 @@ State sampled_sizes(const Loop& loop, const State& continuous) {
 }
 
 LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X) {
-  const auto [plant, controller] = shares_of(loop, X);
-  LoopState state = without_history(loop, Eigen::Map<const Eigen::VectorXd>(plant.data(), std::ssize(plant)));
+  Shares shares = shares_of(loop, X);
+  LoopState state =
+      without_history(loop, Eigen::Map<const Eigen::VectorXd>(shares.plant.data(), std::ssize(shares.plant)));
   LoopField field(loop);
   field.modes() = state.modes;
   bool read = false;  // elements behind a reading begin at its output
-  std::size_t next = 0;
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
     const Element& element = loop.elements[k];
     const auto* sampled = sampled_at(loop, k);
@@ -126,7 +138,7 @@ LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X) {
     if (sampled) {
       const auto own = z.subspan(Sampled<double>::first_own, static_cast<std::size_t>(sampled->order()));
       std::ranges::fill(own, sampled->reading(field.input(k).x));
-      std::ranges::copy(taken(controller, next, states_of_controller(*sampled)), own.begin());
+      std::ranges::copy(shares.take(loop.ports[k].path, states_of_controller(*sampled)), own.begin());
     }
     field.modes()[k] = state.modes[k] = element.start(field.input(k), z);
   }

@@ -69,7 +69,6 @@ BlockKind read_state_space(const Section& section, const Keys& keys) {
 
 Pid read_pid(const Section& section, const Keys& keys) {
   const Pid pid = read_owner<Pid>(section, keys);
-  if (pid.is_on()) throw section.error("sample_time", "is not for a block of a diagram yet");
   if (pid.friction_compensation > 0.0)
     throw section.error("friction_compensation", "is a block of its own in a diagram",
                         "kind = \"friction-compensation\", on = the plant; add its output to the command");

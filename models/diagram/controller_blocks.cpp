@@ -8,23 +8,6 @@
 namespace limcycle {
 namespace {
 
-StateSpace discrete_of(const Controller& controller, const Sampling& sampling) {
-  const auto* pid = std::get_if<Pid>(&controller);
-  if (pid != nullptr && sampling.velocity_window > 0.0)
-    return windowed_difference(*pid, sampling.sample_time, static_cast<int>(sampling.velocity_window));
-  return backward_difference(model_of(controller), sampling.sample_time);
-}
-
-/// A derivative over n samples is that over one, behind a mean of n: on average a lag of (n - 1)/2 samples.
-ControllerModel model_behind_window(const Controller& controller, const Sampling& sampling) {
-  if (const auto* pid = std::get_if<Pid>(&controller); pid != nullptr && sampling.velocity_window > 1.0) {
-    Pid slower = *pid;
-    slower.tf += 0.5 * (sampling.velocity_window - 1.0) * sampling.sample_time;
-    return slower.model();
-  }
-  return model_of(controller);
-}
-
 /// The integral of a PID as blocks of its own, behind the rest of it.
 SignalSum through_held_integral(std::vector<Block>& blocks, const Pid& pid, SignalSum e) {
   const std::string path = "loop.controller";
@@ -47,6 +30,22 @@ SignalSum through_held_integral(std::vector<Block>& blocks, const Pid& pid, Sign
 }
 
 }  // namespace
+
+StateSpace discrete_of(const Controller& controller, const Sampling& sampling) {
+  const auto* pid = std::get_if<Pid>(&controller);
+  if (pid != nullptr && sampling.velocity_window > 0.0)
+    return windowed_difference(*pid, sampling.sample_time, static_cast<int>(sampling.velocity_window));
+  return backward_difference(model_of(controller), sampling.sample_time);
+}
+
+ControllerModel model_behind_window(const Controller& controller, const Sampling& sampling) {
+  if (const auto* pid = std::get_if<Pid>(&controller); pid != nullptr && sampling.velocity_window > 1.0) {
+    Pid slower = *pid;
+    slower.tf += 0.5 * (sampling.velocity_window - 1.0) * sampling.sample_time;
+    return slower.model();
+  }
+  return model_of(controller);
+}
 
 Element encoder(const Sampling& sampling, double every) {
   Sampled<double> element;

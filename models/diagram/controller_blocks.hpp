@@ -15,6 +15,13 @@ SignalSum through_controller(std::vector<Block>& blocks, const Controller& contr
 /// The same for a cascade.
 SignalSum through_cascade(std::vector<Block>& blocks, const Cascade& cascade, SignalSum e, Clock clock);
 
+/// The difference equations of a controller at the ticks of a clock.
+StateSpace discrete_of(const Controller& controller, const Sampling& sampling);
+
+/// Its equations with a derivative over one sample in place of that over n, behind a mean of n: on average a lag of
+/// (n - 1)/2 samples.
+ControllerModel model_behind_window(const Controller& controller, const Sampling& sampling);
+
 /// A reading on an encoder, held until the next one: of every tick of the clock, or every n-th.
 Element encoder(const Sampling& sampling, double every);
 

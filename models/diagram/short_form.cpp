@@ -1,5 +1,6 @@
 #include "limcycle/models/diagram/controller_blocks.hpp"
 #include "limcycle/models/diagram/expand.hpp"
+#include "limcycle/models/diagram/on_clock.hpp"
 
 namespace limcycle {
 
@@ -50,11 +51,13 @@ LoopParts with_linear_integral(LoopParts parts) {
 }  // namespace
 
 Loop assemble(const LoopParts& parts) {
-  if (parts.diagram) return assemble(expanded(*parts.diagram), parts.reference, parts.load);
   const auto form = [](const LoopParts& of, Clock clock) {
-    return assemble(short_form(of, clock), of.reference, of.load);
+    const Diagram diagram = of.diagram ? on_clock(expanded(*of.diagram), clock) : short_form(of, clock);
+    return assemble(diagram, of.reference, of.load);
   };
-  if (!sampling_of(parts.controller).is_on() || !uses_error(parts)) return form(parts, Clock::continuous);
+  const bool on_computer =
+      parts.diagram ? is_sampled(*parts.diagram) : sampling_of(parts.controller).is_on() && uses_error(parts);
+  if (!on_computer) return form(parts, Clock::continuous);
   Loop sampled = form(parts, Clock::sampled), loop = form(parts, Clock::averaged);
   sampled.continuous = std::make_shared<const Loop>(form(with_linear_integral(parts), Clock::continuous));
   loop.sampled = std::make_shared<const Loop>(std::move(sampled));

@@ -94,7 +94,7 @@ double middle_of(const Eigen::VectorXcd& poles) {
 
 std::optional<RationalResponse> RationalResponse::of(const Loop& loop) {
   const Eigen::Index n = loop.states();
-  if (loop.elements.size() != 1 || loop.delay > 0.0 || n == 0) return std::nullopt;
+  if (loop.elements.size() != 1 || loop.delay > 0.0 || loop.sampled || n == 0) return std::nullopt;
   const Port& port = loop.ports[0];
   if (!port.D.isZero(0.0)) return std::nullopt;
   RationalResponse G;

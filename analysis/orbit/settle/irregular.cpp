@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t part_count = 4;
 constexpr double range_scatter = 0.15, spread_scatter = 0.15, returns_scatter = 0.2;  // largest scatter of the parts
 constexpr double one_way = 0.02;    // upper limit of a monotonic change of the spread
-constexpr long fewest_returns = 8;  // in a part
+constexpr long fewest_returns = 8;  // in a part, or half of that where a motion may repeat itself
 
 /// One part of a motion.
 struct Part {
@@ -122,7 +122,8 @@ std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_rep
   }
   const Returns returns = returns_to(0.5 * (low + high), trace, from);
   for (const double t : returns.times) ++part_at(t).returns;
-  if (std::ranges::any_of(all, [](const Part& part) { return part.returns < fewest_returns || !(part.time > 0.0); }))
+  const long fewest = may_repeat ? fewest_returns / 2 : fewest_returns;
+  if (std::ranges::any_of(all, [&](const Part& part) { return part.returns < fewest || !(part.time > 0.0); }))
     return std::nullopt;
   const auto range = [](const Part& part) { return part.high - part.low; };
   const auto count = [](const Part& part) { return static_cast<double>(part.returns); };

@@ -122,8 +122,9 @@ class Settling {
   void read() {
     ++readings_;
     if (auto still = stillness_.read(march_.t(), march_.x(), field_)) return come_to(*still);
-    if (readings_ > most_readings)
-      decide(Outcome::undecided, "undecided after " + std::to_string(most_readings) + " samples");
+    if (readings_ <= most_readings) return;
+    look_for_irregular();
+    if (!decided_) decide(Outcome::undecided, "undecided after " + std::to_string(most_readings) + " samples");
   }
 
   /// Readings of a sampled controller in that time.
@@ -202,11 +203,23 @@ class Settling {
       decide(Outcome::divergence, "y grows without bound, like a power of time");
   }
 
+  /// True if a sampled loop, whose cycles need not lock to its samples, has turned often enough since the last look.
+  /// Fewer turns are enough of a slow motion, each of which takes many samples and differs little from the others.
+  bool time_for_irregular() {
+    constexpr std::size_t fewest = 64;
+    if (!loop_.continuous) return false;
+    const std::size_t turns = turning_.points().size();
+    const bool slow = readings_ >= next_readings_ && turns >= fewest;
+    if (turns < next_irregular_ && !slow) return false;
+    if (turns >= next_irregular_) next_irregular_ *= 2;
+    if (slow) next_readings_ *= 2;
+    return true;
+  }
+
   void look_at_swings() {
     const auto& points = turning_.points();
     if (points.size() < 5) return;
-    if (loop_.continuous && points.size() >= next_irregular_) {
-      next_irregular_ *= 2;
+    if (time_for_irregular()) {
       look_for_irregular();
       if (decided_) return;
     }
@@ -366,8 +379,9 @@ class Settling {
   double low_ = infinite, high_ = -infinite;  ///< of y
   std::size_t large_turns_ = 0;
   std::size_t next_growth_ = 64;
-  std::size_t next_irregular_ = 128;  ///< of a sampled loop, whose cycles need not lock to the samples
-  long tried_ = 0;                    ///< steps of return maps
+  std::size_t next_irregular_ = 128;  ///< turns, and samples, of a sampled loop: see time_for_irregular()
+  long next_readings_ = 500'000;
+  long tried_ = 0;  ///< steps of return maps
   long readings_ = 0;
   int restarts_ = 0;
   bool decided_ = false;

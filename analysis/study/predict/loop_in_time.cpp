@@ -14,9 +14,8 @@ bool exact_in_time(const Loop& loop) {
 LoopInTime loop_in_time(const Loop& loop, double highest) {
   if (loop.sampled)
     return {in_time_domain(loop, lowest_pade_order),
-            "the controller reads and writes at its sample instants in every simulation; for the describing functions "
-            "hold and computation are a dead time of " +
-                short_number(loop.delay) + " s, their mean"};
+            "the controller reads and writes at its sample instants in every simulation; the describing functions see "
+            "its pulse transfer function, hold and computation delay, without aliases and without its quanta"};
   if (loop.delay == 0.0) return {{loop, 0, 0}, {}};
   const double up_to = std::min(highest > 0.0 ? 7.0 * highest : 7.0 / loop.delay, 40.0 / loop.delay);
   int order = lowest_pade_order;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
@@ -86,8 +88,13 @@ double reach(const Loop& loop, double slow, double fast) {
 }  // namespace
 
 /// Two decades around the loop's poles; amplitudes up to three times the largest response to the element's level there,
-/// six decades down.
+/// six decades down. Of a loop with a sampled controller those of the continuous one, up to half of the sampling rate.
 SearchBox default_search_box(const Loop& loop) {
+  if (loop.sampled) {  // hold and computation make poles of their own
+    SearchBox box = default_search_box(*loop.sampled->continuous);
+    box.frequency_max = std::min(box.frequency_max, std::numbers::pi / sample_time(*loop.sampled));
+    return box;
+  }
   const auto moduli = pole_moduli(loop);
   const double slow = moduli.empty() ? 1.0 : moduli.front(), fast = moduli.empty() ? 1.0 : moduli.back();
   SearchBox box{0.0, 0.0, 0.01 * slow, 100.0 * fast};

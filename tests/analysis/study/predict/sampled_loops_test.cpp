@@ -207,3 +207,44 @@ TEST_CASE("sampled controller: what does not go together is refused with a reaso
   parts.controller = none;
   CHECK(validate(parts)->rule.find("nothing to sample") != std::string::npos);
 }
+
+TEST_CASE("sampled diagram: the motions are those of the slots and of the cascade") {
+  const auto axis = [](std::vector<Block> controllers) {
+    LoopParts parts;
+    Diagram& diagram = parts.diagram.emplace();
+    diagram.output = {1.0, "axis", "y"};
+    diagram.load_on = "axis";
+    diagram.blocks = {{"axis", "diagram.axis", Plant(Mass{1.0, 0.0, 0.0}), {{{1.0, controllers.back().name, ""}}}},
+                      {"friction", "diagram.friction", coulomb(1.5, 1.0), {}, Contact::opposes, "axis"}};
+    diagram.blocks.insert(diagram.blocks.end(), controllers.begin(), controllers.end());
+    return build_loop(parts);
+  };
+  const SignalSum error{{1.0, "r", ""}, {-1.0, "axis", "y"}};
+  const auto same = [](const Loop& a, const Loop& b) {
+    const Settled one = settled(in_time_domain(a, 1).loop, 0.1), other = settled(in_time_domain(b, 1).loop, 0.1);
+    REQUIRE(one.outcome == Outcome::irregular);
+    REQUIRE(other.outcome == Outcome::irregular);
+    CHECK(one.irregular.mean_period == Approx(other.irregular.mean_period).epsilon(1e-9));
+    CHECK(one.irregular.half_range == Approx(other.irregular.half_range).epsilon(1e-9));
+  };
+  LoopParts servo = servo_at(0.02);
+  Pid& one = std::get<Pid>(servo.controller);
+  one.input_step = 1e-5;
+  one.computation_delay = 0.01;
+  same(build_loop(servo), axis({{"pid", "diagram.pid", Controller(one), {error}}}));
+
+  Cascade law;
+  law.position_kp = 1.0;
+  law.velocity_kp = 4.0;
+  law.velocity_ki = 6.0;
+  law.sample_time = 0.02;
+  law.position_every = 3.0;
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  parts.controller = law;
+  Pid position = pid(1.0, 0.0, 0.0), velocity = pid(4.0, 6.0, 0.0);
+  position.sample_time = 0.06;
+  velocity.sample_time = 0.02;
+  same(build_loop(parts),
+       axis({{"position", "diagram.position", Controller(position), {error}},
+             {"velocity", "diagram.velocity", Controller(velocity), {{{1.0, "position", ""}, {-1.0, "axis", "v"}}}}}));
+}
