@@ -104,8 +104,10 @@ std::string margin_answer(const MarginReport& report, const Units& units) {
   }
   if (report.hunts) {
     const auto stable = std::ranges::find(report.cycles, std::optional<bool>(true), &Cycle::stable);
-    out += fmt::format("This loop has a stable limit cycle (period {} s, amplitude {}).",
-                       with_digits(stable->period, 4), Units::attach(with_digits(stable->amplitude, 4), units.y));
+    out += stable == report.cycles.end()
+               ? std::string("This loop hunts without a period.")
+               : fmt::format("This loop has a stable limit cycle (period {} s, amplitude {}).",
+                             with_digits(stable->period, 4), Units::attach(with_digits(stable->amplitude, 4), units.y));
   } else {
     out += "No stable limit cycle was found.";
   }

@@ -6,8 +6,11 @@
 #include <limits>
 
 #include "limcycle/analysis/derivative_notes.hpp"
+#include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/continuation/margin_side.hpp"
+#include "limcycle/analysis/study/continuation/outcome_side.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
+#include "limcycle/analysis/study/predict/loop_in_time.hpp"
 
 namespace limcycle {
 namespace {
@@ -21,7 +24,7 @@ class Margins {
   }
 
   MarginReport run() {
-    if (!in_exact_time(loop_)) {
+    if (!in_exact_time(loop_) && !loop_.sampled) {
       report_.refused = why_not_followed(loop_);
       report_.status = Status::incomplete;
       measure_balance();
@@ -33,6 +36,7 @@ class Margins {
     box_ = found.search;
     report_.cycles = std::move(found.cycles);
     report_.hunts = std::ranges::any_of(report_.cycles, [](const Cycle& cycle) { return cycle.stable == true; });
+    if (loop_.sampled) look_at_outcomes(found.outcomes);
     measure_balance();
     for (std::size_t i = 0; i < parameters_.size() && !stopped(); ++i) one(i);
     std::ranges::stable_sort(report_.parameters, {}, &ParameterMargin::distance);
@@ -52,17 +56,36 @@ class Margins {
     report_.balance = balance_distance(loop_, box, options_.predict.stop);
   }
 
+  /// Of a loop whose cycles cannot be followed: from where it hunts, or else from the two largest displacements.
+  void look_at_outcomes(const std::vector<OutcomeOfStart>& outcomes) {
+    const auto places =
+        start_displacements(output_per_input(loop_in_time(loop_, 0.0).treated.loop), box_, options_.predict.starts);
+    const auto moves = [](const OutcomeOfStart& one) { return one.outcome == Outcome::irregular; };
+    report_.hunts = report_.hunts || std::ranges::any_of(outcomes, moves);
+    by_outcome_ =
+        OutcomeSide::Starts{{places.begin(), places.begin() + std::min<std::ptrdiff_t>(2, std::ssize(places))}, box_};
+    report_.notes.emplace_back(
+        "with a sampled controller cycles cannot be followed over a parameter: each side is found by simulations from "
+        "two displacements, and by bisection of what they show");
+  }
+
+  MarginSide side_of(const MarginParameter& parameter, bool up, const std::function<void(double)>& progress) const {
+    if (by_outcome_)
+      return OutcomeSide(parameter, up, options_, *by_outcome_, progress).where_it_changes(report_.hunts);
+    SideSearch side(parameter, up, options_, progress);
+    return report_.hunts ? side.where_hunting_ends(report_.cycles) : side.where_hunting_begins();
+  }
+
   void one(std::size_t index) {
     ParameterMargin result{parameters_[index], {}, {}};
-    result.parameter.family = in_exact_time(std::move(result.parameter.family));
+    if (!by_outcome_) result.parameter.family = in_exact_time(std::move(result.parameter.family));
     const double each = 0.85 / static_cast<double>(parameters_.size());
     for (const bool up : {true, false}) {
       const double begin = 0.15 + each * (static_cast<double>(index) + (up ? 0.0 : 0.5));
       tell(begin, result.parameter.path);
-      SideSearch side(result.parameter, up, options_,
-                      [&](double share) { tell(begin + 0.5 * each * share, result.parameter.path); });
       MarginSide& target = up ? result.up : result.down;
-      target = report_.hunts ? side.where_hunting_ends(report_.cycles) : side.where_hunting_begins();
+      target =
+          side_of(result.parameter, up, [&](double share) { tell(begin + 0.5 * each * share, result.parameter.path); });
       if (stopped()) return;  // incomplete: not kept
       if (target.what == MarginSide::What::unknown && report_.status == Status::converged)
         report_.status = Status::incomplete;
@@ -75,6 +98,7 @@ class Margins {
   const MarginOptions& options_;
   MarginReport report_;
   SearchBox box_{};
+  std::optional<OutcomeSide::Starts> by_outcome_ = {};  ///< present if cycles cannot be followed
 };
 
 }  // namespace

@@ -76,6 +76,7 @@ struct MarginReport {
 /// continued in each parameter until it is lost (fold, change of stability, end), and simulated just beyond: if it
 /// still hunts there, on another cycle, that one is followed in turn. If the loop rests, simulations on a coarse
 /// logarithmic grid search outwards for the first value with a cycle, which is then followed back to its beginning.
+/// The cycles of a loop with a sampled controller cannot be followed: outcomes of simulations are bisected instead.
 /// Cost: about 30 points of a branch for each side of a parameter, or some ten simulations. Status: incomplete if a
 /// side stayed unknown; interrupted (parameters done until then are kept).
 MarginReport margin(const Loop& loop, const std::vector<MarginParameter>& parameters, const MarginOptions& options);

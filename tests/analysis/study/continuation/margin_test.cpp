@@ -210,3 +210,49 @@ TEST_CASE("closest approach of -1/N: on a plane of equal distances it ends after
   REQUIRE(found);
   CHECK(asked < 3000);
 }
+
+TEST_CASE("margin: of a sampled servo by bisection of the outcome, near the edge of the continuous one") {
+  const auto family = [](double ki, double sample_time) -> std::optional<Loop> {
+    LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+    Pid& controller = std::get<Pid>(parts.controller);
+    controller.ki = ki;
+    controller.sample_time = sample_time;
+    return build_loop(parts);
+  };
+  const double h = 0.05;
+  MarginParameter time{"loop.controller.sample_time", "s", h, false, [&](double value) { return family(4.0, value); }};
+  LoopParts level = servo_parts(coulomb(1.05, 1.0));
+  std::get<Pid>(level.controller).sample_time = h;
+  MarginParameter stiction{"loop.friction.Fs", "N", 1.05, true, [&](double Fs) -> std::optional<Loop> {
+                             LoopParts parts = level;
+                             parts.friction = coulomb(Fs, 1.0);
+                             if (validate(parts)) return std::nullopt;
+                             return build_loop(parts);
+                           }};
+  MarginOptions options;
+  options.factor = 1.3;
+  options.predict.starts = 2;
+  const MarginReport report = margin(build_loop(level), {stiction}, options);
+  CHECK(report.hunts);
+  CHECK(report.refused.empty());
+  REQUIRE(report.parameters.size() == 1);
+  const MarginSide& down = report.parameters.front().down;
+  REQUIRE(down.what != MarginSide::What::unknown);
+  CAPTURE(down.value, down.why);
+  // Ideal stiction hunts for any Fs > Fc; below Fc the case is not valid.
+  CHECK(down.value == Approx(1.0).epsilon(0.06));
+  CHECK(report.parameters.front().up.what == MarginSide::What::none);
+
+  options.factor = 40.0;
+  const MarginReport slow = margin(*family(4.0, h), {time}, options);
+  CHECK(slow.hunts);
+  const MarginSide& up = slow.parameters.front().up;
+  REQUIRE(up.what == MarginSide::What::ends);
+  CHECK(up.diverges);  // the loop itself is unstable beyond
+  CHECK(up.error < 3e-3);
+  // The edge of stability of y'' = u with u held: z-plane polynomial of the loop at that time has a root on the circle.
+  const double T = up.value;
+  CAPTURE(T);
+  CHECK(T < 0.5);
+  CHECK(T > 0.1);
+}

@@ -1,0 +1,100 @@
+#include "limcycle/analysis/study/continuation/outcome_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/short_number.hpp"
+#include "limcycle/analysis/study/predict/cycle_search.hpp"
+#include "limcycle/analysis/study/predict/loop_in_time.hpp"
+
+namespace limcycle {
+
+OutcomeSide::OutcomeSide(const MarginParameter& parameter, bool up, const MarginOptions& options, Starts starts,
+                         std::function<void(double)> progress)
+    : parameter_(parameter),
+      options_(options),
+      starts_(std::move(starts)),
+      progress_(std::move(progress)),
+      limit_(up ? parameter.value * options.factor : parameter.value / options.factor) {}
+
+OutcomeSide::Does OutcomeSide::does(double p) const {
+  const auto loop = parameter_.family(p);
+  if (!loop) return Does::invalid;
+  const Loop time = loop_in_time(*loop, 0.0).treated.loop;
+  const SettleOptions settling = cycle_search(time, starts_.box, options_.accuracy, options_.predict.stop);
+  Does all = Does::ends;
+  for (const double place : starts_.displacements) {
+    const Settled motion = settle(time, displaced(time, place), settling);
+    switch (motion.outcome) {
+      case Outcome::irregular:
+        return Does::hunts;
+      case Outcome::cycle:
+        if (motion.shot && motion.shot->cycle.stable == true) return Does::hunts;
+        all = Does::undecided;
+        break;
+      case Outcome::rest:
+      case Outcome::sliding:
+        break;
+      case Outcome::divergence:
+        if (all == Does::ends) all = Does::diverges;
+        break;
+      default:
+        all = Does::undecided;
+    }
+    if (stopped()) return Does::undecided;
+  }
+  return all;
+}
+
+MarginSide OutcomeSide::bisected(bool hunts, double as_now, double changed, Does then) {
+  constexpr double narrow = 2e-3;
+  const double apart = std::abs(std::log(changed / as_now));
+  while (std::abs(std::log(changed / as_now)) > narrow && !stopped()) {
+    const double middle = as_now * std::sqrt(changed / as_now);
+    const Does here = does(middle);
+    if (here == Does::undecided || here == Does::invalid) break;
+    const bool same = (here == Does::hunts) == hunts;
+    if (!same) then = here;
+    (same ? as_now : changed) = middle;
+    if (progress_) progress_(0.5 + 0.5 * (1.0 - std::abs(std::log(changed / as_now)) / apart));
+  }
+  if (stopped()) return {};
+  using What = MarginSide::What;
+  const std::string now = hunts ? "it hunts" : "it does not hunt";
+  const std::string other = then == Does::hunts ? "it hunts" : then == Does::diverges ? "it diverges" : "it does not";
+  const bool begins_to_diverge = !hunts && then == Does::diverges;
+  MarginSide side{hunts               ? What::ends
+                  : begins_to_diverge ? What::none
+                                      : What::begins,
+                  changed, std::abs(changed / as_now - 1.0),
+                  "by bisection of the outcome: at " + short_number(as_now, 5) + " " + now + ", at " +
+                      short_number(changed, 5) + " " + other};
+  side.diverges = then == Does::diverges;
+  if (begins_to_diverge) side.error = std::numeric_limits<double>::quiet_NaN();
+  return side;
+}
+
+MarginSide OutcomeSide::where_it_changes(bool hunts) {
+  using What = MarginSide::What;
+  const int steps = std::max(1, static_cast<int>(std::ceil(options_.scan_per_decade * std::log10(options_.factor))));
+  double last = parameter_.value;
+  for (int i = 1; i <= steps && !stopped(); ++i) {
+    const double p = parameter_.value * std::pow(limit_ / parameter_.value, static_cast<double>(i) / steps);
+    if (progress_) progress_(0.5 * static_cast<double>(i) / (steps + 1));
+    const Does here = does(p);
+    if (here == Does::undecided)
+      return {What::unknown, hunts ? last : 0.0, std::numeric_limits<double>::quiet_NaN(),
+              "simulations at " + short_number(p, 5) + " did not decide"};
+    if (here == Does::invalid)
+      return {What::none, last, 0.0,
+              "none up to " + short_number(last, 5) + "; the case is not valid at " + short_number(p, 5)};
+    if ((here == Does::hunts) != hunts) return bisected(hunts, last, p, here);
+    last = p;
+  }
+  return {What::none, last, 0.0,
+          (hunts ? "it hunts at all values that were tried, to " : "it does not hunt up to ") + short_number(last, 5)};
+}
+
+}  // namespace limcycle

@@ -1,0 +1,39 @@
+#pragma once
+#include <functional>
+
+#include "limcycle/analysis/study/continuation/margin.hpp"
+
+namespace limcycle {
+
+/// One side of one parameter of a loop whose cycles cannot be followed, as with a sampled controller: outwards from its
+/// own value by a factor, with the same sign. Simulations at a few values find the first at which the loop no longer
+/// does what it does at the own value, hunt or come to rest; bisection locates the change. Cost: some ten values, with
+/// a simulation from each start.
+class OutcomeSide {
+ public:
+  /// Displacements of y from which motions begin at each value, and the box that sets their scales.
+  struct Starts {
+    std::vector<double> displacements;
+    SearchBox box;
+  };
+
+  OutcomeSide(const MarginParameter& parameter, bool up, const MarginOptions& options, Starts starts,
+              std::function<void(double)> progress);
+
+  /// `hunts`: what the loop does at the own value.
+  MarginSide where_it_changes(bool hunts);
+
+ private:
+  enum class Does { hunts, ends, diverges, undecided, invalid };
+  Does does(double p) const;
+  MarginSide bisected(bool hunts, double as_now, double changed, Does then);
+  bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
+
+  const MarginParameter& parameter_;
+  const MarginOptions& options_;
+  Starts starts_;
+  std::function<void(double)> progress_;
+  double limit_;
+};
+
+}  // namespace limcycle
