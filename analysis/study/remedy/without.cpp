@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "limcycle/models/element/clamped_pi.hpp"
 #include "limcycle/models/element/compensation.hpp"
 #include "limcycle/models/element/relay.hpp"
 #include "limcycle/models/element/saturation.hpp"
@@ -125,6 +126,10 @@ bool end_integral(Controller& controller) {
 std::optional<LoopParts> without_integral_action(LoopParts parts) {
   PartChange change;
   change.controller = end_integral;
+  change.element = [](Element& element) {
+    auto* pi = element.as<ClampedPi<double>>();
+    return pi != nullptr && std::exchange(pi->ki, 0.0) != 0.0;
+  };
   change.block = [](BlockKind& block) {
     auto* linear = std::get_if<LinearBlock>(&block);
     if (linear == nullptr) return false;
@@ -208,9 +213,10 @@ std::optional<LoopParts> without_limits(LoopParts parts) {
   };
   change.element = [](Element& element) {
     auto* saturation = element.as<Saturation<double>>();
-    if (saturation == nullptr) return false;
-    saturation->limit *= far;
-    return true;
+    auto* pi = element.as<ClampedPi<double>>();
+    if (saturation != nullptr) saturation->limit *= far;
+    if (pi != nullptr) pi->limit *= far;
+    return saturation != nullptr || pi != nullptr;
   };
   return changed_parts(std::move(parts), change);
 }

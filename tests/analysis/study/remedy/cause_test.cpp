@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/analysis/study/remedy/without.hpp"
+#include "limcycle/models/element/clamped_pi.hpp"
 #include "limcycle/tests/analysis/study/remedy/over_compensated.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -88,6 +89,30 @@ TEST_CASE("cause: taking a feature away changes nothing else, and says where the
   CHECK(level->friction->number("Fs") == level->friction->number("Fc"));
   CHECK(level->friction->number("sigma0") == servo.friction->number("sigma0"));
   CHECK_FALSE(without_falling_friction(*level));
+}
+
+TEST_CASE("cause: a PI that holds its integral back, a block of a diagram, has integral action and a limit") {
+  ClampedPi<double> pi;
+  pi.kp = 3.0;
+  pi.ki = 4.0;
+  pi.limit = 5.0;
+  LoopParts parts;
+  Diagram& diagram = parts.diagram.emplace();
+  diagram.output = {1.0, "axis", "y"};
+  diagram.blocks = {{"axis", "diagram.axis", Plant(Mass{1.0, 6.0, 0.0}), {{{1.0, "pi", ""}}}},
+                    {"pi", "diagram.pi", Element(pi), {{{1.0, "r", ""}, {-1.0, "axis", "y"}}}},
+                    {"friction", "diagram.friction", coulomb(1.5, 1.0), {}, Contact::opposes, "axis"}};
+  const auto own = [](const std::optional<LoopParts>& of) {
+    return *std::get<Element>(of->diagram->blocks[1].what).as<ClampedPi<double>>();
+  };
+  const auto proportional = without_integral_action(parts), free = without_limits(parts);
+  REQUIRE(proportional);
+  REQUIRE(free);
+  CHECK(own(proportional).ki == 0.0);
+  CHECK(own(proportional).kp == 3.0);
+  CHECK(own(free).limit > 1e8);
+  CHECK(own(free).ki == 4.0);
+  CHECK(kind_of_cause(parts) == CauseKind::integral_action_and_stiction);
 }
 
 TEST_CASE("cause: integral action is seen in a controller however it is written") {
