@@ -14,7 +14,7 @@ namespace {
 
 struct NewFlags : CommonFlags {
   std::string plant, controller, friction, element, error;  ///< empty: not given; "none": none
-  bool all = false, force = false, diagram = false;
+  bool all = false, force = false, diagram = false, brief = false, sampled = false;
 };
 
 /// The requested case: without friction and element the servo with LuGre friction; an element alone replaces the
@@ -23,6 +23,8 @@ NewCase wanted_case(const NewFlags& flags) {
   const auto given = [](const std::string& kind) { return kind == "none" ? std::string() : kind; };
   NewCase wanted;
   wanted.all = flags.all;
+  wanted.brief = flags.brief;
+  wanted.sampled = flags.sampled;
   wanted.element = given(flags.element);
   wanted.error = given(flags.error);
   if (flags.plant == FirstOrder::kind && flags.element.empty() && flags.friction.empty()) wanted.element = "relay";
@@ -54,6 +56,9 @@ int run(NewFlags flags) {
   for (const std::string* kind : {&flags.plant, &flags.controller, &flags.friction, &flags.element, &flags.error})
     if (flags.diagram && !kind->empty())
       throw refusal("--diagram", "writes a cascade of blocks: kinds of slots do not go with it");
+  if (flags.diagram && flags.sampled)
+    throw refusal("--sampled", "is for a controller of the slots",
+                  "in a diagram write sample_time into the blocks of kind pid");
   const std::string text = flags.diagram ? new_diagram() : new_case(wanted_case(flags));
   try {
     read_case(text, "the new case");
@@ -84,6 +89,8 @@ void add_new(CLI::App& program, Action& action) {
   command->add_option("--element", flags->element, "Element between controller and plant")->type_name("KIND");
   command->add_option("--error", flags->error, "Element on the error")->type_name("KIND");
   command->add_flag("--diagram", flags->diagram, "Write a cascade as a diagram of blocks instead");
+  command->add_flag("--sampled", flags->sampled, "Let the controller run on a computer, with its encoder");
+  command->add_flag("--brief", flags->brief, "Leave out optional keys and sections");
   command->add_flag("--all", flags->all, "Write the optional sections too, not as comments");
   command->add_flag("--force", flags->force, "Replace a file that exists");
 }

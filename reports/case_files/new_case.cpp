@@ -82,9 +82,11 @@ std::string comment_of(const ParameterEntry& parameter, const TypicalValue& typi
   return text;
 }
 
-std::string parameter_line(const ParameterEntry& parameter, const CatalogueEntry& entry, const std::string& group) {
+std::string parameter_line(const ParameterEntry& parameter, const CatalogueEntry& entry, const std::string& group,
+                           bool brief) {
   const TypicalValue typical = typical_value(group, entry.kind, parameter.key);
   const bool active = parameter.required || (!typical.value.empty() && !typical.only_to_try);
+  if (brief && !active) return "";
   const std::string value =
       typical.value.empty() ? default_in_toml(parameter, entry, group) : std::string(typical.value);
   return assignment(fmt::format("{}{} = {}", active ? "" : "# ", parameter.key, value), comment_of(parameter, typical));
@@ -92,11 +94,11 @@ std::string parameter_line(const ParameterEntry& parameter, const CatalogueEntry
 
 /// A section of the loop. `typical_group`: group of its typical values; `others`: comment on the other kinds.
 std::string section_of(const std::string& section, const CatalogueEntry& entry, const std::string& typical_group,
-                       const std::string& others) {
+                       const std::string& others, bool brief) {
   std::string text = "\n[" + section + "]\n" + labelled("equation", entry.equation);
   if (!entry.source.empty()) text += labelled("source", entry.source);
   text += others + fmt::format("kind = \"{}\"\n", entry.kind);
-  for (const auto& parameter : entry.parameters) text += parameter_line(parameter, entry, typical_group);
+  for (const auto& parameter : entry.parameters) text += parameter_line(parameter, entry, typical_group, brief);
   return text;
 }
 
@@ -123,10 +125,10 @@ std::vector<NewPart> parts_of(const NewCase& wanted, const std::vector<Catalogue
   // An element before or after a controller may need the rate of its input, which must then exist, as must that of a
   // plant of first order for a derivative.
   const bool guarded = !wanted.element.empty() || !wanted.error.empty() || wanted.plant == FirstOrder::kind;
+  const char* of_controller = wanted.sampled ? "sampled controller" : guarded ? "guarded controller" : "controller";
   std::vector<NewPart> parts{
       {"loop.plant", wanted.friction.empty() ? "lone plant" : "plant", &entry_of(all, {"plant"}, wanted.plant)},
-      {"loop.controller", guarded ? "guarded controller" : "controller",
-       &entry_of(all, {"controller"}, wanted.controller)}};
+      {"loop.controller", of_controller, &entry_of(all, {"controller"}, wanted.controller)}};
   if (!wanted.friction.empty())
     parts.push_back({"loop.friction", "friction", &entry_of(all, {"friction"}, wanted.friction)});
   if (!wanted.element.empty()) {
@@ -220,22 +222,25 @@ std::string new_case(const NewCase& wanted) {
     title += kind->empty() ? "" : ", " + *kind;
 
   std::string text = commented(
-      "A case of limcycle, made by `limcycle new`. It is valid as it is: replace the numbers by your own. Keys behind "
-      "a # are optional; the value shown is the default, or an example. SI units, angles in rad, "
-      "frequencies in rad/s; a rotary drive is the same file in N m and rad. `limcycle check FILE` reports errors, "
-      "`limcycle predict FILE` shows whether the loop hunts, `limcycle laws KIND` describes one kind.");
+      "A case of limcycle, made by `limcycle new`. It is valid as it is: replace the numbers by your own. " +
+      std::string(wanted.brief ? "`limcycle new` without --brief lists the optional keys too. "
+                               : "Keys behind a # are optional; the value shown is the default, or an example. ") +
+      "SI units, angles in rad, frequencies in rad/s; a rotary drive is the same file in N m and rad. `limcycle check "
+      "FILE` reports errors, `limcycle predict FILE` shows whether the loop hunts, `limcycle laws KIND` describes one "
+      "kind.");
   text += fmt::format("title = \"{}\"\n", title);
   for (const CaseSection& section : case_sections())
-    if (section.name == "loop") text += optional_section(section, true, {});
+    if (section.name == "loop" && !wanted.brief) text += optional_section(section, true, {});
   for (const NewPart& part : parts)
-    text += section_of(part.section, *part.entry, part.typical_group, other_kinds(part));
+    text +=
+        section_of(part.section, *part.entry, part.typical_group, wanted.brief ? "" : other_kinds(part), wanted.brief);
   const std::string number = first_number(parts);
   for (const CaseSection& section : case_sections()) {
     if (section.name.empty() || section.name == "loop" || section.name == "diagram" || section.name == "claim")
       continue;
-    const bool spreadable = section.name != "sensitivity" || !number.empty();
-    text +=
-        optional_section(section, wanted.all && spreadable, fmt::format("[{{ path = \"{}\", factor = 1.2 }}]", number));
+    const bool active = wanted.all && (section.name != "sensitivity" || !number.empty());
+    if (wanted.brief && !active) continue;
+    text += optional_section(section, active, fmt::format("[{{ path = \"{}\", factor = 1.2 }}]", number));
   }
   return text;
 }

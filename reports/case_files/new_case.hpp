@@ -9,6 +9,8 @@ struct NewCase {
   std::string friction = "lugre";  ///< empty: none
   std::string element{}, error{};  ///< empty: none
   bool all = false;                ///< optional sections are active, not comments
+  bool brief = false;              ///< optional keys and sections that are not active are left out
+  bool sampled = false;            ///< the controller is sampled
 };
 
 /// A case file that can be run unchanged: every key with its unit, meaning, default and usual values, the optional ones

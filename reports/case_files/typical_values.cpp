@@ -113,6 +113,11 @@ constexpr std::array typical_rows{
     TypicalRow{"plant", "state-space", "B", {"[[0.0], [1.0]]", ""}},
     TypicalRow{"plant", "state-space", "C", {"[[1.0, 0.0]]", ""}},
 
+    TypicalRow{"sampled controller", "", "sample_time", {"0.001", "a tenth of the shortest time that counts"}},
+    TypicalRow{"sampled controller", "", "computation_delay", {"0.0005", "0 to sample_time"}},
+    TypicalRow{"sampled controller", "", "input_step", {"1e-6", "a count of the encoder"}},
+    TypicalRow{"sampled controller", "cascade", "velocity_window", {"1.0", "1 to 10"}},
+    TypicalRow{"sampled controller", "cascade", "position_every", {"4.0", "1 to 10"}},
     TypicalRow{"controller", "", "saturation", {"10.0", "", true}},
     TypicalRow{"guarded controller", "pid", "tf", {"0.01", "a tenth of the fastest time that counts"}},
     TypicalRow{"guarded controller", "", "lag", {"0.005", "what the actuator needs to follow"}},
@@ -139,7 +144,8 @@ TypicalValue typical_value(std::string_view group, std::string_view kind, std::s
   for (const TypicalRow& row : typical_rows)
     if (row.group == group && row.key == key && (row.kind.empty() || row.kind == kind)) return row.typical;
   if (group == "lone plant") return typical_value("plant", kind, key);
-  return group == "guarded controller" ? typical_value("controller", kind, key) : TypicalValue{};
+  const bool special = group == "guarded controller" || group == "sampled controller";
+  return special ? typical_value("controller", kind, key) : TypicalValue{};
 }
 
 }  // namespace limcycle

@@ -24,16 +24,6 @@ Json picked(const std::vector<double>& values, const std::vector<std::size_t>& i
   return out;
 }
 
-bool drawable(const Trace& trace) {
-  const std::size_t n = trace.t.size();
-  return n >= 2 && trace.y.size() == n && trace.rate.size() == n;
-}
-
-bool has_element(const Trace& trace) {
-  const std::size_t n = trace.t.size();
-  return trace.input.size() == n && trace.velocity.size() == n && trace.output.size() == n;
-}
-
 struct LeastAndGreatest {
   double least = INFINITY, greatest = -INFINITY;
 };

@@ -55,40 +55,57 @@ Trace picked(const Trace& from, const std::vector<std::size_t>& index) {
   return out;
 }
 
-const Cycle* drawable(const PredictReport& report) {
-  for (const bool stable : {true, false})
-    for (const auto& cycle : report.cycles) {
-      const auto n = cycle.trace.t.size();
-      if (cycle.stable.value_or(false) == stable && n >= 2 && cycle.trace.y.size() == n &&
-          cycle.trace.rate.size() == n && cycle.trace.output.size() == n)
-        return &cycle;
-    }
-  return nullptr;
+/// A motion to be drawn: one period of a cycle, which is drawn twice, or some swings of an irregular motion.
+struct DrawnMotion {
+  Trace trace;
+  std::vector<bool> stuck;
+  bool period = true;
+};
+
+/// The samples of the last `time` of a run.
+Trace last_part(const Trace& run, double time) {
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < run.t.size(); ++i)
+    if (run.t[i] >= run.t.back() - time) index.push_back(i);
+  return picked(run, index);
 }
 
-std::string panels(const Cycle& cycle, const Units& units) {
-  const auto stuck = stuck_samples(cycle.trace, cycle.sticking_fraction);
-  // A cycle with fast oscillations is drawn coarsely rather than cut: a part of it would be no period.
-  Thinned kept = thin(cycle.trace, 500, stuck);
-  if (!kept.whole) kept = thin(cycle.trace, 1000, stuck, INFINITY);
+std::optional<DrawnMotion> drawn_motion(const PredictReport& report) {
+  for (const bool stable : {true, false})
+    for (const auto& cycle : report.cycles)
+      if (cycle.stable.value_or(false) == stable && has_element(cycle.trace))
+        return DrawnMotion{cycle.trace, stuck_samples(cycle.trace, cycle.sticking_fraction)};
+  constexpr double swings = 4.0;
+  for (const auto& outcome : report.outcomes) {
+    if (outcome.outcome != Outcome::irregular || !has_element(outcome.trace)) continue;
+    const Trace part = last_part(outcome.trace, swings * outcome.irregular.mean_period);
+    if (has_element(part)) return DrawnMotion{part, std::vector<bool>(part.t.size(), false), false};
+  }
+  return std::nullopt;
+}
+
+std::string panels(const DrawnMotion& drawn, const Units& units) {
+  // Fast oscillations are drawn coarsely rather than cut: a part of a period would be none.
+  Thinned kept = thin(drawn.trace, 500, drawn.stuck);
+  if (!kept.whole) kept = thin(drawn.trace, 1000, drawn.stuck, INFINITY);
   const auto& index = kept.index;
-  const Trace once = picked(cycle.trace, index);
+  const Trace once = picked(drawn.trace, index);
   std::vector<bool> marks;
   marks.reserve(index.size());
-  for (const std::size_t i : index) marks.push_back(i < stuck.size() && stuck[i]);
-  Trace two = once;
-  for (std::size_t i = 0; i < once.t.size(); ++i) {
-    two.t.push_back(once.t[i] + once.t.back());
-    two.y.push_back(once.y[i]);
-    two.output.push_back(once.output[i]);
+  for (const std::size_t i : index) marks.push_back(i < drawn.stuck.size() && drawn.stuck[i]);
+  Trace over = once;
+  for (std::size_t i = 0; i < once.t.size() && drawn.period; ++i) {
+    over.t.push_back(once.t[i] + once.t.back());
+    over.y.push_back(once.y[i]);
+    over.output.push_back(once.output[i]);
   }
-  const AxesFrame above = about({54, 50, 390, 100}, two.t, two.y, true),
-                  below = about({54, 206, 390, 100}, two.t, two.output, true),
+  const AxesFrame above = about({54, 50, 390, 100}, over.t, over.y, true),
+                  below = about({54, 206, 390, 100}, over.t, over.output, true),
                   right = about({508, 50, 242, 256}, once.y, once.rate, false);
   const std::string rate = units.y.empty() ? "1/s" : units.y + "/s", y = name_of_y(once), t = above.x.label("t", "s");
   const std::string output = units.force.empty() ? "output of the element" : "friction force";
-  return above.markup() + above.names(t, above.y.label(y, units.y)) + path(above, "one", two.t, two.y) +
-         below.markup() + below.names(t, below.y.label(output, units.force)) + path(below, "two", two.t, two.output) +
+  return above.markup() + above.names(t, above.y.label(y, units.y)) + path(above, "one", over.t, over.y) +
+         below.markup() + below.names(t, below.y.label(output, units.force)) + path(below, "two", over.t, over.output) +
          right.markup() + right.names(right.x.label(y, units.y), right.y.label("dy/dt", rate)) +
          path(right, "one", once.y, once.rate) + path(right, "stuck", once.y, once.rate, marks);
 }
@@ -98,11 +115,11 @@ std::string panels(const Cycle& cycle, const Units& units) {
 std::string predict_picture(const PredictReport& report, const Units& units) {
   const std::string all = answer(report, units).what_happens;
   const std::string words = html_escaped(all), first = html_escaped(all.substr(0, all.find(". ")));
-  const Cycle* cycle = drawable(report);
+  const auto motion = drawn_motion(report);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 760 {0}\" width=\"760\" height=\"{0}\" role=\"img\" "
       "aria-label=\"{1}\">\n<style>{2}{3}</style>\n<text class=\"title\" x=\"10\" y=\"20\">{4}</text>\n{5}</svg>\n",
-      cycle ? 340 : 36, words, axes_style, prediction_style, first, cycle ? panels(*cycle, units) : "");
+      motion ? 340 : 36, words, axes_style, prediction_style, first, motion ? panels(*motion, units) : "");
 }
 
 }  // namespace limcycle

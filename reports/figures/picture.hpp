@@ -7,8 +7,8 @@
 namespace limcycle {
 
 /// The answer as one small SVG, for a README: two periods of y and of the element's output, and the orbit in the phase
-/// plane with stuck parts marked. Readable on light and dark backgrounds. Coordinates are rounded to 0.1 px. Without
-/// a cycle or a run that can be drawn it contains the answer in words only.
+/// plane with stuck parts marked; without a cycle the last swings of an irregular motion. Readable on light and dark
+/// backgrounds. Coordinates are rounded to 0.1 px. Without either it contains the answer in words only.
 std::string predict_picture(const PredictReport& report, const Units& units);
 
 }  // namespace limcycle

@@ -39,6 +39,16 @@ std::vector<double> lengths(const Trace& trace) {
 
 }  // namespace
 
+bool drawable(const Trace& trace) {
+  const std::size_t n = trace.t.size();
+  return n >= 2 && trace.y.size() == n && trace.rate.size() == n;
+}
+
+bool has_element(const Trace& trace) {
+  const std::size_t n = trace.t.size();
+  return drawable(trace) && trace.input.size() == n && trace.velocity.size() == n && trace.output.size() == n;
+}
+
 Thinned thin(const Trace& trace, std::size_t most, const std::vector<bool>& keep_changes, double coarsest) {
   Thinned out;
   const auto length = lengths(trace);

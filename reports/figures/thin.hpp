@@ -20,6 +20,10 @@ Thinned thin(const Trace& trace, std::size_t most, const std::vector<bool>& keep
 /// Stuck samples: those with the least |velocity| that together last `fraction` of the time of the trace.
 std::vector<bool> stuck_samples(const Trace& trace, double fraction);
 
+/// True if a trace can be drawn: y and its rate over time; and the element too.
+bool drawable(const Trace& trace);
+bool has_element(const Trace& trace);
+
 /// Name of y of a trace in a picture: "y", or "y - 0.3" if it is measured from there.
 std::string name_of_y(const Trace& trace);
 

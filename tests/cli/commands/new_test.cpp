@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <sstream>
 
@@ -76,6 +77,25 @@ TEST_CASE("new: a cascade as a diagram, without kinds of slots") {
   const Ran refused = run({"new", "--diagram", "--plant", "belt"});
   CHECK(refused.code == 2);
   CHECK(refused.err.find("--diagram") != std::string::npos);
+}
+
+TEST_CASE("new: a sampled axis with a measured friction curve, in few lines") {
+  const Ran made = run(
+      {"new", "--plant", "mass", "--controller", "cascade", "--friction", "stribeck-table", "--sampled", "--brief"});
+  REQUIRE(made.code == 0);
+  CHECK(std::ranges::count(made.out, '\n') < 60);
+  const Case from = read_case(made.out, "new");
+  REQUIRE(from.loop);
+  const auto& cascade = std::get<limcycle::Cascade>(from.loop->controller);
+  CHECK(cascade.sample_time == 0.001);
+  CHECK(cascade.position_every == 4.0);
+  CHECK(cascade.input_step == 1e-6);
+  CHECK(made.out.find("\n# ") < made.out.find("[loop.plant]"));  // comments, but no optional keys
+  CHECK(made.out.find("# saturation") == std::string::npos);
+  CHECK(made.out.find("[simulate]") == std::string::npos);
+  const Ran refused = run({"new", "--diagram", "--sampled"});
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("sample_time into the blocks") != std::string::npos);
 }
 
 TEST_CASE("new: every element, alone and beside friction, before every plant and behind every controller") {

@@ -35,6 +35,22 @@ TEST_CASE("the picture of a loop without a cycle is its answer in words") {
   CHECK(text.find("<path") == std::string::npos);
 }
 
+TEST_CASE("the picture of an irregular motion shows its last swings, once") {
+  auto report = sample::hunting();
+  OutcomeOfStart run{"y(0) = 1", Outcome::irregular, "", {}, {}};
+  run.irregular.mean_period = 10.0;
+  for (int i = 0; i <= 10000; ++i) {
+    const double t = 0.01 * i;
+    run.trace.t.push_back(t);
+    for (auto* column : {&run.trace.y, &run.trace.rate, &run.trace.input, &run.trace.velocity, &run.trace.output})
+      column->push_back(std::sin(0.2 * t * (1.0 + 0.001 * t)));
+  }
+  report.cycles.clear();
+  report.outcomes = {run};
+  const auto text = predict_picture(report, {});
+  CHECK_THAT(text, Contains(">40</text>") && Contains(" L444.0,") && !Contains(">50</text>"));
+}
+
 TEST_CASE("a cycle that rings many times is drawn to its end") {
   auto report = sample::hunting();
   Trace& trace = report.cycles[0].trace;
