@@ -25,6 +25,8 @@ struct RemedyCandidate {
   Measure measure = Measure::own;
   enum class Way { up, down, both } way = Way::up;
   std::function<std::optional<LoopParts>(double)> parts = {};  ///< the loop with that value; empty: not valid
+  std::vector<std::string> with = {};                          ///< what a case needs beside it, "PATH=VALUE"
+  double frequency = 0.0;  ///< rad/s, if its number is the amplitude of a dither, which is no part of the loop; else 0
 
   bool is_absent() const { return own == 0.0 || std::isinf(own); }
 };
