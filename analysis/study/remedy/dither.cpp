@@ -20,7 +20,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr long most_windows = 300;          ///< times as long as the period of hunting
+constexpr long most_windows = 300;  ///< times as long as the period of hunting
+constexpr long most_steps = 400'000;
 constexpr std::size_t fewest_windows = 24;  ///< before hunting is taken to last
 constexpr double rtol_of_dither = 1e-7;
 
@@ -42,6 +43,7 @@ class DitheredMotion {
   }
 
   double period() const { return period_; }
+  long steps() const { return march_->steps(); }
 
   /// Means of the linear states over the next period; empty if the march cannot go on.
   std::optional<VectorXd> next_mean() {
@@ -68,7 +70,7 @@ class DitheredMotion {
 
 /// True if the swings have not shrunk: the largest in the second half is that of the quarter before it, and more than
 /// `least`. A body that waits for an integrator does not swing for many windows.
-bool last(const std::vector<double>& swings, double least) {
+bool swings_last(const std::vector<double>& swings, double least) {
   if (swings.size() < fewest_windows) return false;
   const auto middle = swings.begin() + std::ssize(swings) / 2, quarter = swings.begin() + std::ssize(swings) / 4;
   const double before = *std::max_element(quarter, middle), now = *std::max_element(middle, swings.end());
@@ -157,7 +159,7 @@ Hunts hunts_under(const Loop& loop, const LoopState& from, const Dither& dither,
     double low = infinite, high = -infinite;
     std::optional<VectorXd> mean;
     for (long k = 0; k < periods; ++k) {
-      if (stop && stop()) return Hunts::undecided;
+      if ((stop && stop()) || motion.steps() > most_steps) return Hunts::undecided;
       mean = motion.next_mean();
       if (!mean || !mean->allFinite()) return Hunts::undecided;
       const double y = loop.C_y.dot(*mean);
@@ -170,7 +172,7 @@ Hunts hunts_under(const Loop& loop, const LoopState& from, const Dither& dither,
     if (still && swing <= 1e-2 * hunting.amplitude) return Hunts::no;
     before = mean;
     swings.push_back(swing);
-    if (last(swings, 1e-2 * hunting.amplitude)) return Hunts::yes;
+    if (swings_last(swings, 1e-2 * hunting.amplitude)) return Hunts::yes;
   }
   return Hunts::undecided;
 }
@@ -193,9 +195,8 @@ class DitherSearch {
       return remedy;
     }
     if (!scan()) {
-      if (!open_) remedy.ends = false;
-      remedy.why =
-          stopped() ? "interrupted" : "no amplitude up to " + newtons(not_ending_) + " ends it" + at_frequency();
+      if (!open_ && !stopped()) remedy.ends = false;
+      remedy.why = stopped() ? "interrupted" : nothing_found() + at_frequency();
       return remedy;
     }
     bisect();
@@ -259,6 +260,12 @@ class DitherSearch {
     not_ending_ = value;
     undecided_ = here == Hunts::undecided;
     if (!undecided_) hunts_at_ = value;
+  }
+
+  std::string nothing_found() const {
+    if (!open_) return "no amplitude up to " + newtons(not_ending_) + " ends it";
+    return (hunts_at_ > 0.0 ? "hunts at " + newtons(hunts_at_) + "; " : "") + "up to " + newtons(not_ending_) +
+           " simulations show no end of it, and do not decide at every amplitude";
   }
 
   std::string verdict() const {

@@ -36,7 +36,7 @@ std::optional<double> frequency_of_dither(const LoopParts& parts);
 /// a cycle of the loop without dither: `no` once the means of the states over one period of the dither change by less
 /// than a thousandth of their typical sizes, and that of y by less than a hundredth of the cycle's amplitude, in a time
 /// as long as the cycle; `yes` if the swing of the mean of y does not shrink from the second quarter of at least 24
-/// such times to their second half; else `undecided`. Cost: at most 300 such times.
+/// such times to their second half; else `undecided`. Cost: at most 300 such times and 400 000 steps.
 Hunts hunts_under(const Loop& loop, const LoopState& from, const Dither& dither, const Cycle& hunting,
                   const std::function<bool()>& stop);
 
