@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <iostream>
 #include <stdexcept>
@@ -72,8 +74,19 @@ void add_computing_flags(CLI::App& command, CommonFlags& flags) {
       ->group(common);
 }
 
+/// Throws for a name of --output that asks for a document which no command writes.
+void check_kind(const std::string& output) {
+  for (const std::string_view ending : {".pdf", ".tex"})
+    if (output.ends_with(ending))
+      throw refusal(
+          "--output " + output, "no command writes " + std::string(ending),
+          "a page (-o FILE.html) can be printed to a PDF by a browser, a picture is -o FILE.svg; --help shows "
+          "which of them a command has");
+}
+
 /// Runs a command and, with --verbose, reports time and memory.
 int timed(const CommonFlags& flags, const Action& run) {
+  check_kind(flags.output);
   const auto begin = std::chrono::steady_clock::now();
   const TimeLimit limit(rank() == 0 ? flags.time_limit : 0.0);  // rank 0 ends the others
   const int code = run();
@@ -90,10 +103,31 @@ int timed(const CommonFlags& flags, const Action& run) {
   return code;
 }
 
+/// The flags that were given, without those that say where and how results are shown, or how fast they come.
+std::vector<std::string> given_flags(const CLI::App& command) {
+  constexpr std::array without{"set",  "output", "json",   "csv",   "html",  "svg",     "fit",     "fitted",    "apply",
+                               "from", "store",  "resume", "color", "quiet", "verbose", "threads", "time-limit"};
+  std::vector<std::string> words;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0 || option->get_lnames().empty()) continue;
+    const std::string name = option->get_lnames().front();
+    if (std::ranges::find(without, name) != without.end()) continue;
+    const bool takes_value = option->get_items_expected_max() > 0;
+    for (const std::string& value : option->results()) {
+      words.push_back("--" + name);
+      if (takes_value) words.push_back(value);
+    }
+  }
+  return words;
+}
+
 CLI::App* add_named(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
                     const std::shared_ptr<CommonFlags>& flags, Action run) {
   CLI::App* command = program.add_subcommand(name, summary);
-  command->callback([&action, flags, run = std::move(run)] { action = [flags, run] { return timed(*flags, run); }; });
+  command->callback([&action, flags, command, run = std::move(run)] {
+    flags->given = given_flags(*command);
+    action = [flags, run] { return timed(*flags, run); };
+  });
   return command;
 }
 
@@ -128,6 +162,7 @@ Provenance provenance(const CommonFlags& flags, const Case* from) {
   instruction_set(flags);  // every command rejects one that this machine lacks
   Provenance made = provenance_of(flags.seed, flags.threads, from);
   made.time_is_over = interrupted_by_time();
+  made.flags = flags.given;
   return made;
 }
 

@@ -37,6 +37,8 @@ struct CommonFlags {
   bool quiet = false;          ///< nothing on stderr except errors
   bool verbose = false;        ///< also details of the work, and on stderr its duration
   double time_limit = 0.0;     ///< --time-limit, s; 0: none
+
+  std::vector<std::string> given{};  ///< words of the command line that change its result: see Provenance::flags
 };
 
 /// The requested command; set while the command line is parsed, run afterwards. Returns the exit code.

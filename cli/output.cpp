@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -107,6 +108,16 @@ bool same_file(const std::string& one, const std::string& other) {
   return !first.empty() && first == full_name(other);
 }
 
+/// Throws for the name of a file that would not hold what it promises: pages and pictures have been taken off --output.
+void check_holds_text(const std::string& path) {
+  constexpr std::array<std::string_view, 5> documents{".svg", ".png", ".html", ".htm", ".eps"};
+  for (const auto ending : documents)
+    if (path.ends_with(ending))
+      throw refusal("--output " + path, "would hold plain text: this command writes no " + std::string(ending),
+                    "choose another name, such as " + path.substr(0, path.size() - ending.size()) +
+                        ".txt; see --help for pages and pictures");
+}
+
 /// 0, or the error in writing a document, which is written next to the file that it then replaces.
 int cannot_be_replaced(const std::string& path) {
   namespace fs = std::filesystem;
@@ -130,6 +141,7 @@ Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), 
   }
   text_ = !flags.output.empty() ? flags.output : json_ == "-" || csv_ == "-" ? "" : "-";
   colours_ = text_ == "-" && colours_wanted(flags.color, STDOUT_FILENO);
+  check_holds_text(flags.output);
   check_file("--output", flags.output);
   check_file("--json", flags.json);
   check_file("--csv", flags.csv);

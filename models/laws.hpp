@@ -11,6 +11,7 @@
 #include "limcycle/models/element/output_rate.hpp"
 #include "limcycle/models/element/quantizer.hpp"
 #include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/reset_integrator.hpp"
 #include "limcycle/models/element/sampled.hpp"
 #include "limcycle/models/element/saturation.hpp"
 #include "limcycle/models/element/window.hpp"
@@ -53,7 +54,7 @@ struct KindList {
 using FrictionLaws = KindList<Coulomb, Stribeck, StribeckTable, Karnopp, Quinn, Kikuuwe, Awrejcewicz, Wojewoda, Dahl,
                               BoucWen, LuGre, LuGreTable, LuGreSpline, ElastoPlastic, Leuven, Jenkins, MaxwellSlip,
                               Iwan, Gms, GmsTable, Xiong, TwoState, NonDrift>;
-using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic, ClampedPi, Window>;
+using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic, ClampedPi, ResetIntegrator, Window>;
 using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
 using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity, Sampled>;
 

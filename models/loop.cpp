@@ -143,9 +143,9 @@ std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {
   for (const Block& block : diagram.blocks) {
     if (const auto* controller = std::get_if<Controller>(&block.what))
       if (const auto* pid = std::get_if<Pid>(controller); pid != nullptr && pid->holds_integral_back())
-        return BrokenRule{block.path + (pid->integral_limit < infinite ? ".integral_limit" : ".integral_band"),
+        return BrokenRule{block.path + "." + std::string(pid->held_back_by()),
                           "is not for a block of a diagram: let the integral be a block of its own, of kind "
-                          "clamped-pi, or window and integrator"};
+                          "clamped-pi or reset-integrator, or window and integrator"};
     if (const auto* plant = std::get_if<Plant>(&block.what)) {
       nonlinear = nonlinear || std::holds_alternative<FroudePendulum>(*plant);
       if (const auto* froude = std::get_if<FroudePendulum>(plant); froude && froude->clearance > 0.0)

@@ -18,6 +18,7 @@ struct Provenance {
 
   std::string title, file, sha256;          ///< of the case; empty: the command has no case
   std::vector<std::string> overrides;       ///< "PATH=VALUE" as given by --set, in order
+  std::vector<std::string> flags{};         ///< words of the command line that change the result: "--only", "gain-kp"
   std::vector<MeasuredPlantAt> measured{};  ///< plants of the case that are known by data
 };
 

@@ -11,6 +11,7 @@
 #include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/models/element/clamped_pi.hpp"
 #include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/reset_integrator.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/transfer.hpp"
 
@@ -206,18 +207,26 @@ MatrixXd working_loop(const Loop& loop) {
 
 namespace {
 
-/// working_loop() on some states, with the integrals of clamped PI controllers, which are states of elements, below
-/// them.
+/// Gain of an integral that is the state of an element, as long as nothing holds it back.
+std::optional<double> integral_gain(const Element& element) {
+  if (const auto* pi = element.as<ClampedPi<double>>()) return pi->ki;
+  if (const auto* integral = element.as<ResetIntegrator<double>>()) return integral->gain;
+  return std::nullopt;
+}
+
+bool is_reset(const Element& element) { return element.as<ResetIntegrator<double>>() != nullptr; }
+
+/// working_loop() on some states, with the integrals that are states of elements below them.
 MatrixXd with_integrals(const Loop& loop, const MatrixXd& working, const std::vector<Index>& seen) {
   const Index n = std::ssize(seen);
   MatrixXd all = working(seen, seen);
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
-    const auto* pi = loop.elements[k].as<ClampedPi<double>>();
-    if (pi == nullptr) continue;
+    const auto gain = integral_gain(loop.elements[k]);
+    if (!gain) continue;
     const Index own = all.rows();
     all.conservativeResizeLike(MatrixXd::Zero(own + 1, own + 1));
     all.col(own).head(n) = loop.B(seen, static_cast<Index>(k));
-    all.row(own).head(n) = pi->ki * loop.ports[k].C(seen);
+    all.row(own).head(n) = *gain * loop.ports[k].C(seen);
   }
   return all;
 }
@@ -231,7 +240,8 @@ std::vector<double> pole_moduli(const Loop& loop) {
   const MatrixXd tangent = loop.tangent();
   const auto seen = seen_states(loop, tangent);
   if (!seen.empty()) add_moduli(tangent(seen, seen), found);
-  if (const MatrixXd working = working_loop(loop); working.allFinite() && working != loop.A + loop.A_delayed)
+  if (const MatrixXd working = working_loop(loop);
+      working.allFinite() && (working != loop.A + loop.A_delayed || std::ranges::any_of(loop.elements, is_reset)))
     add_moduli(with_integrals(loop, working, seen), found);
   if (found.empty() && !loop.elements.empty())
     if (const double own = frequency_of_scales(loop); own > 0.0) found.push_back(own);
@@ -262,8 +272,15 @@ double output_level(const Loop& loop, std::size_t element) {
 State typical_sizes(const Loop& loop) {
   if (loop.continuous) return sampled_sizes(loop, LinearSizes(*loop.continuous).find());
   State result = LinearSizes(loop).find();
-  for (const auto& element : loop.elements)
+  const VectorXd linear = Eigen::Map<const VectorXd>(result.data(), loop.states());
+  for (std::size_t i = 0; i < loop.elements.size(); ++i) {
+    const Element& element = loop.elements[i];
+    const auto first = result.size();
     for (int k = 0; k < element.states(); ++k) result.push_back(element.state_scale(k));
+    if (!is_reset(element)) continue;  // its integral has no size of its own
+    const double input = loop.ports[i].C.cwiseAbs().dot(linear), size = *integral_gain(element) * input;
+    if (size != 0.0) result[first] = std::abs(size) * slow_time(loop);
+  }
   return result;
 }
 

@@ -1,8 +1,12 @@
 #include "limcycle/cases/loader/remedy_candidates.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "limcycle/analysis/study/remedy/dither.hpp"
 #include "limcycle/analysis/study/sensitivity/global/random_stream.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
@@ -12,8 +16,6 @@ namespace limcycle {
 namespace {
 
 using Way = RemedyCandidate::Way;
-
-constexpr std::string_view added_error = "loop.error.half_width";
 
 Case case_with_overrides(const Case& from, const std::vector<std::string>& more) {
   auto overrides = from.overrides;
@@ -32,16 +34,18 @@ class Candidates {
   std::vector<RemedyCandidate> all() {
     dead_zone();
     leak();
-    hold_back("integrator-clamp", "integral_limit", Measure::force);
-    not_written("integrator-reset", "there is no integrator that is reset");
+    hold_back("integrator-clamp", "integral_limit", Measure::force, Way::down);
+    hold_back("integrator-reset", "integral_reset", Measure::own, Way::up);
     gain("gain-kp", {"kp", "position_kp"}, "proportional gain", Measure::stiffness);
     integral_gain();
     gain("gain-kd", {"kd", "velocity_kp"}, "derivative gain", Measure::damping);
     compensation();
-    not_written("impulse-compensation", "there is no controller that sends impulses");
-    not_written("dither",
-                "a limit cycle is sought in a loop without periodic inputs; `simulate` takes a sine as force");
-    hold_back("integral-band", "integral_band", Measure::displacement);
+    not_written(
+        "impulse-compensation",
+        "no controller here sends pulses to a body that is stuck with an error; `simulate` takes a table of the "
+        "force");
+    dither();
+    hold_back("integral-band", "integral_band", Measure::displacement, Way::down);
     feedforward();
     of_plant("damping", {"loop.plant.damping", "loop.friction.sigma2"}, Measure::damping);
     of_plant("stiffness", {"loop.plant.stiffness"}, Measure::stiffness);
@@ -117,14 +121,14 @@ class Candidates {
                                      : "the controller has no integral that can leak: kind \"pid\" has");
   }
 
-  /// A limit or a band of the integral of a PID, which is infinite where it is absent.
-  void hold_back(const std::string& name, const std::string& key, Measure measure) {
+  /// A limit, a band or a reset of the integral of a PID: infinite or 0 where it is absent.
+  void hold_back(const std::string& name, const std::string& key, Measure measure, Way way) {
     const auto* pid = std::get_if<Pid>(&parts_.controller);
     if (parts_.diagram) return not_there(name, "in a diagram the integral is a block of its own");
     if (pid == nullptr) return not_there(name, "the controller has no integral of that kind: kind \"pid\" has");
     if (pid->ki == 0.0) return not_there(name, "there is no integral action");
     const CaseNumber* number = at("loop.controller." + key);
-    add({name, number->path, number->unit, {}, number->value, measure, Way::down});
+    add({name, number->path, number->unit, {}, number->value, measure, way});
   }
 
   void dead_zone() {
@@ -133,13 +137,27 @@ class Candidates {
     if (!uses_error(parts_)) return not_there(name, "there is no error: the loop has no controller");
     if (parts_.error && parts_.error->kind() != "dead-zone")
       return not_there(name, "the error passes another element already");
-    add({name,
-         std::string(added_error),
-         "1",
-         {},
-         parts_.error ? parts_.error->number("half_width").value() : 0.0,
-         Measure::displacement,
-         Way::up});
+    const double own = parts_.error ? parts_.error->number("half_width").value() : 0.0;
+    RemedyCandidate candidate{name, "loop.error.half_width", "1", {}, own, Measure::displacement, Way::up};
+    if (own == 0.0) candidate.with.emplace_back("loop.error.kind=\"dead-zone\"");
+    add(std::move(candidate));
+  }
+
+  /// A sine in [simulate]: no part of the loop.
+  void dither() {
+    const std::string name = "dither";
+    if (const auto why = why_no_dither(parts_); !why.empty()) return not_there(name, why);
+    if (from_.simulate && from_.simulate->force) return not_there(name, "[simulate] has a force already");
+    const auto frequency = frequency_of_dither(parts_);
+    if (!frequency) return not_there(name, "the loop without friction has no crossover above which a dither could lie");
+    RemedyCandidate candidate{name, "simulate.force.amplitude", "N", {}, 0.0, Measure::force, Way::up};
+    candidate.parts = [parts = parts_](double) { return parts; };
+    candidate.frequency = *frequency;
+    if (!from_.simulate)
+      candidate.with.push_back(fmt::format("simulate.duration={:.2g}", 2000.0 * std::numbers::pi / *frequency));
+    candidate.with.emplace_back("simulate.force.kind=\"sine\"");
+    candidate.with.push_back(override_of("simulate.force.frequency", *frequency));
+    list_.push_back(std::move(candidate));
   }
 
   void compensation() {
@@ -181,9 +199,7 @@ class Candidates {
 std::vector<RemedyCandidate> remedy_candidates(const Case& from) { return Candidates(from).all(); }
 
 std::vector<std::string> remedy_overrides(const RemedyCandidate& candidate, double value) {
-  std::vector<std::string> overrides;
-  if (candidate.parameter == added_error && candidate.own == 0.0)
-    overrides.emplace_back("loop.error.kind=\"dead-zone\"");
+  std::vector<std::string> overrides = candidate.with;
   overrides.push_back(override_of(candidate.parameter, value));
   return overrides;
 }

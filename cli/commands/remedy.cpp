@@ -83,7 +83,8 @@ int run(RemedyFlags flags) {
   std::string refused;
   if (!fixed.empty() && report.status != Status::interrupted) try {
       output.file(fixed, fixed_case(from, report, flags.apply));
-      text += "\n" + fixed + " is written; confirm it: limcycle predict " + fixed + "\n";
+      text += "\n" + fixed + " is written; confirm it: limcycle " +
+              (flags.apply == "dither" ? "simulate " : "predict ") + fixed + "\n";
     } catch (const NoAnswer& none) {  // what was computed is shown nevertheless
       refused = none.what();
     }

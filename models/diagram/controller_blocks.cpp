@@ -1,6 +1,7 @@
 #include "limcycle/models/diagram/controller_blocks.hpp"
 
 #include "limcycle/models/element/clamped_pi.hpp"
+#include "limcycle/models/element/reset_integrator.hpp"
 #include "limcycle/models/element/sampled.hpp"
 #include "limcycle/models/element/window.hpp"
 #include "limcycle/models/linear/discrete.hpp"
@@ -8,17 +9,32 @@
 namespace limcycle {
 namespace {
 
+/// The integral of a PID as one element; empty for one with a band.
+std::optional<Element> held_integral(const Pid& pid) {
+  if (pid.integral_limit < infinite) {
+    ClampedPi<double> integral;
+    integral.ki = pid.ki;
+    integral.limit = pid.integral_limit;
+    return integral;
+  }
+  if (pid.integral_reset > 0.0) {
+    ResetIntegrator<double> integral;
+    integral.gain = pid.ki;
+    integral.share = pid.integral_reset;
+    integral.interval = pid.reset_interval;
+    return integral;
+  }
+  return std::nullopt;
+}
+
 /// The integral of a PID as blocks of its own, behind the rest of it.
 SignalSum through_held_integral(std::vector<Block>& blocks, const Pid& pid, SignalSum e) {
   const std::string path = "loop.controller";
   Pid rest = pid;
   rest.ki = 0.0;
   blocks.push_back({"controller", path, Controller(rest), {e}});
-  if (pid.integral_limit < infinite) {
-    ClampedPi<double> integral;
-    integral.ki = pid.ki;
-    integral.limit = pid.integral_limit;
-    blocks.push_back({"integral", path + ".integral_limit", Element(integral), {std::move(e)}});
+  if (const auto integral = held_integral(pid)) {
+    blocks.push_back({"integral", path + "." + std::string(pid.held_back_by()), *integral, {std::move(e)}});
     return {{1.0, "controller", ""}, {1.0, "integral", ""}};
   }
   Window<double> window;

@@ -42,13 +42,24 @@ ControllerModel NoController::model() const {
   return controller;
 }
 
+std::string_view Pid::held_back_by() const {
+  if (integral_limit < infinite) return "integral_limit";
+  if (integral_band < infinite) return "integral_band";
+  return integral_reset > 0.0 ? "integral_reset" : "";
+}
+
 std::optional<BrokenRule> Pid::broken_together() const {
-  if (!holds_integral_back()) return std::nullopt;
-  const bool limits = integral_limit < infinite;
-  const std::string key = limits ? "integral_limit" : "integral_band";
-  if (limits && integral_band < infinite) return BrokenRule{"integral_band", "cannot stand beside integral_limit"};
+  if (reset_interval > 0.0 && integral_reset == 0.0)
+    return BrokenRule{"reset_interval", "needs integral_reset: there is no reset"};
+  const std::string key(held_back_by());
+  if (key.empty()) return std::nullopt;
+  for (const auto& [other, is_there] :
+       {std::pair("integral_band", integral_band < infinite), {"integral_reset", integral_reset > 0.0}})
+    if (is_there && key != other) return BrokenRule{other, "cannot stand beside " + key};
   if (ki == 0.0) return BrokenRule{key, "needs ki: there is no integral"};
-  if (limits && leak > 0.0) return BrokenRule{key, "cannot stand beside leak, which bounds the integral too"};
+  if (integral_limit < infinite && leak > 0.0)
+    return BrokenRule{key, "cannot stand beside leak, which bounds the integral too"};
+  if (integral_reset > 0.0 && leak > 0.0) return BrokenRule{key, "cannot stand beside leak yet"};
   if (is_on()) return BrokenRule{key, "is not for a sampled controller yet"};
   return std::nullopt;
 }

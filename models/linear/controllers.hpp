@@ -86,11 +86,13 @@ struct NoController : ControllerParts {
 };
 
 /// u = kp e + ki I + kd de/dt, dI/dt = e - leak I, the derivative filtered by 1/(tf s + 1) when tf > 0. A leak bounds
-/// what the integral can reach: ki/leak times a constant error. Two other ways to hold the integral back, one at a
+/// what the integral can reach: ki/leak times a constant error. Three other ways to hold the integral back, one at a
 /// time: ki I stops at +-integral_limit (see ClampedPi), or I grows only while |e| is within integral_band (see
-/// Window).
+/// Window), or the share integral_reset of I is taken off where e changes sign, at the earliest reset_interval after
+/// the last time (see ResetIntegrator).
 struct Pid : ControllerParts {
-  double kp{}, ki{0.0}, kd{0.0}, tf{0.0}, leak{0.0}, integral_limit{infinite}, integral_band{infinite};
+  double kp{}, ki{0.0}, kd{0.0}, tf{0.0}, leak{0.0}, integral_limit{infinite}, integral_band{infinite},
+      integral_reset{0.0}, reset_interval{0.0};
   static constexpr std::string_view kind = "pid";
   static constexpr std::string_view equation =
       "u = kp e + ki I + kd de/dt, dI/dt = e - leak I; tf > 0: derivative filtered by 1/(tf s + 1)";
@@ -107,16 +109,25 @@ struct Pid : ControllerParts {
          "largest |e| at which I grows",
          &Pid::integral_band,
          {0.0, infinite, true, false},
-         false}};
+         false},
+        {"integral_reset",
+         "1",
+         "share of I that is taken off where e changes sign",
+         &Pid::integral_reset,
+         {0.0, 2.0},
+         false},
+        {"reset_interval", "s", "least time between two resets", &Pid::reset_interval, not_negative, false}};
     append_table(table);
     return table;
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
   /// True if the integral is no linear part: then the blocks of through_controller() make it.
-  bool holds_integral_back() const { return integral_limit < infinite || integral_band < infinite; }
+  bool holds_integral_back() const { return !held_back_by().empty(); }
+  /// The key that does it, the first of several; empty: none.
+  std::string_view held_back_by() const;
   /// The rule that these numbers break together.
   std::optional<BrokenRule> broken_together() const;
-  /// Without integral_limit and integral_band.
+  /// With the integral never held back.
   ControllerModel model() const;
 };
 

@@ -35,13 +35,20 @@ std::string cell(const MarginSide& side, double own) {
   }
 }
 
-/// "lower loop.friction.Fs from 1.5 N to 1.04 N (-31 %)".
+/// What is there: ", at a fold"; empty if that is not known.
+std::string kind_of(const MarginSide& side) {
+  if (side.diverges) return ", but it diverges beyond";
+  if (side.event == BranchEvent::Type::fold) return ", at a fold";
+  return side.event == BranchEvent::Type::stability ? ", where the cycle changes its stability" : "";
+}
+
+/// "lower loop.friction.Fs from 1.5 N to 1.04 N (-31 %, at a fold)".
 std::string step(const ParameterMargin& one) {
   const MarginSide& side = *one.nearest();
   const bool raise = std::abs(side.value) > std::abs(one.parameter.value);
   return fmt::format("{} {} from {} to {} ({}{})", raise ? "raise" : "lower", one.parameter.path,
                      with_digits(one.parameter.value, 4), Units::attach(side_place(side), unit_of(one)),
-                     change(side.value, one.parameter.value), side.diverges ? ", but it diverges beyond" : "");
+                     change(side.value, one.parameter.value), kind_of(side));
 }
 
 const ParameterMargin* nearest(const MarginReport& report, bool friction) {

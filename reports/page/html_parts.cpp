@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/json_values.hpp"
 #include "limcycle/reports/page/case_in_page.hpp"
 #include "limcycle/reports/page/page.hpp"
@@ -44,6 +45,8 @@ std::string origin(const HtmlPage& page) {
   std::string command = "limcycle " + page.command;
   if (!from.file.empty()) command += " " + shell_word(from.file);
   if (!page.flags.empty()) command += " " + page.flags;
+  if (page.flags.empty())
+    for (const auto& word : from.flags) command += " " + shell_word(word);
   for (const auto& override : from.overrides) command += " --set " + shell_word(override);
   const auto entry = [](const std::string& name, const std::string& value) {
     return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html_escaped(value));

@@ -35,7 +35,7 @@ struct HtmlPage {
   std::vector<std::string> worth{};  ///< sentences under it
   std::string body;                  ///< markup
   std::string command;               ///< that reproduces it: "predict"; its case and overrides are added
-  std::string flags{};               ///< of that command, as typed
+  std::string flags{};               ///< of that command, as typed; empty: those of the provenance
   std::string case_text;             ///< the case file as read; empty: left out
   std::string result{};              ///< JSON document for programs; empty: none
   std::vector<std::string> scripts{std::string(page_script())};  ///< the page's own last

@@ -75,6 +75,15 @@ TEST_CASE("a PID: one way to hold its integral back at a time, and in a diagram 
   CHECK_THAT(pid("ki = 1.0\nintegral_limit = 0.0\n"), Contains("must be > 0"));
   CHECK_THAT(pid("ki = 1.0\nintegral_band = 2.0\nintegral_limit = 2.0\n"), Contains("cannot stand beside"));
   CHECK_THAT(pid("ki = 1.0\nleak = 0.1\nintegral_limit = 2.0\n"), Contains("cannot stand beside leak"));
+  CHECK(pid("ki = 1.0\nintegral_reset = 2.0\nreset_interval = 0.1\n").empty());
+  CHECK_THAT(pid("ki = 1.0\nintegral_reset = 2.1\n"), StartsWith("a.toml:11: loop.controller.integral_reset"));
+  CHECK_THAT(pid("integral_reset = 1.0\n"), Contains("needs ki"));
+  CHECK_THAT(pid("ki = 1.0\nreset_interval = 0.1\n"),
+             StartsWith("a.toml:11: loop.controller.reset_interval") && Contains("needs integral_reset"));
+  CHECK_THAT(pid("ki = 1.0\nleak = 0.1\nintegral_reset = 1.0\n"), Contains("cannot stand beside leak"));
+  CHECK_THAT(pid("ki = 1.0\nintegral_limit = 2.0\nintegral_reset = 1.0\n"),
+             StartsWith("a.toml:12: loop.controller.integral_reset") && Contains("cannot stand beside integral_limit"));
+  CHECK_THAT(pid("ki = 1.0\nsample_time = 0.01\nintegral_reset = 1.0\n"), Contains("not for a sampled controller"));
   CHECK_THAT(pid("ki = 1.0\nsample_time = 0.01\nintegral_band = 2.0\n"), Contains("not for a sampled controller"));
   CHECK_THAT(
       message("[diagram]\noutput = \"axis.y\"\n[[diagram.block]]\nname = \"axis\"\nkind = \"mass\"\nmass = 1.0\n"

@@ -44,7 +44,8 @@ const Bad bad_values[] = {
     {"misspelt key", "sigma0", "sigm0", ":13: loop.friction.sigm0: unknown key; did you mean sigma0?"},
     {"unknown key", "kp = 3.0", "kp = 3.0\nspeed = 1",
      ":8: loop.controller.speed: unknown key; known: kind, kp, ki, kd, tf, leak, integral_limit, integral_band, "
-     "sample_time, computation_delay, input_step, output_step, velocity_window, hold, friction_compensation, "
+     "integral_reset, reset_interval, sample_time, computation_delay, input_step, output_step, velocity_window, hold, "
+     "friction_compensation, "
      "saturation, lag"},
     {"unknown section", "[search]", "[nonsense]",
      ":14: nonsense: unknown key; known: title, loop, diagram, units, search, df, simulate, predict, sensitivity, "

@@ -44,6 +44,21 @@ TEST_CASE("files: no document takes the place of the case, a store or another do
   CHECK(run({"check", mine, "--json", "/dev/null", "--csv", "/dev/null"}).code == 0);
 }
 
+TEST_CASE("files: a name that promises another document than is written is refused") {
+  const Scratch scratch;
+  const std::string servo = shipped("pid-lugre.toml");
+  for (const char* command : {"check", "predict", "report", "simulate", "remedy", "df"})
+    for (const char* name : {"x.pdf", "x.tex"}) {
+      check_refused_with(run({command, servo, "-o", scratch.file(name)}),
+                         "no command writes ." + std::string(name + 2));
+      CHECK_FALSE(std::filesystem::exists(scratch.file(name)));
+    }
+  check_refused_with(run({"margin", servo, "-o", scratch.file("x.svg")}), "this command writes no .svg");
+  check_refused_with(run({"check", servo, "-o", scratch.file("x.html")}), "this command writes no .html");
+  check_refused_with(run({"laws", "-o", scratch.file("x.pdf")}), "no command writes .pdf");
+  CHECK(run({"check", servo, "-o", scratch.file("x.txt")}).code == 0);
+}
+
 TEST_CASE("files: a name that is empty is refused") {
   const std::string servo = shipped("pid-lugre.toml");
   for (const char* flag : {"--json", "--csv", "-o"})

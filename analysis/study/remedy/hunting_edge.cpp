@@ -1,6 +1,7 @@
 #include "limcycle/analysis/study/remedy/hunting_edge.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace limcycle {
@@ -113,6 +114,27 @@ bool HuntingEdge::confirm(Bracket& bracket) {
     if (!look_beyond(bracket)) return !stopped();
   }
   return false;
+}
+
+std::optional<Bracket> HuntingEdge::well_apart(const Bracket& bracket) {
+  constexpr std::array factors{1.02, 1.1, 1.3, 2.0};
+  const double outward = bracket.rests / bracket.hunts > 1.0 ? 1.0 : -1.0;
+  const auto place = [&](double from, double factor) { return rounded_away(from * std::pow(factor, outward), from); };
+  Bracket wide = bracket;
+  const auto rests = std::ranges::find_if(factors, [&](double factor) {
+    wide.rests = place(bracket.rests, factor);
+    const double beyond = wide.rests * std::pow(1.1, outward);
+    return !stopped() && candidate_.parts(wide.rests) && judged(wide.rests) == Hunts::no &&
+           (!candidate_.parts(beyond) || judged(beyond) == Hunts::no);
+  });
+  if (rests == factors.end()) return std::nullopt;
+  const auto hunts = std::ranges::find_if(factors, [&](double factor) {
+    wide.hunts = place(bracket.hunts, 1.0 / factor);
+    return !stopped() && judged(wide.hunts) == Hunts::yes;
+  });
+  if (hunts == factors.end()) return std::nullopt;
+  judged(wide.rests);  // for its run
+  return wide;
 }
 
 /// True if it hunts again just beyond an edge: the bracket is moved there.

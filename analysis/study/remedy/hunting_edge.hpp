@@ -48,6 +48,10 @@ class HuntingEdge {
   /// False if that cannot be had.
   bool confirm(Bracket& bracket);
 
+  /// For an edge that is not confirmed, as motions are too slow or too small near it: two values farther apart, the
+  /// nearest of some on either side that are judged with full care to hunt and, with the next one beyond, to rest.
+  std::optional<Bracket> well_apart(const Bracket& bracket);
+
   std::optional<LoopState> hunting = {};  ///< on the last hunting motion that was met
   Trace run = {};  ///< from the largest displacement, of the last judgement with full care without hunting
 

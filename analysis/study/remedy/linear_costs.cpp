@@ -47,7 +47,10 @@ std::optional<Loop> linear_loop(LoopParts parts) {
           controller.limit = infinite;
           controller.anti_windup = {};
         }
-        if constexpr (std::is_same_v<C, Pid>) controller.integral_limit = controller.integral_band = infinite;
+        if constexpr (std::is_same_v<C, Pid>) {
+          controller.integral_limit = controller.integral_band = infinite;
+          controller.integral_reset = controller.reset_interval = 0.0;
+        }
       },
       parts.controller);
   if (validate(parts)) return std::nullopt;

@@ -8,6 +8,7 @@
 #include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
+#include "limcycle/analysis/study/remedy/dither.hpp"
 #include "limcycle/analysis/study/remedy/remedy_order.hpp"
 #include "limcycle/analysis/study/remedy/remedy_search.hpp"
 
@@ -105,11 +106,21 @@ class RemedyStudy {
 
   Remedy one(const RemedyCandidate& candidate, const std::function<void(double)>& progress) const {
     if (!candidate.why_not.empty()) return {candidate, std::nullopt, 0.0, {}, {}, candidate.why_not};
+    if (candidate.frequency > 0.0) return dithered(candidate, progress);
     Remedy remedy = RemedySearch(candidate, loop_, progress).run();
     if (remedy.ends != true || stopped()) return remedy;
     if (const auto parts = candidate.parts(remedy.value))
       remedy.costs = loop_costs(*parts, report_.step, remedy.after, true);
     remedy.costs.robust_share = robust_share(remedy);
+    return remedy;
+  }
+
+  /// Its costs are those that do not depend on the friction: the motion under dither has no rest.
+  Remedy dithered(const RemedyCandidate& candidate, const std::function<void(double)>& progress) const {
+    Remedy remedy = dither_remedy(candidate, parts_, loop_, report_.step, progress);
+    if (remedy.ends != true) return remedy;
+    remedy.costs = loop_costs(parts_, report_.step, {}, false);
+    remedy.costs.steady_state_error.reset();
     return remedy;
   }
 

@@ -25,6 +25,8 @@ struct RemedyCandidate {
   Measure measure = Measure::own;
   enum class Way { up, down, both } way = Way::up;
   std::function<std::optional<LoopParts>(double)> parts = {};  ///< the loop with that value; empty: not valid
+  std::vector<std::string> with = {};                          ///< what a case needs beside it, "PATH=VALUE"
+  double frequency = 0.0;  ///< rad/s, if its number is the amplitude of a dither, which is no part of the loop; else 0
 
   bool is_absent() const { return own == 0.0 || std::isinf(own); }
 };
@@ -77,10 +79,11 @@ struct RemedyReport {
 /// longer hunts. The stable cycles of the loop are followed over the remedy's number, up to a factor of 100 either way
 /// (from a hundred-thousandth to a hundred times the size that the hunting motion suggests, if it is absent), until
 /// they end; then predict() judges both sides of the edge in time, the edge being 1e-3 wide at most (the values have
-/// four digits). Beyond it the next change is sought at three values a decade and located likewise. Where cycles cannot
-/// be followed (dead times, sampling, motions without a period) values at three a decade are judged from the present
-/// one on, and a range without hunting that lies between two of them can be missed. Cost: a branch of cycles and some
-/// ten predict() in time for each remedy. `parts`: of the loop as it stands.
+/// four digits); where predict() decides no value so near to it, up to a factor of 2 on either side. Beyond it the next
+/// change is sought at three values a decade and located likewise. Where cycles cannot be followed (dead times,
+/// sampling, motions without a period) values at three a decade are judged from the present one on, and a range without
+/// hunting that lies between two of them can be missed. Cost: a branch of cycles and some ten predict() in time for
+/// each remedy. `parts`: of the loop as it stands.
 RemedyReport remedies(const LoopParts& parts, const std::vector<RemedyCandidate>& candidates,
                       const RemedyOptions& options);
 

@@ -222,7 +222,17 @@ Remedy RemedySearch::run() {
     return remedy;
   }
   edge_.hunting = edge->hunting;
+  const Bracket found = *edge;
   if (!edge_.confirm(*edge)) {
+    if (auto wide = edge_.stopped() ? std::nullopt : edge_.well_apart(found)) {
+      remedy.value = wide->rests;
+      remedy.edges.push_back(wide->rests);
+      remedy.beyond.push_back(wide->hunts);
+      remedy.why = "hunts at " + short_number(wide->hunts, edge_digits) + ", no longer at " +
+                   number(wide->rests, edge_digits) + "; `predict` does not decide all values between them";
+      remedy.after = edge_.run;
+      return remedy;
+    }
     remedy.ends = std::nullopt;
     remedy.why = edge_.stopped()
                      ? "interrupted"

@@ -18,10 +18,10 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 /// A straight piece of an element: output = slope input + offset while low <= input <= high. `free`: the output is
-/// anything in that range instead, whatever the input.
+/// anything in that range instead, whatever the input, or with `still` for an input of zero.
 struct StraightPiece {
   double slope = 0.0, offset = 0.0, low = -infinite, high = infinite;
-  bool free = false;
+  bool free = false, still = false;
 };
 
 /// The pieces of an element that stands in the path of a signal; none for a kind that has none.
@@ -35,6 +35,7 @@ std::vector<StraightPiece> straight_pieces(const Element& element) {
     const double limit = element.number("limit").value(), at = limit / slope;
     return {{.slope = slope, .low = -at, .high = at}, {0.0, limit, at, infinite}, {0.0, -limit, -infinite, -at}};
   }
+  if (element.kind() == "reset-integrator") return {{.free = true, .still = true}};
   if (element.kind() == "output-rate") return {{}};  // nothing moves
   if (element.kind() == "friction-compensation") {
     const double level = element.number("level").value();
@@ -167,11 +168,12 @@ class RestRange {
     all.add_between(unit(ne_ - 1), holds.low, holds.high);
     for (Index i = 0; i + 1 < ne_; ++i) {
       const StraightPiece& piece = pieces_[static_cast<std::size_t>(i)][choice[static_cast<std::size_t>(i)]];
+      const auto [row, shift] = input(i);
+      if (piece.still) all.add_equal(row, -shift);
       if (piece.free) {
         all.add_between(unit(i), piece.low, piece.high);
         continue;
       }
-      const auto [row, shift] = input(i);
       all.add_equal(unit(i) - piece.slope * row, piece.offset + piece.slope * shift);
       all.add_between(row, piece.low - shift, piece.high - shift);
     }

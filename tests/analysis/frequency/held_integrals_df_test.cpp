@@ -4,6 +4,7 @@
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/models/element/clamped_pi.hpp"
+#include "limcycle/models/element/reset_integrator.hpp"
 #include "limcycle/models/element/window.hpp"
 #include "limcycle/models/friction/sliders/jenkins.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
@@ -99,6 +100,68 @@ TEST_CASE("clamped integral: mirrored and in other units it is the same") {
   const auto up = describing_function(clamped(0.4, 2.0, 1.0), {2.0, 1.0, 0.3}),
              down = describing_function(clamped(0.4, 2.0, 1.0), {2.0, 1.0, -0.3});
   CHECK(std::abs(up.gain - down.gain) < 1e-9);
+}
+
+namespace {
+
+ResetIntegrator<double> resetting(double gain, double share, double interval) {
+  ResetIntegrator<double> element;
+  element.gain = gain;
+  element.share = share;
+  element.interval = interval;
+  return element;
+}
+
+/// First harmonic of the reset integrator by its rule at some instants a period, the last of `periods`.
+Complex by_rule(const ResetIntegrator<double>& element, double A, double w, double bias, int periods) {
+  constexpr int instants_of_period = 100'000;
+  const double h = 2.0 * pi / w / instants_of_period;
+  double z = 0.0, x = bias, since = infinite;
+  Complex sum = 0.0;
+  for (int period = 0; period < periods; ++period) {
+    sum = 0.0;
+    for (int i = 0; i < instants_of_period; ++i) {
+      const double phase = 2.0 * pi * (i + 0.5) / instants_of_period, before = x;
+      x = bias + A * std::sin(phase);
+      z += h * element.gain * x;
+      since += h;
+      if (before * x < 0.0 && since >= element.interval) {
+        z *= 1.0 - element.share;
+        since = 0.0;
+      }
+      sum += z * Complex(std::sin(phase), std::cos(phase));
+    }
+  }
+  return 2.0 / instants_of_period / A * sum;
+}
+
+}  // namespace
+
+TEST_CASE("reset integrator: Clegg's describing function, and that of a partial reset, against quadrature") {
+  const auto marched = test::with(DfMethod::quadrature, 1e-9);
+  // Clegg (1958): 4/(pi w) (1 - j pi/4) A^0.
+  CHECK(std::abs(*resetting(1.0, 1.0, 0.0).exact_describing_function(2.0, 0.5, 0.0) - Complex(8.0 / pi, -2.0)) < 1e-12);
+  CHECK(std::abs(*resetting(3.0, 0.0, 0.0).exact_describing_function(2.0, 0.5, 0.0) - Complex(0.0, -6.0)) < 1e-12);
+  for (const double share : {0.2, 1.0, 1.6})
+    for (const double interval : {0.0, 0.7}) {
+      const auto element = resetting(3.0, share, interval);
+      const Complex expected = *element.exact_describing_function(2.0, 4.0, 0.0);
+      const auto found = describing_function(element, {2.0, 4.0, 0.0}, marched);
+      CAPTURE(share, interval, found.gain, expected);
+      CHECK(found.status == Status::converged);
+      CHECK(std::abs(found.gain - expected) <= found.error * std::abs(expected) + 1e-9);
+      CHECK(std::abs(found.gain - by_rule(element, 2.0, 4.0, 0.0, 60)) < 2e-4 * std::abs(expected));
+    }
+}
+
+TEST_CASE("reset integrator: no closed form with a bias, a long interval or a change of sign") {
+  CHECK_FALSE(resetting(3.0, 1.0, 0.0).exact_describing_function(2.0, 4.0, 0.1));
+  CHECK_FALSE(resetting(3.0, 1.0, 0.8).exact_describing_function(2.0, 4.0, 0.0));
+  CHECK_FALSE(resetting(3.0, 2.0, 0.0).exact_describing_function(2.0, 4.0, 0.0));
+  const auto biased =
+      describing_function(resetting(3.0, 1.0, 0.0), {2.0, 4.0, 0.5}, test::with(DfMethod::quadrature, 1e-9));
+  CHECK(biased.status == Status::converged);
+  CHECK(std::abs(biased.gain - by_rule(resetting(3.0, 1.0, 0.0), 2.0, 4.0, 0.5, 3)) < 2e-4 * std::abs(biased.gain));
 }
 
 TEST_CASE("window: its describing function, against sums over a period") {

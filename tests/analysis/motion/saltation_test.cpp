@@ -6,6 +6,7 @@
 #include "limcycle/models/element/dead_zone.hpp"
 #include "limcycle/models/element/delayed_relay.hpp"
 #include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/reset_integrator.hpp"
 #include "limcycle/tests/analysis/motion/one_step.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -237,6 +238,45 @@ TEST_CASE("saltation: backlash that stops driving resets what it holds, one that
   const auto driven = switched(loop, {x, {Mode{0}}}, 0, same(n + 1, 1e-5));
   REQUIRE(driven.after[0] == Mode{1});
   check_agreement(driven);
+}
+
+TEST_CASE("saltation: a reset integrator, ready and waiting, with and without an interval") {
+  // 1/(s + 1)^2 on a state with y = 0 that moves. At the reset z shrinks, and a clock begins at the same value whenever
+  // that is; while it waits the switch changes nothing.
+  for (const double interval : {0.0, 0.3}) {
+    ResetIntegrator<double> element;
+    element.gain = 2.0;
+    element.share = 0.7;
+    element.interval = interval;
+    const Loop loop = forward(element, {1.0}, {1.0, 2.0, 1.0});
+    const Eigen::RowVectorXd C = loop.C_y;
+    const Eigen::Vector2d X = Eigen::Vector2d(C(1), -C(0)).normalized() * 0.6;
+    State x{X(0), X(1), 0.4};
+    if (interval > 0.0) x.push_back(0.0);
+    LoopField field(loop);
+    State rate;
+    field.modes() = {Mode{1}};
+    field.rate(x, rate, 0.0);
+    const std::int64_t sign = field.y_rate(rate) > 0.0 ? 1 : -1;  // of e = -y before it passes zero
+    const auto reset = switched(loop, {x, {Mode{sign}}}, 0, same(x.size(), 1e-5));
+    CHECK(reset.after[0] == Mode{interval > 0.0 ? -2 * sign : -sign});
+    check_agreement(reset);
+    // z+ = 0.3 z-, but a neighbour that is later by dt had 0.7 z- for as long: its rates differ by -B 0.7 z-.
+    CHECK(reset.saltation(2, 2) == Approx(0.3).epsilon(1e-12));
+    CHECK(reset.saltation(2, 0) == Approx(0.0).margin(1e-12));
+    if (interval == 0.0) continue;
+    // A neighbour that is ahead passes earlier, and has that much less of the clock left.
+    const Eigen::RowVectorXd clock = -static_cast<double>(sign) / std::abs(field.y_rate(rate)) * C;
+    CHECK((reset.saltation.row(3).head(2) - clock).cwiseAbs().maxCoeff() < 1e-12);
+    x[3] = 0.2;
+    const auto passed = switched(loop, {x, {Mode{2 * sign}}}, 0, same(x.size(), 1e-5));
+    CHECK(passed.after[0] == Mode{-2 * sign});
+    CHECK((passed.saltation - MatrixXd::Identity(4, 4)).cwiseAbs().maxCoeff() < 1e-12);
+    const auto ready = switched(loop, {{0.3, 0.2, 0.4, 0.0}, {Mode{2}}}, 1, same(x.size(), 1e-5));
+    CHECK(ready.after[0] == Mode{1});
+    check_agreement(ready);
+    CHECK(ready.saltation.row(3).cwiseAbs().maxCoeff() < 1e-12);
+  }
 }
 
 TEST_CASE("saltation: a delayed relay keeps when it was told") {

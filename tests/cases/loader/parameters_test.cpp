@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <type_traits>
@@ -136,7 +137,9 @@ void check_number(const Parameter<Owner, double>& parameter) {
   CHECK(said(parameter, "-inf") == "must be a finite number");
   CHECK(said(parameter, "1979-05-27") == "must be a number, found a date or time");
   const std::string unit = parameter.unit == "1" ? "" : " " + std::string(parameter.unit);
-  const std::string most = parameter.range.high == 1.0 ? (parameter.range.high_open ? " and < 1" : " and <= 1") : "";
+  std::string most;
+  if (std::isfinite(parameter.range.high))
+    most = (parameter.range.high_open ? " and < " : " and <= ") + fmt::format("{:g}", parameter.range.high);
   if (parameter.range.low == 1.0) {
     CHECK(said(parameter, "0.999").starts_with("must be >= 1"));
   } else if (std::isfinite(parameter.range.low)) {
@@ -172,9 +175,10 @@ void check_choice(const Parameter<Owner, double>& parameter) {
 }
 
 /// Parameters that a loop rejects although they exist: tested with that rule.
-constexpr std::string_view elsewhere[] = {"clearance",         "elements",       "anti_windup",  "sample_time",
-                                          "computation_delay", "input_step",     "output_step",  "velocity_window",
-                                          "position_every",    "integral_limit", "integral_band"};
+constexpr std::string_view elsewhere[] = {"clearance",         "elements",       "anti_windup",   "sample_time",
+                                          "computation_delay", "input_step",     "output_step",   "velocity_window",
+                                          "position_every",    "integral_limit", "integral_band", "integral_reset",
+                                          "reset_interval"};
 
 template <class Owner>
 void check_owner() {

@@ -113,13 +113,38 @@ TEST_CASE("remedy candidates: each name once, applicable where the case has its 
                                           "gain-kp", "gain-ki", "gain-kd", "friction-compensation",
                                           "impulse-compensation", "dither", "integral-band", "velocity-feedforward",
                                           "damping", "stiffness"});
-  CHECK(fit == std::vector<std::string>{"error-dead-zone", "integrator-leak", "integrator-clamp", "gain-kp", "gain-ki",
-                                        "gain-kd", "friction-compensation", "integral-band", "damping", "stiffness"});
+  CHECK(fit == std::vector<std::string>{"error-dead-zone", "integrator-leak", "integrator-clamp", "integrator-reset",
+                                        "gain-kp", "gain-ki", "gain-kd", "friction-compensation", "dither",
+                                        "integral-band", "damping", "stiffness"});
   const auto& zone = candidates.front();
   const auto parts = zone.parts(0.02);
   REQUIRE(parts);
   CHECK(parts->error->number("half_width") == 0.02);
   CHECK_FALSE(zone.parts(-1.0));
+  const auto reset = std::ranges::find(candidates, "integrator-reset", &RemedyCandidate::name);
+  CHECK(reset->is_absent());
+  CHECK(std::get<Pid>(reset->parts(0.5)->controller).integral_reset == 0.5);
+  CHECK_FALSE(reset->parts(2.1));
+  for (const auto& one : remedy_candidates(servo_case({"loop.controller.leak=0.1"})))
+    if (one.name == "integrator-reset") CHECK(one.why_not.find("cannot stand beside leak") != std::string::npos);
+}
+
+TEST_CASE("remedy candidates: a dither is a sine in [simulate], of which the case then has a section") {
+  const auto candidates = remedy_candidates(servo_case());
+  const auto dither = std::ranges::find(candidates, "dither", &RemedyCandidate::name);
+  REQUIRE(dither->why_not.empty());
+  const auto text = text_with_overrides(servo_case(), remedy_overrides(*dither, 2.5), "dither");
+  REQUIRE(text);
+  const Case with = read_case(*text, "with.toml");
+  REQUIRE(with.simulate);
+  REQUIRE(with.simulate->force);
+  CHECK(with.simulate->force->kind == Signal::Kind::sine);
+  CHECK(with.simulate->force->value == 2.5);
+  CHECK(with.simulate->force->frequency == dither->frequency);
+  for (const auto& one : remedy_candidates(with))
+    if (one.name == "dither") CHECK(one.why_not == "[simulate] has a force already");
+  for (const auto& one : remedy_candidates(servo_case({"loop.controller.sample_time=0.01"})))
+    if (one.name == "dither") CHECK(one.why_not.find("sampling") != std::string::npos);
 }
 
 TEST_CASE("remedy candidates: samples of a spread repeat, and leave the remedy's own number alone") {

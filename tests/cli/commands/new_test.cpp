@@ -117,7 +117,8 @@ TEST_CASE("new: the kinds that are told beside the chosen one are those that may
   const auto text = limcycle::new_case({"mass", "pid", {}, "relay", "dead-zone", false});
   CHECK(others(text, "loop.error") == "# others quantizer, saturation ");
   CHECK(others(text, "loop.element")
-            .starts_with("# others saturation, dead-zone, backlash, cubic, clamped-pi, window, or a"));
+            .starts_with(
+                "# others saturation, dead-zone, backlash, cubic, clamped-pi, # reset-integrator, window, or a"));
 }
 
 TEST_CASE("new: every element on the error, and every friction law as an element, where the format has it") {

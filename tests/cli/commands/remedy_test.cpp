@@ -78,3 +78,24 @@ TEST_CASE("remedy: bad input ends with 2, before anything is computed") {
   refused({"--samples", "-1"}, "--samples");
   CHECK(run({"remedy", shipped("df-lugre.toml")}).code == 2);
 }
+
+TEST_CASE("a page's command has the flags that were given, but those that say where results go") {
+  const Scratch scratch;
+  const std::string servo = shipped("over-compensated.toml");
+  const auto command_of = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"--html", scratch.file("a.html"), "--json", scratch.file("a.json"), "--threads", "2"});
+    REQUIRE(run(words).code == 0);
+    const std::string page = scratch.get("a.html"), begin = "<p>To reproduce it:</p>\n<pre>";
+    const auto at = page.find(begin) + begin.size();
+    return page.substr(at, page.find("</pre>", at) - at);
+  };
+  CHECK(command_of({"remedy", servo, "--only", "gain-kp", "--only", "dither", "--samples=3", "--weight", "noise_gain=1",
+                    "--set", "loop.controller.kd=5.0"}) ==
+        "limcycle remedy " + servo +
+            " --only gain-kp --only dither --weight noise_gain=1 --samples 3 --set "
+            "loop.controller.kd=5.0");
+  CHECK(command_of({"margin", servo, "--parameter", "loop.controller.kp", "--factor", "3"}) ==
+        "limcycle margin " + servo + " --factor 3 --parameter loop.controller.kp");
+  CHECK(command_of({"predict", servo, "--seed", "7", "--quiet"}) == "limcycle predict " + servo + " --seed 7");
+  CHECK(command_of({"predict", servo}) == "limcycle predict " + servo);
+}

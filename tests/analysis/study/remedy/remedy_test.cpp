@@ -193,3 +193,40 @@ TEST_CASE("remedy: a limit and a band of the integral, from infinity down, in tw
     CHECK(values[1] == Approx(values[0]).epsilon(2e-3));
   }
 }
+
+TEST_CASE("a reset of the integral ends hunting, from a share on to a change of its sign, in two units of length") {
+  // Beerens et al. (2021): hunting on stiction ends where the integral is reset at zeros of the error.
+  for (const double unit : {1.0, 1e-3}) {
+    LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+    parts.plant = Mass{1.0 / unit, 0.0, 0.0};
+    const auto hunts_at = [&](double share, double interval) {
+      Pid controller = test::pid(3.0 / unit, 4.0 / unit, 6.0 / unit);
+      controller.integral_reset = share;
+      controller.reset_interval = interval;
+      parts.controller = controller;
+      return hunts(build_loop(parts), {}).hunts;
+    };
+    CHECK(hunts_at(0.45, 0.0) == Hunts::yes);
+    CHECK(hunts_at(1.0, 0.0) == Hunts::no);
+    CHECK(hunts_at(1.0, 0.1) == Hunts::no);
+    CHECK(hunts_at(2.0, 0.1) == Hunts::no);  // without an interval the resets accumulate
+  }
+}
+
+TEST_CASE("remedy: a cycle that shrinks to nothing has its edge between values that predict decides") {
+  LoopParts parts = servo_parts(coulomb(1.05, 1.0));
+  const auto candidate = of_controller(parts, &Pid::integral_reset, Measure::own, RemedyCandidate::Way::up);
+  const Remedy remedy = remedies(parts, {candidate}, quick()).remedies.front();
+  INFO(remedy.why);
+  REQUIRE(remedy.ends == true);
+  CHECK(remedy.why.find("does not decide all values between") != std::string::npos);
+  const double ratio = remedy.value / remedy.beyond.at(0);
+  CHECK(ratio > 1.0);
+  CHECK(ratio < 1.2);
+  const Judging judging = judging_of_variants(quick().predict, hunts(build_loop(parts), {}).found);
+  CHECK(hunts(build_loop(*candidate.parts(remedy.value)), judging).hunts == Hunts::no);
+  CHECK(hunts(build_loop(*candidate.parts(remedy.beyond[0])), judging).hunts == Hunts::yes);
+  REQUIRE(remedy.costs.steady_state_error);  // at rest the error is zero, as with a linear integral
+  CHECK(remedy.costs.steady_state_error->high == Approx(0.0).margin(1e-9));
+  CHECK(remedy.costs.steady_state_error->low == Approx(0.0).margin(1e-9));
+}
