@@ -63,7 +63,10 @@ int run(RemedyFlags flags) {
   chosen_remedies(from, "--only", flags.only);  // reports errors before anything is computed
   if (!flags.apply.empty()) {
     chosen_remedies(from, "--apply", {flags.apply});
-    if (std::ranges::find(wishes.only, flags.apply) == wishes.only.end()) wishes.only.push_back(flags.apply);
+    if (std::ranges::find(wishes.only, flags.apply) == wishes.only.end()) {
+      wishes.only.push_back(flags.apply);
+      flags.given.insert(flags.given.end(), {"--only", flags.apply});  // what the page shows
+    }
   }
   Output output(flags, &from);
   output.check_file("--html", flags.html);

@@ -91,11 +91,12 @@ std::string remedy_page(const RemedyReport& report, const Provenance& provenance
                                                "Values nearest to the present at which the loop does not hunt; *: no "
                                                "other remedy is at least as good in every cost and better in one");
     body += "<h2>What it costs</h2>\n" + html_table(remedy_cost_table(report, units), "Costs at these values");
-    body += "<h2>Before and after</h2>\n";
+    std::string pictures;
     for (const Remedy& one : report.remedies)
       if (one.ends == true)
-        body += html_picture(remedy_picture(report, one, units),
-                             "Step response as it stands and with " + one.candidate.name);
+        pictures += html_picture(remedy_picture(report, one, units),
+                                 "Step response as it stands and with " + one.candidate.name);
+    if (!pictures.empty()) body += "<h2>Before and after</h2>\n" + pictures;
   }
   Table others{{{"remedy", "", Align::left}, {"verdict", "", Align::left}, {"why", "", Align::left}}, {}};
   for (const Remedy& one : report.remedies)

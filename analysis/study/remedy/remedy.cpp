@@ -28,6 +28,9 @@ class RemedyStudy {
       tell(0.05, "cause");
       report_.cause = cause_of(parts_, loop_.judging, loop_.cycles);
       try_all();
+      for (const Remedy& one : report_.remedies)
+        if (one.ends == true && one.candidate.frequency > 0.0)
+          report_.notes.push_back(one.candidate.name + ": " + one.why);
       order_remedies(report_.remedies, options_.weights);
     }
     if (stopped())

@@ -125,6 +125,7 @@ TEST_CASE("dither: it ends the hunting of a servo from an amplitude on, simulate
   CHECK(remedy.edges[0] / remedy.beyond.at(0) < 1.11);
   CHECK(remedy.why.find("hunts at 0.") == 0);
   CHECK(remedy.why.find("does not hunt either") != std::string::npos);
+  CHECK(report.notes == std::vector<std::string>{"dither: " + remedy.why});
   CHECK_FALSE(remedy.costs.steady_state_error);
   CHECK(remedy.costs.phase_margin);
 }
