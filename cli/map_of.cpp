@@ -6,9 +6,7 @@
 namespace limcycle {
 
 MapReport map_of(const Case& from, const std::string& x, const std::string& y, const Methods& methods) {
-  MapReport report = map_over(from, map_axis("--x", x), map_axis("--y", y), methods, "--");
-  report.map.points.resize(report.map.size());
-  return report;
+  return map_over(from, map_axis("--x", x), map_axis("--y", y), methods, "--");
 }
 
 }  // namespace limcycle

@@ -36,22 +36,14 @@ std::string decimal(std::string& value) {
   return {};
 }
 
-std::optional<double> read_finite(const std::string& value) {
-  double number = 0.0;
-  const std::string_view text = std::string_view(value).substr(value.starts_with('+') ? 1 : 0);
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_number = read.ec == std::errc() && read.ptr == text.data() + text.size() && std::isfinite(number);
-  return is_number ? std::optional(number) : std::nullopt;
-}
-
 std::string finite(std::string& value) {
-  return read_finite(value) ? "" : shown_value(value) + " is not a finite number";
+  return finite_number(value) ? "" : shown_value(value) + " is not a finite number";
 }
 
 /// The description is the one from which help makes "LOW to HIGH" (command_facts.cpp).
 CLI::Validator within(double low, double high, const std::string& from_to) {
   const auto check = [low, high, from_to](std::string& value) -> std::string {
-    const auto number = read_finite(value);
+    const auto number = finite_number(value);
     if (!number) return shown_value(value) + " is not a finite number";
     return *number >= low && *number <= high ? "" : "must lie in " + from_to + ", got " + shown_value(value);
   };
@@ -60,7 +52,7 @@ CLI::Validator within(double low, double high, const std::string& from_to) {
 
 CLI::Validator beyond(bool (*holds)(double), const std::string& rule) {
   const auto check = [holds, rule](std::string& value) -> std::string {
-    const auto number = read_finite(value);
+    const auto number = finite_number(value);
     if (!number) return shown_value(value) + " is not a finite number";
     return holds(*number) ? "" : "must be " + rule + ", got " + shown_value(value);
   };
@@ -68,6 +60,14 @@ CLI::Validator beyond(bool (*holds)(double), const std::string& rule) {
 }
 
 }  // namespace
+
+std::optional<double> finite_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0.0;
+  const auto end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, number);
+  return read.ec == std::errc() && read.ptr == end && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
 
 CLI::Validator whole_in(long long low, long long high) {
   return within(static_cast<double>(low), static_cast<double>(high), fmt::format("{} to {}", low, high));

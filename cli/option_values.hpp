@@ -1,5 +1,7 @@
 #pragma once
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace CLI {
 class App;
@@ -7,6 +9,9 @@ class Validator;
 }  // namespace CLI
 
 namespace limcycle {
+
+/// A finite number in decimal notation, with nothing before or behind it; else nothing ("0x10", "1e400", "nan").
+std::optional<double> finite_number(std::string_view text);
 
 /// Checks for every option (not argument) of a command by the kind of value that its help names: a file has a name, a
 /// whole number (N) is written in decimal digits and fits 64 bits ("010" is ten), a number (S, V, X) is a finite

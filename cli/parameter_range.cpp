@@ -1,22 +1,12 @@
 #include "limcycle/cli/parameter_range.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "limcycle/cli/command.hpp"
+#include "limcycle/cli/option_values.hpp"
 
 namespace limcycle {
-namespace {
-
-bool read(std::string_view text, double& value) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const auto end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  return result.ec == std::errc() && result.ptr == end && std::isfinite(value);
-}
-
-}  // namespace
 
 ParameterRange parameter_range(const std::string& flag, const std::string& text) {
   const auto refuse = [&](const std::string& rule) { return refusal(flag + " " + (text.empty() ? "''" : text), rule); };
@@ -26,8 +16,11 @@ ParameterRange parameter_range(const std::string& flag, const std::string& text)
   ParameterRange range;
   range.path = text.substr(0, equals);
   const std::string_view rest(text);
-  if (!read(rest.substr(equals + 1, colon - equals - 1), range.from) || !read(rest.substr(colon + 1), range.to))
-    throw refuse("FROM and TO must be finite numbers");
+  const auto from = finite_number(rest.substr(equals + 1, colon - equals - 1)),
+             to = finite_number(rest.substr(colon + 1));
+  if (!from || !to) throw refuse("FROM and TO must be finite numbers");
+  range.from = *from;
+  range.to = *to;
   if (range.from == range.to) throw refuse("FROM and TO must differ");
   return range;
 }
@@ -38,14 +31,14 @@ MapAxis map_axis(const std::string& flag, const std::string& text) {
   const bool logarithmic = rest.ends_with(":log");
   if (logarithmic) rest.resize(rest.size() - 4);
   const auto last = rest.rfind(':');
-  double points = 0.0;
-  if (std::ranges::count(rest, ':') != 2 || !read(std::string_view(rest).substr(last + 1), points))
+  const auto points = last == std::string::npos ? std::nullopt : finite_number(std::string_view(rest).substr(last + 1));
+  if (std::ranges::count(rest, ':') != 2 || !points)
     throw refuse("must be PATH=FROM:TO:N or PATH=FROM:TO:N:log, such as loop.controller.kd=1:50:60");
-  if (points != std::floor(points) || points < 2.0 || points > 10000.0)
+  if (*points != std::floor(*points) || *points < 2.0 || *points > 10000.0)
     throw refuse("N must be a whole number, 2..10000");
   const ParameterRange range = parameter_range(flag, rest.substr(0, last));
   if (logarithmic && !(range.from * range.to > 0.0)) throw refuse("a logarithmic side needs ends of one sign, not 0");
-  return {range.path, range.from, range.to, static_cast<int>(points), logarithmic};
+  return {range.path, range.from, range.to, static_cast<int>(*points), logarithmic};
 }
 
 }  // namespace limcycle

@@ -54,6 +54,7 @@ constexpr Methods methods_of_map{true, false, false};
 ReportPart<MapReport> map_part(const ReportQuestion& ask, const std::function<void(double)>& progress) {
   MapReport report = map_of(ask.from, ask.wishes.x, ask.wishes.y, methods_of_map);
   HuntingMap& map = report.map;
+  map.points.resize(map.size());
   const PredictOptions options = map_options(ask.from, methods_of_map, interrupted);
   const std::string paths[] = {map.x.path, map.y.path};
   const LoopVariation variation(ask.from, "--x, --y", paths);

@@ -6,7 +6,6 @@
 
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/questions/argument_error.hpp"
-#include "limcycle/questions/need_memory.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {
@@ -31,11 +30,17 @@ MapReport map_over(const Case& from, const MapAxis& x, const MapAxis& y, const M
   map.x = x;
   map.y = y;
   map.methods = names_of(methods);
-  // Size of a point with its row in a sweep; documents need more.
-  const double rows = 8.0 * static_cast<double>(map_columns(map.methods).size());
-  need_memory(dashes + "x, " + dashes + "y", static_cast<double>(map.size()), sizeof(map.points[0]) + rows + 80.0,
-              "fewer points");
+  need_memory_for(map, {}, dashes);
   return report;
+}
+
+void need_memory_for(const HuntingMap& map, const HeldDocuments& held, const std::string& dashes) {
+  const auto methods = static_cast<double>(map.methods.size());
+  // A point with its row in a sweep, and its part of each document (of JSON: as a tree, and twice as text).
+  double bytes = sizeof(map.points[0]) + 8.0 * static_cast<double>(map_columns(map.methods).size()) + 80.0;
+  if (held.json) bytes += 1000.0 + 500.0 * methods;
+  if (held.csv) bytes += 60.0 + 35.0 * methods;
+  need_memory(dashes + "x, " + dashes + "y", static_cast<double>(map.size()), bytes, "fewer points");
 }
 
 std::string flags_of(const HuntingMap& map, bool methods, int starts) {

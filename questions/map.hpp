@@ -4,6 +4,7 @@
 
 #include "limcycle/cases/loader/loop_variation.hpp"
 #include "limcycle/questions/asking.hpp"
+#include "limcycle/questions/need_memory.hpp"
 #include "limcycle/reports/map/map.hpp"
 
 namespace limcycle {
@@ -16,6 +17,9 @@ Methods map_methods(const std::string& argument, const std::vector<std::string>&
 /// with `dashes` before them) if the case has no such number, both are the same, or the map would not fit into memory.
 MapReport map_over(const Case& from, const MapAxis& x, const MapAxis& y, const Methods& methods,
                    const std::string& dashes);
+
+/// Rejects (InputError) a map that would not fit into memory, with these documents beside it.
+void need_memory_for(const HuntingMap& map, const HeldDocuments& held, const std::string& dashes);
 
 /// Flags of the program that ask for this map. `methods`: they were named; `starts`: 0: not given.
 std::string flags_of(const HuntingMap& map, bool methods, int starts);

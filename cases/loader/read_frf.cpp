@@ -130,7 +130,8 @@ void complete(const Section& section, MeasuredPlant& plant) {
   const Columns columns = columns_of(section, plant);
   const std::filesystem::path path = std::filesystem::path(section.document().file).parent_path() / plant.file;
   std::error_code failed;
-  if (std::filesystem::exists(path, failed) && !std::filesystem::is_directory(path, failed) &&
+  if (!std::filesystem::exists(path, failed)) throw section.error("file", "no such file: " + path.string());
+  if (!std::filesystem::is_directory(path, failed) &&
       !std::filesystem::is_regular_file(path, failed))  // the data are read, and then their digest is made
     throw section.error("file", "must be a file that can be read twice, not a device or a pipe");
   CsvReader csv(path.string());

@@ -235,7 +235,16 @@ IdentifyRequest identify_request(const Case& from) {
                       .suggestion = {}});
   IdentifyRequest request{from.identify->laws, {}, from.identify->choice};
   std::size_t rows = 0;
-  for (const auto& record : from.identify->records) {
+  for (std::size_t i = 0; i < from.identify->records.size(); ++i) {
+    const auto& record = from.identify->records[i];
+    if (std::error_code failed; !std::filesystem::exists(record.path, failed))
+      throw InputError({.file = from.file,
+                        .line = 0,
+                        .override = {},
+                        .key = "identify.record[" + std::to_string(i) + "].file",
+                        .value = {},
+                        .rule = "no such file: " + record.path,
+                        .suggestion = {}});
     request.records.push_back(read_record_file(record, rows));
     rows += std::max(request.records.back().t.size(), request.records.back().F.size());
     if (is_free(record.kind) && !request.rig) request.rig = rig_of(from);

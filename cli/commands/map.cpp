@@ -44,6 +44,7 @@ int run(MapFlags flags) {
   const Units units = units_of(from);
   const Methods methods = map_methods("--methods", flags.methods);
   MapReport report = map_of(from, flags.x, flags.y, methods);
+  need_memory_for(report.map, {!flags.json.empty(), !flags.csv.empty()}, "--");
   Output output(flags, &from);
   output.keep("the store", flags.store);
   output.check_file("--html", flags.html);

@@ -33,11 +33,10 @@ CostWeights weights_of(const std::vector<std::string>& written) {
   for (const auto& one : written) {
     const auto equals = one.find('=');
     double& weight = weights[cost_named("--weight", one.substr(0, equals))];
-    char* end = nullptr;
-    const std::string number = equals == std::string::npos ? "" : one.substr(equals + 1);
-    weight = std::strtod(number.c_str(), &end);
-    if (number.empty() || *end != '\0' || !(weight >= 0.0) || !std::isfinite(weight))
+    const auto value = equals == std::string::npos ? std::nullopt : finite_number(one.substr(equals + 1));
+    if (!value || !(*value >= 0.0))
       throw refusal("--weight " + one, "must be COST=WEIGHT with a number of at least 0, such as noise_gain=2");
+    weight = *value;
   }
   return weights;
 }

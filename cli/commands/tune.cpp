@@ -35,12 +35,10 @@ TuneCosts limits_of(const std::vector<std::string>& written) {
   for (const auto& one : written) {
     const auto equals = one.find('=');
     auto& limit = limits[static_cast<std::size_t>(tune_cost_named("--at-most", one.substr(0, equals)))];
-    char* end = nullptr;
-    const std::string number = equals == std::string::npos ? "" : one.substr(equals + 1);
-    const double value = std::strtod(number.c_str(), &end);
-    if (number.empty() || *end != '\0' || !(value > 0.0) || !std::isfinite(value))
+    const auto value = equals == std::string::npos ? std::nullopt : finite_number(one.substr(equals + 1));
+    if (!value || !(*value > 0.0))
       throw refusal("--at-most " + one, "must be COST=VALUE with a number above 0, such as ms=1.6");
-    limit = value;
+    limit = *value;
   }
   return limits;
 }

@@ -164,6 +164,9 @@ TEST_CASE("memory: what does not fit is refused with the number, before anything
           "df: needs ");
   refused({program, "map", servo, "--x", "loop.controller.kp=1:5:10000", "--y", "loop.controller.kd=1:9:10000"},
           "--x, --y: needs ");
+  refused({program, "map", servo, "--x", "loop.controller.kp=1:5:1300", "--y", "loop.controller.kd=1:9:1300", "--json",
+           "-"},
+          "--x, --y: needs ");
   refused({program, "sensitivity", servo, "--samples", "16777216"}, "--samples: needs ");
   refused({program, "simulate", shipped("tutorial-servo.toml"), "--set", "simulate.sample=1e-5", "--set",
            "simulate.duration=40.0", "--json", "-"},

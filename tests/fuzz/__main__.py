@@ -4,7 +4,9 @@ import argparse
 import collections
 import concurrent.futures
 import os
+import pathlib
 import resource
+import shutil
 import sys
 import tempfile
 import threading
@@ -97,6 +99,8 @@ def main():
     sources = mutants.seeds(program)
     print("%d cases and templates to mutate" % len(sources), flush=True)
     with tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None) as folder:
+        for data in pathlib.Path("cases").rglob("*.csv"):  # that shipped cases name
+            shutil.copy(data, folder)
         for count, limit in ((given.checks, None), (given.predicts, given.time_limit)):
             if count > 0:
                 mutator = mutants.Mutator(sources, given.seed)

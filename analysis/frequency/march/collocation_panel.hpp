@@ -26,7 +26,7 @@ struct ElementState {
 /// Radau IIA collocation of one element on one panel of prescribed motion, in one mode: Newton with the exact Jacobian
 /// (one iteration if the law is linear in its state) and, from the same elimination, the derivative of the final state
 /// by the initial state of the march. Cost of a panel: (s m)^3/3 multiplications for the m states that move, m s^3/3
-/// where their dependence has no cycle, and about 3 s evaluations per state.
+/// where their dependence has no cycle, s^3/3 where they have the same rate, and about 3 s evaluations per state.
 template <Motion M = PrescribedMotion>
 class CollocationPanel {
  public:
@@ -93,7 +93,7 @@ class CollocationPanel {
       for (std::size_t i = 0; i < s_; ++i) linearise(i, state.mode);
       for (const double slope : jacobians_) stiffness = std::max(stiffness, std::abs(step * slope));
       find_moving();
-      if (!(find_order() ? correct_in_order(step, state) : correct_together(step, state))) return false;
+      if (!correct(step, state)) return false;
       evaluate_rates(state.mode);
       double worst = 0.0;
       for (const std::size_t p : moving_) {
@@ -235,6 +235,61 @@ class CollocationPanel {
       }
     }
     return order_.size() == moving_.size();
+  }
+
+  /// The moving state whose residual at stage i has the least rounding, where that of all is the same.
+  std::size_t smallest_of_moving(std::size_t i, const ElementState& state) const {
+    return *std::ranges::min_element(
+        moving_, {}, [&](std::size_t p) { return std::max(std::abs(z_[i * n_ + p]), std::abs(state.z[p])); });
+  }
+
+  /// True if several states move and all have the same rate: springs in parallel that one deflection stretches.
+  bool moves_as_one() const {
+    const auto same = [&](std::size_t p) {
+      for (std::size_t i = 0; i < s_; ++i) {
+        const std::size_t own = i * n_ + p, first = i * n_ + moving_.front();
+        if (rates_[own] != rates_[first] ||
+            !std::equal(&jacobians_[own * n_], &jacobians_[own * n_] + n_, &jacobians_[first * n_]))
+          return false;
+      }
+      return true;
+    };
+    return moving_.size() > 1 && std::ranges::all_of(moving_, same);
+  }
+
+  bool correct(double step, const ElementState& state) {
+    if (moves_as_one()) return correct_as_one(step, state);
+    return find_order() ? correct_in_order(step, state) : correct_together(step, state);
+  }
+
+  /// One step of Newton of states that move as one: one system of the size of the stages, for their common way and its
+  /// derivatives by the initial state.
+  bool correct_as_one(double step, const ElementState& state) {
+    const std::size_t first = moving_.front(), columns = 1 + n_, length = s_ + columns;
+    system_.assign(s_ * length, 0.0);
+    for (std::size_t j = 0; j < s_; ++j) {
+      const double* slope = &jacobians_[(j * n_ + first) * n_];
+      double own = 0.0;
+      for (const std::size_t q : moving_) own += slope[q];
+      for (std::size_t i = 0; i < s_; ++i) system_[i * length + j] = -step * table_.a[i * s_ + j] * own;
+      for (std::size_t q = 0; q < n_; ++q) {
+        if (slope[q] == 0.0) continue;
+        for (std::size_t i = 0; i < s_; ++i)
+          for (std::size_t c = 0; c < n_; ++c)
+            system_[i * length + s_ + 1 + c] += step * table_.a[i * s_ + j] * slope[q] * state.sensitivity[q * n_ + c];
+      }
+    }
+    for (std::size_t i = 0; i < s_; ++i) {
+      system_[i * length + i] += 1.0;
+      system_[i * length + s_] = -residual(step, state, i, smallest_of_moving(i, state));
+    }
+    if (!eliminate(system_, s_, columns)) return false;
+    const double* end = &system_[(s_ - 1) * length + s_ + 1];
+    for (const std::size_t p : moving_) {
+      for (std::size_t i = 0; i < s_; ++i) z_[i * n_ + p] += system_[i * length + s_];
+      for (std::size_t c = 0; c < n_; ++c) sensitivities_[p * n_ + c] = state.sensitivity[p * n_ + c] + end[c];
+    }
+    return true;
   }
 
   /// One step of Newton, state by state in that order: n systems of the size of the stages instead of one of n times

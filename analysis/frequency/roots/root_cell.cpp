@@ -49,8 +49,9 @@ Complex nearest_to_zero(Complex a, Complex b) {
   return a + std::clamp(-std::real(std::conj(d) * a) / length2, 0.0, 1.0) * d;
 }
 
-// Point of the convex hull nearest to zero; zero itself when the hull contains it.
-Complex hull_point(const CellSamples& points) {
+}  // namespace
+
+Complex nearest_in_hull(const CellSamples& points) {
   std::array<double, 9> angles;
   for (std::size_t k = 0; k < 9; ++k) {
     if (points[k] == Complex(0.0)) return 0.0;
@@ -69,6 +70,8 @@ Complex hull_point(const CellSamples& points) {
   }
   return best;
 }
+
+namespace {
 
 // Sum of the second- and higher-order coefficients, projected on the direction n (|n| = 1).
 double curvature_along(const CellSamples& c, Complex n) {
@@ -92,7 +95,7 @@ double sideways_margin(const CellKnowledge& cell, const CellSamples& c) {
 }
 
 bool keeps_away(const CellKnowledge& cell, const CellSamples& coefficients) {
-  const Complex nearest = hull_point(bernstein_points(cell.values));
+  const Complex nearest = nearest_in_hull(bernstein_points(cell.values));
   const double distance = std::abs(nearest);
   if (distance <= cell.noise) return false;
   const Complex n = nearest / distance;

@@ -51,6 +51,9 @@ CellAssessment assess(const CellKnowledge& cell);
 /// one; for reports only (not a certified minimum).
 std::array<double, 2> smallest_point(const CellSamples& values);
 
+/// Point of the convex hull of the values nearest to zero; zero itself when the hull contains it.
+std::complex<double> nearest_in_hull(const CellSamples& values);
+
 /// Biquadratic interpolant of the samples at (u, v).
 std::complex<double> interpolate(const CellSamples& values, double u, double v);
 

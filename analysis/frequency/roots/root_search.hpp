@@ -92,6 +92,9 @@ void validate(const RootSearchOptions& options);
 /// Loeb's criterion: with U + jV = f, the predicted cycle is stable if (dU/dA)(dV/dw) - (dU/dw)(dV/dA) > 0, that is, if
 /// the index (taken with respect to (ln A, ln w), which has the same sign) is +1.
 ///
+/// A jump of f (see root_jump.hpp) is passed over where both of its sides keep away from zero, and reported as near
+/// misses where they do not: at the same limit of depth as a border of existence.
+///
 /// Status: `converged` at least one root and everything decided; `no_cycle` no root and everything decided;
 /// `incomplete` near misses remain, or winding_number and index_sum disagree; `max_iterations` max_evaluations used up;
 /// `not_finite` f is undefined at every sample; `interrupted`. The roots found are confirmed in every case.

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "limcycle/analysis/frequency/roots/root_jump.hpp"
 #include "limcycle/analysis/frequency/roots/root_polish.hpp"
 
 namespace limcycle {
@@ -95,6 +96,7 @@ void RootTree::process(Cell cell) {
     const CellAssessment assessment = assess(knowledge);
     if (assessment.verdict == CellVerdict::no_root) return blocks_[cell.block].leaves.push_back(cell.place);
     if (assessment.verdict == CellVerdict::at_most_one) return settle(cell, values, assessment);
+    if (decided_by_jump(cell, knowledge)) return;
     const bool finest = cell.accuracy + 1 == lattice_.accuracies().size();
     if (assessment.verdict == CellVerdict::unclear || finest) {
       return give_up_or_split(cell, knowledge, assessment);
@@ -134,6 +136,23 @@ void RootTree::add_near_miss(const Cell& cell, const CellSamples& values) {
       for (const double column : {-1.0, 0.0, 1.0}) look_at(column, row);
   }
   blocks_[cell.block].near_misses.push_back(miss);
+}
+
+// For a cell with a jump of f, which no bisection resolves: no root if both sides keep away from zero, a near miss if
+// they do not in the smallest cell. The larger the cell, the more room there is for f to be steep and not to jump.
+bool RootTree::decided_by_jump(const Cell& cell, const CellKnowledge& knowledge) {
+  constexpr int first_depth = 5;
+  const int depth = std::min(cell.depth_p, cell.depth_q);
+  if (depth < std::min(first_depth, options_.max_border_depth)) return false;
+  const auto jump = jump_in(knowledge.values);
+  if (!jump || jump->height <= 10.0 * knowledge.noise) return false;
+  const bool smallest = depth >= options_.max_border_depth;
+  const double margin = (smallest ? 0.125 : 0.9) * jump->height + 2.0 * jump->spread + knowledge.noise;
+  const bool away = jump->distance > knowledge.caution * margin;
+  if (!away && !smallest) return false;
+  if (!away) add_near_miss(cell, knowledge.values);
+  blocks_[cell.block].leaves.push_back(cell.place);
+  return true;
 }
 
 // For a cell that holds at most one root: uses the known root, finds it, or shows that it is outside.

@@ -67,6 +67,7 @@ class RootTree {
   bool near_border(const FoundRoot& root, const LatticeCell& s) const;
   void process(Cell cell);
   void prepare() const;
+  bool decided_by_jump(const Cell& cell, const CellKnowledge& knowledge);
   void process_border(const Cell& cell, const CellSamples& values);
   void settle(const Cell& cell, const CellSamples& values, const CellAssessment& assessment);
   void give_up_or_split(const Cell& cell, const CellKnowledge& knowledge, const CellAssessment& assessment);

@@ -101,9 +101,18 @@ class LoopBalance::MainGain {
       prepared_.clear();
       prepared_accuracy_ = accuracy;
     }
-    constexpr std::size_t at_once = 512;
-    for (; !points.empty() && !(stop && stop()); points = points.subspan(std::min(at_once, points.size())))
-      add_prepared(points.first(std::min(at_once, points.size())), accuracy);
+    // As many at a time as a stop can wait for: a point of a stiff law may take ten thousand evaluations, one of
+    // LuGre 50.
+    constexpr long evaluations_at_once = 200'000;
+    constexpr std::size_t fewest = 16, most = 512;
+    for (std::size_t at_once = fewest; !points.empty() && !(stop && stop());) {
+      const auto now = points.first(std::min(at_once, points.size()));
+      const long before = evaluations;
+      add_prepared(now, accuracy);
+      const auto each = static_cast<std::size_t>(evaluations - before) / now.size() + 1;
+      at_once = std::clamp(static_cast<std::size_t>(evaluations_at_once) / each, fewest, most);
+      points = points.subspan(now.size());
+    }
   }
 
  private:

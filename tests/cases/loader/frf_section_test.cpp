@@ -175,5 +175,5 @@ TEST_CASE("frf: bad data are refused with file and row") {
   CHECK_THAT(folder.refusal(keys + "\norder = 41"), Contains("loop.plant.order"));
   CHECK_THAT(limcycle::test::message("[loop.plant]\nkind = \"frf\"\nfile = \"no.csv\"\nfrequency = \"Hz\"\nformat = "
                                      "\"re-im\"\n[loop.friction]\nkind = \"coulomb\"\nFc = 1\n"),
-             Contains("no.csv: no such file"));
+             Contains("loop.plant.file = \"no.csv\": no such file: "));
 }

@@ -48,6 +48,16 @@ TEST_CASE("synthesize, identify: from a law to records and back") {
   CHECK(document["laws"] == Json::parse(scratch.get("j.json"))["laws"]);
 }
 
+TEST_CASE("identify: a record that is not there is named with its key; predict does not need it") {
+  const Scratch scratch;
+  const std::string law = scratch.put(
+      "law.toml", rig_law + "[identify]\nlaw = \"lugre\"\n[[identify.record]]\nkind = \"lag\"\nfile = \"no.csv\"\n");
+  const auto ran = run({"identify", law});
+  CHECK(ran.code == 2);
+  CHECK_THAT(ran.err, Contains("law.toml: identify.record[0].file: no such file: ") && Contains("no.csv"));
+  CHECK(run({"check", law}).code == 0);
+}
+
 TEST_CASE("identify: the shipped records give the law that made them") {
   const Scratch scratch;
   REQUIRE(run({"identify", shipped("records/servo.toml"), "--json", scratch.file("i.json")}).code == 0);

@@ -240,3 +240,15 @@ TEST_CASE("new: predict answers on new cases") {
   answers({"--friction", "lugre"});
   answers({"--error", "quantizer", "--friction", "coulomb"});
 }
+
+TEST_CASE("new: the describing function of elements that begin to slip is searched to its end, across its jumps") {
+  const Scratch scratch;
+  const std::string file = scratch.file("case.toml");
+  REQUIRE(run({"new", "--friction", "gms", "--quiet", "-o", file}).code == 0);
+  const auto ran =
+      run({"predict", file, "--set", "predict.starts=1", "--set", "predict.methods=['describing-function']", "--set",
+           "search.amplitude=[1e-5, 5e-5]", "--set", "search.frequency=[100.0, 300.0]"});
+  CHECK(ran.code == 0);
+  CHECK(ran.out.find("The describing function does not find this cycle.") != std::string::npos);
+  CHECK(ran.out.find("solutions may be missing") == std::string::npos);
+}

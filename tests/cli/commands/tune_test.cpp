@@ -97,7 +97,8 @@ TEST_CASE("tune: bad input ends with 2, before anything is computed") {
   refused(servo, {"--vary", "kp=1:2", "--until", "hunts=yes"}, "must be hunts=no");
   refused(servo, {"--vary", "kp=1:2", "--minimise", "mz"}, "did you mean ms?");
   refused(servo, {"--vary", "kp=1:2", "--at-most", "ms"}, "must be COST=VALUE");
-  refused(servo, {"--vary", "kp=1:2", "--at-most", "ms=-1"}, "must be COST=VALUE");
+  for (const char* wrong : {"ms=-1", "ms=0x10", "ms=nan", "ms=1e400", "ms= 2", "ms="})
+    refused(servo, {"--vary", "kp=1:2", "--at-most", wrong}, "must be COST=VALUE");
   refused(servo, {"--vary", "kp=1:2", "--apply"}, "needs -o FILE");
   refused(servo, {"--vary", "kp=1:2", "--samples", "0"}, "--samples");
   refused(servo, {"--vary", "kp=1:2", "--margin", "60"}, "--margin");
