@@ -63,8 +63,9 @@ class SampledEquations {
 
   void write_linear_part() {
     const Index n = loop_.states();
-    left_.topLeftCorner(n, n) = s_ * MatrixXcd::Identity(n, n) - loop_.A.cast<Complex>();
-    left_.block(0, first_element_, n, loop_.B.cols()) = -loop_.B.cast<Complex>();
+    const auto [from, B] = loop_.resolved(s_);  // of measured plants the data
+    left_.topLeftCorner(n, n) = from;
+    left_.block(0, first_element_, n, B.cols()) = -B;
   }
 
   /// What element k reads, as a row over the unknowns. A part of the controller reads another at a tick: what that has

@@ -79,7 +79,7 @@ std::optional<DrawnMotion> drawn_motion(const PredictReport& report) {
   for (const auto& outcome : report.outcomes) {
     if (outcome.outcome != Outcome::irregular || !has_element(outcome.trace)) continue;
     const Trace part = last_part(outcome.trace, swings * outcome.irregular.mean_period);
-    if (has_element(part)) return DrawnMotion{part, std::vector<bool>(part.t.size(), false), false};
+    if (part.t.size() > 1) return DrawnMotion{part, std::vector<bool>(part.t.size(), false), false};
   }
   return std::nullopt;
 }
@@ -114,12 +114,16 @@ std::string panels(const DrawnMotion& drawn, const Units& units) {
 
 std::string predict_picture(const PredictReport& report, const Units& units) {
   const std::string all = answer(report, units).what_happens;
-  const std::string words = html_escaped(all), first = html_escaped(all.substr(0, all.find(". ")));
+  constexpr std::size_t widest = 95;  // characters of the title
+  std::string first = all.substr(0, all.find(". "));
+  if (first.size() > widest) first = first.substr(0, first.find(": "));
+  const std::string words = html_escaped(all);
   const auto motion = drawn_motion(report);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 760 {0}\" width=\"760\" height=\"{0}\" role=\"img\" "
       "aria-label=\"{1}\">\n<style>{2}{3}</style>\n<text class=\"title\" x=\"10\" y=\"20\">{4}</text>\n{5}</svg>\n",
-      motion ? 340 : 36, words, axes_style, prediction_style, first, motion ? panels(*motion, units) : "");
+      motion ? 340 : 36, words, axes_style, prediction_style, html_escaped(first),
+      motion ? panels(*motion, units) : "");
 }
 
 }  // namespace limcycle

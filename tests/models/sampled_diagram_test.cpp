@@ -50,14 +50,14 @@ Complex friction_response(const LoopParts& parts, Complex s) { return build_loop
 
 Complex hold(Complex s, double T) { return (1.0 - std::exp(-s * T)) / (s * T); }
 
-const std::vector<Complex> places{{0.0, 0.3}, {0.0, 2.0}, {0.0, 40.0}, {-0.2, 5.0}, {1.0, 0.0}};
+const std::vector<Complex> at_places{{0.0, 0.3}, {0.0, 2.0}, {0.0, 40.0}, {-0.2, 5.0}, {1.0, 0.0}};
 
 }  // namespace
 
 TEST_CASE("sampled response: a PID at its ticks is its pulse transfer function behind a hold") {
   Pid controller = on_computer(pid(30.0, 40.0, 6.0));
   controller.computation_delay = 0.3 * tick;
-  for (const Complex s : places) {
+  for (const Complex s : at_places) {
     const Complex z = std::exp(s * tick), K = 30.0 + 40.0 * tick * z / (z - 1.0) + 6.0 * (1.0 - 1.0 / z) / tick;
     const Complex C = hold(s, tick) * std::exp(-s * 0.3 * tick) * K;
     CAPTURE(s);
@@ -73,7 +73,7 @@ TEST_CASE("sampled response: a cascade of two rates, its velocity differenced") 
   law.sample_time = tick;
   law.position_every = 4.0;
   law.velocity_window = 2.0;
-  for (const Complex s : places) {
+  for (const Complex s : at_places) {
     const Complex z = std::exp(s * tick), PI = 20.0 + 50.0 * tick * z / (z - 1.0);
     const Complex older = 0.25 * (1.0 + 1.0 / z + std::pow(z, -2.0) + std::pow(z, -3.0));
     const Complex speed = (1.0 - 1.0 / (z * z)) / (2.0 * tick);
@@ -94,7 +94,7 @@ TEST_CASE("sampled response: a limit that holds the integral back is an element 
   const Loop loop = build_loop(slots_under(law));
   REQUIRE(loop.elements.size() == 2);  // the limit, friction
   REQUIRE(loop.ports[0].path == "loop.controller.limit");
-  for (const Complex s : places) {
+  for (const Complex s : at_places) {
     // u = (kp + ki T) e + ki I, z I = I + T e + (T/kp) (v - u); e = -(3 + s) y; u is limited to v, which is held.
     const Complex z = std::exp(s * tick), h = hold(s, tick), P = 1.0 / (2.0 * s * s + 0.5 * s);
     const double a = 50.0 * tick / 20.0;
@@ -143,7 +143,7 @@ TEST_CASE("sampled diagram: one PID at its ticks is the loop of the slots") {
   CHECK(diagram.delay == slots.delay);
   CHECK(diagram.A.isApprox(slots.A, 1e-14));
   CHECK(diagram.A_delayed.isApprox(slots.A_delayed, 1e-14));
-  for (const Complex s : places) {
+  for (const Complex s : at_places) {
     const Complex H = slots.element_response(s)(0, 0);
     CHECK(std::abs(diagram.element_response(s)(0, 0) - H) < 1e-12 * std::abs(H));
   }
@@ -170,7 +170,7 @@ TEST_CASE("sampled diagram: two PIDs of two rates are the cascade") {
     if (turned) std::swap(parts.diagram->blocks[2], parts.diagram->blocks[3]);
     const Loop diagram = build_loop(parts);
     CHECK(diagram.delay == slots.delay);
-    for (const Complex s : places) {
+    for (const Complex s : at_places) {
       const Complex H = slots.element_response(s)(0, 0);
       CHECK(std::abs(diagram.element_response(s)(0, 0) - H) < 1e-11 * std::abs(H));
     }

@@ -52,7 +52,7 @@ CellAssessment assess(const CellKnowledge& cell);
 std::array<double, 2> smallest_point(const CellSamples& values);
 
 /// Point of the convex hull of the values nearest to zero; zero itself when the hull contains it.
-std::complex<double> nearest_in_hull(const CellSamples& values);
+std::complex<double> nearest_in_hull(const CellSamples& points);
 
 /// Biquadratic interpolant of the samples at (u, v).
 std::complex<double> interpolate(const CellSamples& values, double u, double v);

@@ -16,8 +16,7 @@ namespace {
 
 constexpr std::size_t part_count = 4;
 constexpr double range_scatter = 0.15, spread_scatter = 0.15, returns_scatter = 0.2;  // largest scatter of the parts
-constexpr double one_way = 0.02;    // upper limit of a monotonic change of the spread
-constexpr long fewest_returns = 8;  // in a part, or half of that where a motion may repeat itself
+constexpr double one_way = 0.02;  // upper limit of a monotonic change of the spread
 
 /// One part of a motion.
 struct Part {
@@ -104,7 +103,7 @@ bool repeats(const Returns& returns, double range) {
 
 }  // namespace
 
-std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat) {
+std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat, long fewest_returns) {
   if (trace.t.size() < 1000) return std::nullopt;
   const double end = trace.t.back(), begin = trace.t.front() + (end - trace.t.front()) / 3.0;
   std::array<Part, part_count> all;
@@ -122,13 +121,13 @@ std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_rep
   }
   const Returns returns = returns_to(0.5 * (low + high), trace, from);
   for (const double t : returns.times) ++part_at(t).returns;
-  const long fewest = may_repeat ? fewest_returns / 2 : fewest_returns;
-  if (std::ranges::any_of(all, [&](const Part& part) { return part.returns < fewest || !(part.time > 0.0); }))
-    return std::nullopt;
+  const auto is_short = [&](const Part& part) { return part.returns < fewest_returns || !(part.time > 0.0); };
+  if (std::ranges::any_of(all, is_short)) return std::nullopt;
   const auto range = [](const Part& part) { return part.high - part.low; };
-  const auto count = [](const Part& part) { return static_cast<double>(part.returns); };
+  const auto [fewest, most] = std::ranges::minmax(all, {}, &Part::returns);
+  const double uneven = std::max(1.0, returns_scatter * static_cast<double>(fewest.returns));
   if (scatter(all, range) > range_scatter || scatter(all, &Part::spread) > spread_scatter ||
-      scatter(all, count) > returns_scatter)
+      static_cast<double>(most.returns - fewest.returns) > uneven)
     return std::nullopt;
   if (goes_one_way(all) || (!may_repeat && repeats(returns, high - low))) return std::nullopt;
   const std::vector<double> sizes = returns.amplitudes();

@@ -19,8 +19,8 @@ struct IrregularMotion {
 /// its range, its spread and its returns stay the same within the scatter of such numbers, its spread neither falls nor
 /// rises from each part to the next (a slow decay, a slow approach), and the returns do not repeat themselves, unless
 /// they may: those of a sampled loop differ by less than the resolution of a run if its samples are short. agree()
-/// decides if the numbers belong to the loop or to the tolerance.
-std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat = false);
+/// decides if the numbers belong to the loop or to the tolerance. `fewest_returns`: in each part.
+std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat = false, long fewest_returns = 8);
 
 /// True if two runs at different tolerances give the same numbers. Chaotic motions part after a while.
 bool agree(const IrregularMotion& one, const IrregularMotion& other);

@@ -152,7 +152,10 @@ class Settling {
     const bool sampled = loop_.continuous != nullptr;
     // A wait before the first swing, of an integrator that has to wind up, is no part of the motion.
     const std::size_t turns = turning_.points().size();
-    const auto motion = permanent_motion(sampled && turns > 4 ? recent(turning_, turns - 2) : result_.trace, sampled);
+    constexpr std::size_t many_turns = 128;
+    const long returns = sampled && turns < many_turns ? 2 : 8;
+    const auto motion =
+        permanent_motion(sampled && turns > 4 ? recent(turning_, turns - 2) : result_.trace, sampled, returns);
     const auto known = [&](const IrregularMotion& other) { return motion && agree(other, *motion); };
     if (std::ranges::any_of(options_.known_irregular, known)) {
       result_.irregular = *motion;
@@ -161,7 +164,7 @@ class Settling {
     }
     // An exact march has no tolerance that could be another.
     const bool exact = march_.kind() == StepperKind::exact;
-    const auto again = motion && !exact ? permanent_motion(repeated(march_.t()), sampled) : motion;
+    const auto again = motion && !exact ? permanent_motion(repeated(march_.t()), sampled, returns) : motion;
     if (!motion || !again || !agree(*motion, *again))
       return motion ? "bounded, but its range differs between two tolerances"
                     : "step limit reached before rest or a cycle was recognised";
@@ -206,7 +209,7 @@ class Settling {
   /// True if a sampled loop, whose cycles need not lock to its samples, has turned often enough since the last look.
   /// Fewer turns are enough of a slow motion, each of which takes many samples and differs little from the others.
   bool time_for_irregular() {
-    constexpr std::size_t fewest = 64;
+    constexpr std::size_t fewest = 24;
     if (!loop_.continuous) return false;
     const std::size_t turns = turning_.points().size();
     const bool slow = readings_ >= next_readings_ && turns >= fewest;

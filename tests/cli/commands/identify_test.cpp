@@ -48,7 +48,7 @@ TEST_CASE("synthesize, identify: from a law to records and back") {
   CHECK(document["laws"] == Json::parse(scratch.get("j.json"))["laws"]);
 }
 
-TEST_CASE("identify: a record that is not there is named with its key; predict does not need it") {
+TEST_CASE("identify: a record that is not there is named with its key, and predict does not need it") {
   const Scratch scratch;
   const std::string law = scratch.put(
       "law.toml", rig_law + "[identify]\nlaw = \"lugre\"\n[[identify.record]]\nkind = \"lag\"\nfile = \"no.csv\"\n");

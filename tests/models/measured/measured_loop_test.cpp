@@ -78,7 +78,7 @@ TEST_CASE("measured plant: at its frequencies a loop has the response of the dat
     parts.plant = plant;
     CHECK(largest_difference(build_loop(parts), known, points) < 1e-9);
   }
-  SECTION("with a sampled controller: the mean dead time stands behind the data") {
+  SECTION("with a sampled controller: its hold and pulse transfer function before the data") {
     LoopParts parts = servo_with(known_masses());
     std::get<Pid>(parts.controller).sample_time = 1e-3;
     std::get<Pid>(parts.controller).tf = 0.01;

@@ -211,48 +211,49 @@ TEST_CASE("closest approach of -1/N: on a plane of equal distances it ends after
   CHECK(asked < 3000);
 }
 
-TEST_CASE("margin: of a sampled servo by bisection of the outcome, near the edge of the continuous one") {
-  const auto family = [](double ki, double sample_time) -> std::optional<Loop> {
+TEST_CASE("margin: of a sampled servo by bisection of the outcome, towards that of the continuous one") {
+  const auto leaking = [](double leak, double sample_time) -> std::optional<Loop> {
     LoopParts parts = servo_parts(coulomb(1.5, 1.0));
-    Pid& controller = std::get<Pid>(parts.controller);
-    controller.ki = ki;
-    controller.sample_time = sample_time;
+    std::get<Pid>(parts.controller).leak = leak;
+    std::get<Pid>(parts.controller).sample_time = sample_time;
     return build_loop(parts);
   };
-  const double h = 0.05;
-  MarginParameter time{"loop.controller.sample_time", "s", h, false, [&](double value) { return family(4.0, value); }};
-  LoopParts level = servo_parts(coulomb(1.05, 1.0));
-  std::get<Pid>(level.controller).sample_time = h;
-  MarginParameter stiction{"loop.friction.Fs", "N", 1.05, true, [&](double Fs) -> std::optional<Loop> {
-                             LoopParts parts = level;
-                             parts.friction = coulomb(Fs, 1.0);
-                             if (validate(parts)) return std::nullopt;
-                             return build_loop(parts);
-                           }};
   MarginOptions options;
-  options.factor = 1.3;
+  options.factor = 1.6;
   options.predict.starts = 2;
-  const MarginReport report = margin(build_loop(level), {stiction}, options);
-  CHECK(report.hunts);
-  CHECK(report.refused.empty());
-  REQUIRE(report.parameters.size() == 1);
-  const MarginSide& down = report.parameters.front().down;
-  REQUIRE(down.what != MarginSide::What::unknown);
-  CAPTURE(down.value, down.why);
-  // Ideal stiction hunts for any Fs > Fc; below Fc the case is not valid.
-  CHECK(down.value == Approx(1.0).epsilon(0.06));
-  CHECK(report.parameters.front().up.what == MarginSide::What::none);
+  const auto edge_at = [&](double sample_time) {
+    const MarginParameter leak{"loop.controller.leak", "1/s", 0.08, false,
+                               [&](double value) { return leaking(value, sample_time); }};
+    const MarginReport report = margin(*leaking(0.08, sample_time), {leak}, options);
+    CHECK(report.refused.empty());
+    CHECK(report.hunts);
+    CHECK(report.parameters.front().down.what == MarginSide::What::none);
+    const MarginSide& up = report.parameters.front().up;
+    REQUIRE(up.what == MarginSide::What::ends);
+    if (sample_time > 0.0) CHECK(up.error < 3e-3);
+    return up.value;
+  };
+  const double continuous = edge_at(0.0);
+  CHECK(continuous == Approx(0.109873).epsilon(1e-4));
+  CHECK(edge_at(0.02) == Approx(continuous).epsilon(0.02));
+  CHECK(edge_at(0.01) == Approx(continuous).epsilon(0.01));
+}
 
-  options.factor = 40.0;
-  const MarginReport slow = margin(*family(4.0, h), {time}, options);
-  CHECK(slow.hunts);
-  const MarginSide& up = slow.parameters.front().up;
-  REQUIRE(up.what == MarginSide::What::ends);
-  CHECK(up.diverges);  // the loop itself is unstable beyond
-  CHECK(up.error < 3e-3);
-  // The edge of stability of y'' = u with u held: z-plane polynomial of the loop at that time has a root on the circle.
-  const double T = up.value;
-  CAPTURE(T);
-  CHECK(T < 0.5);
-  CHECK(T > 0.1);
+TEST_CASE("margin: a sampled servo that rests, with the range that was tried") {
+  const auto gained = [](double kp) -> std::optional<Loop> {
+    LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+    Pid& controller = std::get<Pid>(parts.controller);
+    controller.ki = 0.0;
+    controller.kp = kp;
+    controller.sample_time = 0.05;
+    return build_loop(parts);
+  };
+  MarginOptions options;
+  options.factor = 2.0;
+  options.predict.starts = 2;
+  const MarginReport report = margin(*gained(3.0), {{"loop.controller.kp", "N/m", 3.0, false, gained}}, options);
+  CHECK_FALSE(report.hunts);
+  CHECK(report.parameters.front().up.what == MarginSide::What::none);
+  CHECK(report.parameters.front().up.value == Approx(6.0));
+  CHECK(report.parameters.front().down.what == MarginSide::What::none);
 }
