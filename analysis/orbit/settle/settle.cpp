@@ -383,7 +383,7 @@ class Settling {
   std::size_t large_turns_ = 0;
   std::size_t next_growth_ = 64;
   std::size_t next_irregular_ = 128;  ///< turns, and samples, of a sampled loop: see time_for_irregular()
-  long next_readings_ = 500'000;
+  long next_readings_ = 1'000'000;
   long tried_ = 0;  ///< steps of return maps
   long readings_ = 0;
   int restarts_ = 0;

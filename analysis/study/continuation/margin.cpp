@@ -66,7 +66,7 @@ class Margins {
         OutcomeSide::Starts{{places.begin(), places.begin() + std::min<std::ptrdiff_t>(2, std::ssize(places))}, box_};
     report_.notes.emplace_back(
         "with a sampled controller cycles cannot be followed over a parameter: each side is found by simulations from "
-        "two displacements, and by bisection of what they show");
+        "two displacements, and by bisection of what they show; near an edge that may depend on the start");
   }
 
   MarginSide side_of(const MarginParameter& parameter, bool up, const std::function<void(double)>& progress) const {

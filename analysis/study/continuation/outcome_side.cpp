@@ -10,6 +10,11 @@
 #include "limcycle/analysis/study/predict/loop_in_time.hpp"
 
 namespace limcycle {
+namespace {
+
+constexpr double looked_beyond = 0.03;  ///< relative distance at which a change is looked at once more
+
+}  // namespace
 
 OutcomeSide::OutcomeSide(const MarginParameter& parameter, bool up, const MarginOptions& options, Starts starts,
                          std::function<void(double)> progress)
@@ -48,29 +53,54 @@ OutcomeSide::Does OutcomeSide::does(double p) const {
   return all;
 }
 
-MarginSide OutcomeSide::bisected(bool hunts, double as_now, double changed, Does then) {
+/// Halves the distance of the two values until they are close, or a simulation does not decide.
+void OutcomeSide::bisect(bool hunts, Change& change) const {
   constexpr double narrow = 2e-3;
-  const double apart = std::abs(std::log(changed / as_now));
-  while (std::abs(std::log(changed / as_now)) > narrow && !stopped()) {
-    const double middle = as_now * std::sqrt(changed / as_now);
+  while (std::abs(std::log(change.changed / change.as_now)) > narrow && !stopped()) {
+    const double middle = change.as_now * std::sqrt(change.changed / change.as_now);
     const Does here = does(middle);
-    if (here == Does::undecided || here == Does::invalid) break;
+    if (here == Does::undecided || here == Does::invalid) return;
     const bool same = (here == Does::hunts) == hunts;
-    if (!same) then = here;
-    (same ? as_now : changed) = middle;
-    if (progress_) progress_(0.5 + 0.5 * (1.0 - std::abs(std::log(changed / as_now)) / apart));
+    if (!same) change.then = here;
+    (same ? change.as_now : change.changed) = middle;
+  }
+}
+
+/// A value a little beyond the change at which the loop does again what it does at its own: near an edge a motion that
+/// never repeats itself may end by chance. Nothing if there is none short of `far`.
+std::optional<double> OutcomeSide::as_now_beyond(bool hunts, const Change& change, double far) const {
+  const double outward = change.changed / change.as_now > 1.0 ? 1.0 : -1.0;
+  for (const double farther : {1.01, 1.0 + looked_beyond}) {
+    const double p = change.changed * std::pow(farther, outward);
+    if (stopped() || std::abs(std::log(p / parameter_.value)) >= std::abs(std::log(far / parameter_.value))) break;
+    if ((does(p) == Does::hunts) == hunts) return p;
+  }
+  return std::nullopt;
+}
+
+MarginSide OutcomeSide::located(bool hunts, Change change) {
+  constexpr int rounds = 4;
+  const double far = change.changed;
+  const Does at_far = change.then;
+  for (int i = 0; i < rounds && !stopped(); ++i) {
+    bisect(hunts, change);
+    if (progress_) progress_(0.5 + 0.5 * (i + 1) / rounds);
+    const auto again = as_now_beyond(hunts, change, far);
+    if (!again) break;
+    change = {*again, far, at_far};
   }
   if (stopped()) return {};
   using What = MarginSide::What;
+  const Does then = change.then;
   const std::string now = hunts ? "it hunts" : "it does not hunt";
   const std::string other = then == Does::hunts ? "it hunts" : then == Does::diverges ? "it diverges" : "it does not";
   const bool begins_to_diverge = !hunts && then == Does::diverges;
   MarginSide side{hunts               ? What::ends
                   : begins_to_diverge ? What::none
                                       : What::begins,
-                  changed, std::abs(changed / as_now - 1.0),
-                  "by bisection of the outcome: at " + short_number(as_now, 5) + " " + now + ", at " +
-                      short_number(changed, 5) + " " + other};
+                  change.changed, std::abs(change.changed / change.as_now - 1.0) + looked_beyond,
+                  "by bisection of the outcome: at " + short_number(change.as_now, 5) + " " + now + ", at " +
+                      short_number(change.changed, 5) + " " + other};
   side.diverges = then == Does::diverges;
   if (begins_to_diverge) side.error = std::numeric_limits<double>::quiet_NaN();
   return side;
@@ -90,7 +120,7 @@ MarginSide OutcomeSide::where_it_changes(bool hunts) {
     if (here == Does::invalid)
       return {What::none, last, 0.0,
               "none up to " + short_number(last, 5) + "; the case is not valid at " + short_number(p, 5)};
-    if ((here == Does::hunts) != hunts) return bisected(hunts, last, p, here);
+    if ((here == Does::hunts) != hunts) return located(hunts, {last, p, here});
     last = p;
   }
   return {What::none, last, 0.0,

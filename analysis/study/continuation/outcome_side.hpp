@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 
 #include "limcycle/analysis/study/continuation/margin.hpp"
 
@@ -26,7 +27,14 @@ class OutcomeSide {
  private:
   enum class Does { hunts, ends, diverges, undecided, invalid };
   Does does(double p) const;
-  MarginSide bisected(bool hunts, double as_now, double changed, Does then);
+  /// Two values, and what the loop does at the second.
+  struct Change {
+    double as_now, changed;
+    Does then;
+  };
+  void bisect(bool hunts, Change& change) const;
+  std::optional<double> as_now_beyond(bool hunts, const Change& change, double far) const;
+  MarginSide located(bool hunts, Change change);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
 
   const MarginParameter& parameter_;
