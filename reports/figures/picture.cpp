@@ -114,9 +114,9 @@ std::string panels(const DrawnMotion& drawn, const Units& units) {
 
 std::string predict_picture(const PredictReport& report, const Units& units) {
   const std::string all = answer(report, units).what_happens;
-  constexpr std::size_t widest = 95;  // characters of the title
+  constexpr std::size_t most_characters = 95;  // characters of the title
   std::string first = all.substr(0, all.find(". "));
-  if (first.size() > widest) first = first.substr(0, first.find(": "));
+  if (first.size() > most_characters) first = first.substr(0, first.find(": "));
   const std::string words = html_escaped(all);
   const auto motion = drawn_motion(report);
   return fmt::format(

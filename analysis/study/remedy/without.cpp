@@ -128,8 +128,8 @@ std::optional<LoopParts> without_integral_action(LoopParts parts) {
   PartChange change;
   change.controller = end_integral;
   change.element = [](Element& element) {
-    auto* pi = element.as<ClampedPi<double>>();
-    return pi != nullptr && std::exchange(pi->ki, 0.0) != 0.0;
+    auto* clamped = element.as<ClampedPi<double>>();
+    return clamped != nullptr && std::exchange(clamped->ki, 0.0) != 0.0;
   };
   change.block = [](BlockKind& block) {
     auto* linear = std::get_if<LinearBlock>(&block);
@@ -214,10 +214,10 @@ std::optional<LoopParts> without_limits(LoopParts parts) {
   };
   change.element = [](Element& element) {
     auto* saturation = element.as<Saturation<double>>();
-    auto* pi = element.as<ClampedPi<double>>();
+    auto* clamped = element.as<ClampedPi<double>>();
     if (saturation != nullptr) saturation->limit *= far;
-    if (pi != nullptr) pi->limit *= far;
-    return saturation != nullptr || pi != nullptr;
+    if (clamped != nullptr) clamped->limit *= far;
+    return saturation != nullptr || clamped != nullptr;
   };
   return changed_parts(std::move(parts), change);
 }
