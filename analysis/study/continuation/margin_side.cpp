@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 
+#include "limcycle/analysis/orbit/settle/stop_map.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/cycle_search.hpp"
@@ -90,6 +91,13 @@ SideSearch::Reached SideSearch::reached_at(double p, const std::vector<LoopState
     if (settled.outcome == Outcome::divergence && from.empty()) return reached;
   }
   if (open) reached.outcome = Outcome::undecided;
+  // A cycle that is nearly lost attracts from so near that only the map from stop to stop finds it.
+  auto map = from.empty() || open ? std::nullopt : StopMap::of(*loop, settling.rtol, options_.predict.stop);
+  if (!map) return reached;
+  for (const double place : map->growing(widest * box.amplitude_min / box.amplitude_max, widest)) {
+    auto settled = settle(*loop, map->held_at(place), settling);
+    if (settled.shot && settled.shot->cycle.stable == true) return {std::move(settled.shot->cycle), Outcome::cycle};
+  }
   return reached;
 }
 

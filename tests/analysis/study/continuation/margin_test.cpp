@@ -257,3 +257,25 @@ TEST_CASE("margin: a sampled servo that rests, with the range that was tried") {
   CHECK(report.parameters.front().up.value == Approx(6.0));
   CHECK(report.parameters.front().down.what == MarginSide::What::none);
 }
+
+TEST_CASE("margin: a branch that takes over with a range of attraction that no start falls into is followed too") {
+  const auto at = [](double Fc) -> std::optional<Loop> {
+    LuGre<double> law = with_levels<LuGre<double>>(128.797, Fc);
+    law.vs = 0.0280015;
+    law.sigma0 = 251495.0;
+    law.sigma1 = 89.1456;
+    Pid controller = pid(887.4, 1545.69, 44.4569);
+    controller.tf = 0.000846174;
+    controller.saturation = 303.676;
+    return loop_of(Mass{1.64457, 0.0, 0.0}, controller, law);
+  };
+  MarginOptions options;
+  options.factor = 1.09;
+  const MarginReport report = margin(*at(115.0), {{"loop.friction.Fc", "N", 115.0, true, at}}, options);
+  REQUIRE(report.hunts);
+  const MarginSide& up = report.parameters.front().up;
+  CAPTURE(up.value, up.why);
+  REQUIRE(up.what == MarginSide::What::ends);
+  CHECK(up.event == BranchEvent::Type::fold);
+  CHECK(up.value == Approx(119.5827).epsilon(1e-5));  // at 119.55 predict still finds the cycle, by its stops
+}
