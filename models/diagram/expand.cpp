@@ -33,12 +33,13 @@ namespace {
 
 bool has_actuator(const Actuator& actuator) { return std::isfinite(actuator.saturation) || actuator.lag > 0.0; }
 
-void read_instead(SignalSum& sum, const std::string& name, const std::string& other) {
-  for (Term& term : sum)
-    if (term.block == name) term.block = other;
-}
-
 }  // namespace
+
+void read_instead(Block& block, const std::string& name, const std::string& other) {
+  for (SignalSum& sum : block.inputs)
+    for (Term& term : sum)
+      if (term.block == name) term.block = other;
+}
 
 Diagram expanded(Diagram diagram) {
   const std::size_t count = diagram.blocks.size();
@@ -49,8 +50,7 @@ Diagram expanded(Diagram diagram) {
     const std::string name = diagram.blocks[i].name, path = diagram.blocks[i].path;
     std::vector<Block> behind;
     const SignalSum last = through_actuator(behind, actuator, name + ".", path, {{1.0, name, ""}}, "");
-    for (Block& block : diagram.blocks)
-      for (SignalSum& sum : block.inputs) read_instead(sum, name, last.front().block);
+    for (Block& block : diagram.blocks) read_instead(block, name, last.front().block);
     if (diagram.output.block == name) diagram.output.block = last.front().block;
     diagram.blocks.insert(diagram.blocks.end(), behind.begin(), behind.end());
   }

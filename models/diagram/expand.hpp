@@ -9,6 +9,9 @@ namespace limcycle {
 SignalSum through_actuator(std::vector<Block>& blocks, const Actuator& actuator, const std::string& prefix,
                            const std::string& path, SignalSum signal, const std::string& on);
 
+/// Lets a block read another one in the place of a block with one output.
+void read_instead(Block& block, const std::string& name, const std::string& other);
+
 /// The diagram with those parts of its controllers as blocks of their own: readers of a controller then read the last
 /// of them. Positions of the blocks that stood before stay.
 Diagram expanded(Diagram diagram);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limcycle/models/diagram/controller_blocks.hpp"
+#include "limcycle/models/diagram/expand.hpp"
 #include "limcycle/models/linear/discrete.hpp"
 
 namespace limcycle {
@@ -30,12 +31,6 @@ double ticks(const Sampling& sampling, double tick) { return std::round(sampling
 bool reads(const Block& block, const std::string& name) {
   return std::ranges::any_of(
       block.inputs, [&](const SignalSum& sum) { return std::ranges::find(sum, name, &Term::block) != sum.end(); });
-}
-
-void read_instead(Block& block, const std::string& name, const std::string& other) {
-  for (SignalSum& sum : block.inputs)
-    for (Term& term : sum)
-      if (term.block == name) term = {term.factor, other, ""};
 }
 
 const Block& named(const Diagram& diagram, const std::string& name) {
@@ -169,6 +164,11 @@ Diagram averaged_form(Diagram diagram) {
 
 }  // namespace
 
+bool has_differences(const Controller& controller) {
+  const StateSpace discrete = backward_difference(model_of(controller), sampling_of(controller).sample_time);
+  return discrete.A.allFinite() && discrete.C.allFinite();
+}
+
 bool is_sampled(const Diagram& diagram) {
   return std::ranges::any_of(diagram.blocks, [](const Block& block) { return clock_of(block) != nullptr; });
 }
@@ -188,9 +188,7 @@ std::optional<BrokenRule> broken_clocks(const Diagram& diagram) {
       return refuse("must be a whole multiple of the shortest sample_time in the diagram");
     if (sampling->computation_delay >= tick)
       return BrokenRule{block.path + ".computation_delay", "must be less than the shortest sample_time in the diagram"};
-    const StateSpace discrete = backward_difference(model_of(*controller), sampling->sample_time);
-    if (!discrete.A.allFinite() || !discrete.C.allFinite())
-      return refuse("must not be the inverse of a pole of the controller");
+    if (!has_differences(*controller)) return refuse("must not be the inverse of a pole of the controller");
   }
   return std::nullopt;
 }

@@ -6,6 +6,9 @@ namespace limcycle {
 /// True if a controller of the diagram runs on a computer.
 bool is_sampled(const Diagram& diagram);
 
+/// True if a sampled controller has difference equations: the inverse of its sample time is none of its poles.
+bool has_differences(const Controller& controller);
+
 /// The rule that the sampled controllers of a diagram break together: their sample times are whole multiples of the
 /// shortest, so that their clocks tick together.
 std::optional<BrokenRule> broken_clocks(const Diagram& diagram);

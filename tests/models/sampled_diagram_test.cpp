@@ -37,6 +37,15 @@ Pid on_computer(Pid controller, double sample_time = tick) {
   return controller;
 }
 
+Cascade axis_cascade() {
+  Cascade law;
+  law.position_kp = 3.0;
+  law.velocity_kp = 20.0;
+  law.velocity_ki = 50.0;
+  law.sample_time = tick;
+  return law;
+}
+
 /// The same controller in the slots.
 LoopParts slots_under(const Controller& controller) {
   LoopParts parts;
@@ -66,11 +75,7 @@ TEST_CASE("sampled response: a PID at its ticks is its pulse transfer function b
 }
 
 TEST_CASE("sampled response: a cascade of two rates, its velocity differenced") {
-  Cascade law;
-  law.position_kp = 3.0;
-  law.velocity_kp = 20.0;
-  law.velocity_ki = 50.0;
-  law.sample_time = tick;
+  Cascade law = axis_cascade();
   law.position_every = 4.0;
   law.velocity_window = 2.0;
   for (const Complex s : at_places) {
@@ -84,11 +89,7 @@ TEST_CASE("sampled response: a cascade of two rates, its velocity differenced") 
 }
 
 TEST_CASE("sampled response: a limit that holds the integral back is an element between command and hold") {
-  Cascade law;
-  law.position_kp = 3.0;
-  law.velocity_kp = 20.0;
-  law.velocity_ki = 50.0;
-  law.sample_time = tick;
+  Cascade law = axis_cascade();
   law.limit = 5.0;
   law.anti_windup.index = Cascade::back_calculation;
   const Loop loop = build_loop(slots_under(law));
@@ -150,11 +151,7 @@ TEST_CASE("sampled diagram: one PID at its ticks is the loop of the slots") {
 }
 
 TEST_CASE("sampled diagram: two PIDs of two rates are the cascade") {
-  Cascade law;
-  law.position_kp = 3.0;
-  law.velocity_kp = 20.0;
-  law.velocity_ki = 50.0;
-  law.sample_time = tick;
+  Cascade law = axis_cascade();
   law.position_every = 4.0;
   law.input_step = 1e-4;
   law.computation_delay = 0.5 * tick;

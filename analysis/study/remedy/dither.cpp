@@ -86,8 +86,7 @@ std::string why_no_dither(const LoopParts& parts) {
   if (!parts.friction) return "there is no friction that a dither could smooth";
   if (parts.friction->as<Coulomb<double>>() == nullptr)
     return "the mean of the friction over a dither is implemented for Coulomb friction only; `simulate` takes a sine "
-           "as "
-           "force";
+           "as force";
   if (std::holds_alternative<NoController>(parts.controller)) return "there is no controller that could add it";
   if (parts.reference_rate != 0.0) return "it is not implemented along a ramp";
   const Loop loop = build_loop(parts);
