@@ -19,11 +19,11 @@ right() {  # FILE LINE
   fi
 }
 
-wrong() {  # FILE LINE MESSAGE
+wrong() {  # FILE LINES MESSAGE [number of the line, 1]
   local said status=0
   put "$1" "$2"
   said=$("$layering" "$tree" 2>&1) || status=$?
-  if ((status == 0)) || [[ $said != *"$1:1:"*"$3"* ]]; then
+  if ((status == 0)) || [[ $said != *"$1:${4:-1}:"*"$3"* ]]; then
     echo "not found: $1: $2 (status $status, said: $said)"
     failures=$((failures + 1))
   fi
@@ -84,6 +84,14 @@ wrong cli/a.cpp '#include <limcycle/models/loop.hpp>' 'included with quotes'
 wrong cli/a.cpp '#include HEADER' 'not a macro'
 wrong tests/cli/a_test.cpp '#include "limcycle/cli/options.hpp"' "$arrow"
 wrong bench/a.cpp '#include "limcycle/tests/reference.hpp"' "$arrow"
+
+alike='in the same unnamed namespace'
+right cli/a.cpp $'namespace {\nconstexpr int most = 3, least = 1;\nstruct Wait {};\n}  // namespace'
+wrong cli/ranks/b.cpp $'namespace {\nconstexpr double most = 3.0;\n}  // namespace' "$alike" 2
+wrong cli/b.cpp $'namespace {\nconst std::vector<int> few{1}, least{1, 2};\n}  // namespace' "$alike" 2
+wrong cli/b.cpp $'namespace {\nclass Wait {\n};\n}  // namespace' "$alike" 2
+right cases/b.cpp $'namespace {\nconstexpr double most = 3.0;\n}  // namespace'
+right cli/b.cpp $'namespace {\nvoid wait() {\n  const int most = 2;\n}\n}  // namespace'
 
 rm -rf "${tree:?}"/*
 if "$layering" "$tree"; then

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::string_view response_style =
     ".zero{stroke:#8b949e;stroke-dasharray:4 4}.run{fill:none;stroke:#2f81c7;stroke-width:1.5}";
-constexpr double panel_width = 300.0, panel_height = 170.0, panel_top = 68.0, panel_left = 48.0, panel_gap = 56.0;
+constexpr double trace_width = 300.0, trace_height = 170.0, trace_top = 68.0, trace_left = 48.0, trace_gap = 56.0;
 
 double length_of(const Trace& run) { return run.t.empty() ? 0.0 : run.t.back() - run.t.front(); }
 
 /// The axes that both panels share. Time goes until the slower of the two has settled, at most the shorter of both runs
 /// if one of them hunts for ever.
 AxesFrame shared_axes(const Trace& before, const Trace& after, const std::optional<double>& settled, double per_si) {
-  AxesFrame frame{panel_left, panel_top, panel_width, panel_height};
+  AxesFrame frame{trace_left, trace_top, trace_width, trace_height};
   const double duration = std::min(std::max(length_of(before), length_of(after)),
                                    std::max(3.0 * settled.value_or(length_of(after)), 0.25 * length_of(before)));
   frame.x.include({0.0, duration});
@@ -65,14 +65,14 @@ std::string response_picture(const Response& before, const Response& after, cons
   std::string body;
   for (const Response* one : {&before, &after}) {
     const double zero = frame.py(0.0);
-    body += words_at(frame.left, panel_top - 24.0, "", html_escaped(one->name)) + frame.markup() +
+    body += words_at(frame.left, trace_top - 24.0, "", html_escaped(one->name)) + frame.markup() +
             frame.names(frame.x.label("t", "s"), frame.y.label("y", units.y)) +
             line_of(frame.left, zero, frame.left + frame.width, zero, "zero") +
             response_curve(one->run, frame, units.y_per_si);
-    frame.left += panel_width + panel_gap;
+    frame.left += trace_width + trace_gap;
   }
   const std::string label = "Step response " + before.name + " and " + after.name;
-  return svg_picture(frame.left - panel_gap + 12.0, panel_top + panel_height + 34.0, label,
+  return svg_picture(frame.left - trace_gap + 12.0, trace_top + trace_height + 34.0, label,
                      std::string(axes_style) + std::string(response_style), label, body);
 }
 

@@ -12,7 +12,7 @@ namespace limcycle {
 namespace {
 
 /// A law that has not finished one experiment by then is stuck in it (for example by switching without end).
-constexpr std::chrono::seconds patience{70};
+constexpr std::chrono::seconds longest_wait{70};
 
 /// Greatest minus least of the finite values.
 double width(const std::vector<double>& values) {
@@ -39,7 +39,7 @@ void run_by_law(Experiment& experiment, const ExperimentOptions& options,
       const auto begin = std::chrono::steady_clock::now();
       LawSetting law = laws[i];
       law.stop = [&options, begin] {
-        return (options.stop && options.stop()) || std::chrono::steady_clock::now() - begin > patience;
+        return (options.stop && options.stop()) || std::chrono::steady_clock::now() - begin > longest_wait;
       };
       parts[i] = one(law);
     } catch (const std::invalid_argument& error) {

@@ -10,7 +10,7 @@ namespace limcycle {
 namespace {
 
 constexpr double first_peak = 2.6, zigzag_half_period = 1.0;  // of the zig-zag, s
-constexpr int zigzag_cycles = 16, averaged = 4;
+constexpr int zigzag_cycles = 16, averaged_cycles = 4;
 constexpr double zigzag_low = 0.2, zigzag_high = 0.8;  // N
 
 Signal slide_and_zigzag() {
@@ -61,11 +61,11 @@ LawPart zigzag_of_law(const LawSetting& printed) {
   const double peak = peak_of(run.t, run.F, run.F.size() - 1).value;
   // Laws without damping keep ringing: the drift is that of the mean over four cycles, with a weight that hides
   // ringing.
-  const double window = 2.0 * averaged * zigzag_half_period;
+  const double window = 2.0 * averaged_cycles * zigzag_half_period;
   const auto mean = [&](double back) {
     return run.mean_displacement(end - (back + 1.0) * window, end - back * window);
   };
-  const double drift = (mean(0.0) - mean(1.0)) / averaged, earlier = (mean(1.0) - mean(2.0)) / averaged;
+  const double drift = (mean(0.0) - mean(1.0)) / averaged_cycles, earlier = (mean(1.0) - mean(2.0)) / averaged_cycles;
   const double swing = swing_high - swing_low;
   part.rows.push_back({"", "", {peak, drift, swing, mismatch, area(run.x, run.F, first, run.x.size() - 1)}});
   if (!drifts(drift, swing))

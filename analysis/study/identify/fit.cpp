@@ -122,7 +122,7 @@ Groups each_by_itself(const std::vector<Eigen::Index>& coordinates) {
 namespace {
 
 /// Entries where the law has no answer, far worse than any law: such a step is rejected.
-constexpr double no_answer = 1e9;
+constexpr double far_off = 1e9;
 
 struct GslProblem {
   const Misfit& misfit;
@@ -142,7 +142,7 @@ int gsl_entries(const gsl_vector* x, void* data, gsl_vector* f) {
   problem.take(x);
   const bool known = problem.misfit.at(problem.u, problem.entries, nullptr);
   for (std::size_t i = 0; i < f->size; ++i)
-    gsl_vector_set(f, i, known ? problem.entries(static_cast<Eigen::Index>(i)) : no_answer);
+    gsl_vector_set(f, i, known ? problem.entries(static_cast<Eigen::Index>(i)) : far_off);
   return GSL_SUCCESS;
 }
 

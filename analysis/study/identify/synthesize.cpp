@@ -16,7 +16,7 @@
 namespace limcycle {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Rows over the times of a smooth motion.
 FrictionRecord along(RecordKind kind, double duration, std::size_t rows, const std::function<double(double)>& x,

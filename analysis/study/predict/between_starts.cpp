@@ -8,11 +8,11 @@
 namespace limcycle {
 namespace {
 
-constexpr int bisections = 6;         ///< of one border
-constexpr double close_enough = 1.1;  ///< ratio of two starts between which the search ends
-constexpr double within_edge = 5.0;   ///< ratio of two starts between which an unstable cycle is searched for
-constexpr double apart = 5.0;         ///< ratio of neighbouring starts if those of a user come to rest
-constexpr double step_aside = 0.01;   ///< relative distance from an unstable cycle
+constexpr int bisections = 6;            ///< of one border
+constexpr double close_enough = 1.1;     ///< ratio of two starts between which the search ends
+constexpr double within_edge = 5.0;      ///< ratio of two starts between which an unstable cycle is searched for
+constexpr double ratio_of_starts = 5.0;  ///< ratio of neighbouring starts if those of a user come to rest
+constexpr double step_aside = 0.01;      ///< relative distance from an unstable cycle
 
 /// The time between the third and the fifth turn of y: a motion that begins near an unstable cycle first follows it.
 std::optional<double> first_period(const Trace& trace) {
@@ -81,7 +81,7 @@ void BetweenStarts::look_between(std::vector<Start> starts, const Ray& ray) {
     return outcome(start) == Outcome::rest || outcome(start) == Outcome::sliding;
   };
   if (!starts.empty() && calm(starts.front()) && !over()) {
-    const double place = starts.front().place / apart;
+    const double place = starts.front().place / ratio_of_starts;
     probe(ray.state(place), ray.name(place));
   }
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
@@ -89,7 +89,7 @@ void BetweenStarts::look_between(std::vector<Start> starts, const Ray& ray) {
     if (diverges(low) != diverges(high) && !knows_border(low, high)) bisect_divergence(low, high, ray);
     if (!calm(low) || !calm(high)) continue;
     const double ratio = high.place / low.place;
-    const int parts = std::max(1, static_cast<int>(std::lround(std::log(ratio) / std::log(apart))));
+    const int parts = std::max(1, static_cast<int>(std::lround(std::log(ratio) / std::log(ratio_of_starts))));
     for (int part = parts - 1; part > 0 && !over(); --part) {
       const double place = low.place * std::pow(ratio, static_cast<double>(part) / parts);
       probe(ray.state(place), ray.name(place), low.place);

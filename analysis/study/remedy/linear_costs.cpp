@@ -14,7 +14,7 @@ namespace limcycle {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Slope of an element in the path of a signal; empty for one without.
 std::optional<double> slope_of(const std::optional<Element>& element) {

@@ -16,7 +16,8 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr double of_equation = 1e-9;  ///< relative error of differences of G between neighbours
-constexpr double apart = 1e-5;        ///< relative distance of frequencies in differences of exact G; poles may be near
+constexpr double frequencies_apart =
+    1e-5;  ///< relative distance of frequencies in differences of exact G; poles may be near
 
 /// Exact responses to the element's output.
 struct Responses {
@@ -34,7 +35,7 @@ struct ResponseSlopes {
 };
 ResponseSlopes by_frequency_at(const Loop& loop, double w) {
   ResponseSlopes sum{0.0, 0.0};
-  const double h = apart * w;
+  const double h = frequencies_apart * w;
   for (const auto& [steps, weight] : {std::pair(1.0, 45.0), {2.0, -9.0}, {3.0, 1.0}}) {
     const Responses above = responses(loop, w + steps * h), below = responses(loop, w - steps * h);
     sum.input += weight / (60.0 * h) * (above.input - below.input);

@@ -7,11 +7,11 @@
 namespace limcycle {
 namespace {
 
-using Place = std::vector<double>;
+using Position = std::vector<double>;
 
 /// A direction, all equally likely, of length 1.
-Place random_direction(std::size_t size, RandomStream& random) {
-  Place v(size);
+Position random_direction(std::size_t size, RandomStream& random) {
+  Position v(size);
   double squares = 0.0;
   for (double& one : v) {
     one = std::sqrt(-2.0 * std::log(random.uniform())) * std::cos(2.0 * std::numbers::pi * random.uniform());
@@ -22,11 +22,11 @@ Place random_direction(std::size_t size, RandomStream& random) {
 }
 
 /// The places at one step from one, along the columns of a basis.
-std::vector<Place> poll_places(const Place& centre, double step, const std::vector<Place>& basis) {
-  std::vector<Place> places;
-  for (const Place& direction : basis)
+std::vector<Position> poll_places(const Position& centre, double step, const std::vector<Position>& basis) {
+  std::vector<Position> places;
+  for (const Position& direction : basis)
     for (const double sign : {1.0, -1.0}) {
-      Place place = centre;
+      Position place = centre;
       for (std::size_t i = 0; i < place.size(); ++i)
         place[i] = std::clamp(centre[i] + sign * step * direction[i], 0.0, 1.0);
       if (place != centre) places.push_back(std::move(place));
@@ -35,9 +35,9 @@ std::vector<Place> poll_places(const Place& centre, double step, const std::vect
 }
 
 /// The columns of the reflection I - 2 v v^T; the axes for v = 0.
-std::vector<Place> reflected_axes(const Place& v) {
+std::vector<Position> reflected_axes(const Position& v) {
   const std::size_t n = v.size();
-  std::vector<Place> basis(n, Place(n, 0.0));
+  std::vector<Position> basis(n, Position(n, 0.0));
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < n; ++i) basis[j][i] = (i == j ? 1.0 : 0.0) - 2.0 * v[i] * v[j];
   return basis;
@@ -45,16 +45,16 @@ std::vector<Place> reflected_axes(const Place& v) {
 
 }  // namespace
 
-bool DirectSearch::run(Place& place, RandomStream random, const FirstBetter& first_better,
+bool DirectSearch::run(Position& place, RandomStream random, const FirstBetter& first_better,
                        const std::function<bool()>& stop) const {
   const std::size_t n = place.size();
-  const auto moves_along = [&](const std::vector<Place>& basis, double step) {
+  const auto moves_along = [&](const std::vector<Position>& basis, double step) {
     const auto places = poll_places(place, step, basis);
     const auto better = first_better(places, step);
     if (better) place = places[*better];
     return better.has_value();
   };
-  const auto axes = reflected_axes(Place(n, 0.0));
+  const auto axes = reflected_axes(Position(n, 0.0));
   for (double step = first_step; step >= last_step;) {
     bool moved = moves_along(axes, step);
     for (int basis = 0; basis < bases && n > 1 && !moved && !stop(); ++basis)

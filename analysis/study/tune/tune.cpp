@@ -19,7 +19,7 @@ constexpr double starts_apart = 0.2;  ///< of two starts of local searches, in s
 constexpr double same_cost_by = 0.01, same_place_by = 0.05, near_cost_by = 0.05;
 constexpr int most_results = 5;  ///< that are confirmed one after another, each better than the one before
 /// Where the parts of the progress bar begin: design, starts, searches, confirmation.
-constexpr double shares[] = {0.05, 0.2, 0.4, 0.9, 1.0};
+constexpr double stage_ends[] = {0.05, 0.2, 0.4, 0.9, 1.0};
 
 class TuneStudy {
  public:
@@ -53,8 +53,8 @@ class TuneStudy {
     if (options_.predict.progress) options_.predict.progress(fraction, what);
   }
   SweepOptions part(std::size_t number, const std::string& what) const {
-    return part_of_work(options_.threads, options_.predict.stop, options_.predict.progress, shares[number],
-                        shares[number + 1], what);
+    return part_of_work(options_.threads, options_.predict.stop, options_.predict.progress, stage_ends[number],
+                        stage_ends[number + 1], what);
   }
   std::optional<double> cost(std::size_t point) const { return question_.cost_of(report_.points[point]); }
 
@@ -120,7 +120,8 @@ class TuneStudy {
       std::vector<std::size_t> batch;  // of a size of its own, so that threads do not matter
       for (; next < open.size() && batch.size() < judged_at_once; ++next)
         if (is_apart(open[next])) batch.push_back(open[next]);
-      tell(shares[1] + (shares[2] - shares[1]) * 0.3 * static_cast<double>(next) / static_cast<double>(open.size()),
+      tell(stage_ends[1] +
+               (stage_ends[2] - stage_ends[1]) * 0.3 * static_cast<double>(next) / static_cast<double>(open.size()),
            "does it hunt");
       const JudgedPoints judged = judged_points();
       const auto judge_one = [&](std::size_t i) {
@@ -167,7 +168,7 @@ class TuneStudy {
   /// The result: the best point that stands a second judgement, with the motions of its own surroundings. What they
   /// show to be better is tried in its turn.
   void settle_on_best() {
-    tell(shares[3], "confirmation");
+    tell(stage_ends[3], "confirmation");
     int better = 0;
     while ((report_.best = best_point()) && !stopped()) {
       const std::size_t best = *report_.best;
