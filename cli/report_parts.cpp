@@ -15,7 +15,9 @@
 #include "limcycle/cli/map_of.hpp"
 #include "limcycle/cli/precision_of.hpp"
 #include "limcycle/questions/map.hpp"
+#include "limcycle/questions/margin.hpp"
 #include "limcycle/questions/predict.hpp"
+#include "limcycle/questions/remedy.hpp"
 #include "limcycle/questions/threshold.hpp"
 
 namespace limcycle {
@@ -47,6 +49,27 @@ ReportPart<SensitivityReport> sensitivity_part(const ReportQuestion& ask) {
   return {
       {},
       "There is no stable limit cycle, and the describing function predicts none: there is nothing to differentiate."};
+}
+
+Asking asking(const ReportQuestion& ask, const std::function<void(double)>& progress) {
+  Asking asked;
+  asked.stop = interrupted;
+  asked.progress = [progress](double fraction, std::string_view) { progress(fraction); };
+  asked.threads = ask.flags.threads;
+  asked.seed = ask.flags.seed;
+  return asked;
+}
+
+ReportPart<MarginReport> margin_part(const ReportQuestion& ask, const std::function<void(double)>& progress) {
+  std::vector<std::string> notes;
+  MarginReport report = ask_margin(ask.from, margin_parameters(ask.from, "margin", {}, notes), MarginOptions{}.factor,
+                                   asking(ask, progress));
+  if (!report.refused.empty()) return {{}, "Margins: " + report.refused + "."};
+  return {std::move(report), {}};
+}
+
+ReportPart<RemedyReport> remedy_part(const ReportQuestion& ask, const std::function<void(double)>& progress) {
+  return {ask_remedy(ask.from, {}, asking(ask, progress)), {}};
 }
 
 constexpr Methods methods_of_map{true, false, false};
@@ -146,8 +169,8 @@ ReportPart<PrecisionReport> precision_part(const ReportQuestion& ask) {
 
 /// One part, whether it succeeds or not.
 template <class Result>
-ReportPart<Result> attempted(bool wanted, const std::string& why_not, auto&& compute) {
-  if (!wanted) return {{}, why_not};
+ReportPart<Result> attempted(bool wanted, auto&& compute) {
+  if (!wanted) return {};
   if (interrupted()) return {{}, "Interrupted before this was computed."};
   try {
     return compute();
@@ -177,19 +200,26 @@ LoopReport report_parts(const Case& from, const ReportWishes& wishes, const Comm
   report.predict = answer_of([&] { return predict(loop, options); });
   add_cause(report.predict, report.loop, options);
   const ReportQuestion ask{from, loop, wishes, flags, report.predict};
-  const std::string left_out = "Left out by --quick.";
-  progress.show(0.3, "sensitivity");
-  report.sensitivity = attempted<SensitivityReport>(!wishes.quick, left_out, [&] { return sensitivity_part(ask); });
-  progress.show(0.4, "energy balance");
-  report.energy = attempted<CountedRun>(true, "", [&] { return energy_part(ask); });
-  progress.show(0.45, "dissipativity");
-  report.dissipativity =
-      attempted<DissipativityReport>(!wishes.quick, left_out, [&] { return dissipativity_part(ask); });
-  report.map = attempted<MapReport>(
-      !wishes.x.empty(), "No map was asked for: --x PATH=FROM:TO:N and --y PATH=FROM:TO:N draw one.",
-      [&] { return map_part(ask, [&](double fraction) { progress.show(0.5 + 0.25 * fraction, "the map"); }); });
-  progress.show(0.75, "accuracy and cost");
-  report.precision = attempted<PrecisionReport>(!wishes.quick, left_out, [&] { return precision_part(ask); });
+  const auto part_of_bar = [&](double from_share, double to_share, std::string_view what) {
+    return [&progress, from_share, to_share, what](double fraction) {
+      progress.show(from_share + (to_share - from_share) * fraction, what);
+    };
+  };
+  report.margin =
+      attempted<MarginReport>(!wishes.quick, [&] { return margin_part(ask, part_of_bar(0.3, 0.4, "margins")); });
+  report.remedy =
+      attempted<RemedyReport>(wishes.remedies, [&] { return remedy_part(ask, part_of_bar(0.4, 0.6, "remedies")); });
+  progress.show(0.6, "sensitivity");
+  report.sensitivity = attempted<SensitivityReport>(!wishes.quick, [&] { return sensitivity_part(ask); });
+  progress.show(0.65, "energy balance");
+  report.energy = attempted<CountedRun>(true, [&] { return energy_part(ask); });
+  progress.show(0.7, "dissipativity");
+  report.dissipativity = attempted<DissipativityReport>(!wishes.quick, [&] { return dissipativity_part(ask); });
+  report.map = attempted<MapReport>(!wishes.x.empty(),
+                                    "No map was asked for: --x PATH=FROM:TO:N and --y PATH=FROM:TO:N draw one.",
+                                    [&] { return map_part(ask, part_of_bar(0.75, 0.85, "the map")); });
+  progress.show(0.85, "accuracy and cost");
+  report.precision = attempted<PrecisionReport>(wishes.benchmarks, [&] { return precision_part(ask); });
   report.interrupted = interrupted();
   if (report.interrupted) report.predict.status = Status::interrupted;  // the document of the page states it too
   return report;

@@ -10,8 +10,10 @@ namespace limcycle {
 
 /// Parts of a report in addition to the prediction.
 struct ReportWishes {
-  bool quick = false;  ///< without sensitivity, dissipativity and work-precision
-  std::string x, y;    ///< of a map, PATH=FROM:TO:N[:log]; both empty: no map
+  bool quick = false;       ///< without margins, sensitivity and dissipativity
+  bool remedies = false;    ///< with all remedies
+  bool benchmarks = false;  ///< with accuracy and cost of the methods
+  std::string x, y;         ///< of a map, PATH=FROM:TO:N[:log]; both empty: no map
 };
 
 /// Throws InputError for wishes that do not apply to this case.

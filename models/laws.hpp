@@ -8,12 +8,15 @@
 #include "limcycle/models/element/dead_zone.hpp"
 #include "limcycle/models/element/delayed_relay.hpp"
 #include "limcycle/models/element/gravity.hpp"
+#include "limcycle/models/element/lookup.hpp"
 #include "limcycle/models/element/output_rate.hpp"
 #include "limcycle/models/element/quantizer.hpp"
+#include "limcycle/models/element/rate_limit.hpp"
 #include "limcycle/models/element/relay.hpp"
 #include "limcycle/models/element/reset_integrator.hpp"
 #include "limcycle/models/element/sampled.hpp"
 #include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/valve_stiction.hpp"
 #include "limcycle/models/element/window.hpp"
 #include "limcycle/models/friction/bristle/bouc_wen.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
@@ -54,7 +57,8 @@ struct KindList {
 using FrictionLaws = KindList<Coulomb, Stribeck, StribeckTable, Karnopp, Quinn, Kikuuwe, Awrejcewicz, Wojewoda, Dahl,
                               BoucWen, LuGre, LuGreTable, LuGreSpline, ElastoPlastic, Leuven, Jenkins, MaxwellSlip,
                               Iwan, Gms, GmsTable, Xiong, TwoState, NonDrift>;
-using ForwardElements = KindList<Relay, Saturation, DeadZone, Backlash, Cubic, ClampedPi, ResetIntegrator, Window>;
+using ForwardElements = KindList<Relay, Saturation, RateLimit, DeadZone, Backlash, ValveStiction, Cubic, Lookup,
+                                 ClampedPi, ResetIntegrator, Window>;
 using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
 using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity, Sampled>;
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "limcycle/models/diagram/assemble.hpp"
@@ -172,6 +173,34 @@ std::optional<BrokenRule> validate_sampled_diagram(const LoopParts& parts) {
   return std::nullopt;
 }
 
+/// True if the output changes at once at some instants.
+bool jumps(const Element& element) {
+  constexpr std::array<std::string_view, 9> kinds{"relay",          "delayed-relay", "quantizer",
+                                                  "sampled",        "window",        "reset-integrator",
+                                                  "valve-stiction", "output-rate",   "friction-compensation"};
+  return std::ranges::find(kinds, element.kind()) != kinds.end();
+}
+
+/// An element that stops where its input turns sees that by the sign of the input's rate, which a jump does not show
+/// and an approximated dead time shows wrongly.
+std::optional<BrokenRule> broken_way_of_input(const Loop& loop) {
+  for (std::size_t i = 0; i < loop.elements.size(); ++i) {
+    const Element& element = loop.elements[i];
+    const Port& port = loop.ports[i];
+    if (!element.facts().uses_rate || element.facts().needs_rate || port.rubs) continue;
+    if (loop.delay > 0.0 && element.kind() == "valve-stiction")
+      return BrokenRule{port.path,
+                        "cannot stand in a loop with dead time: the stem stops where its command turns, and in the "
+                        "time domain an approximation of the dead time would turn it too early; a valve of a mass, a "
+                        "spring and friction can"};
+    for (std::size_t k = 0; k < i; ++k)
+      if (port.D(static_cast<Index>(k)) != 0.0 && jumps(loop.elements[k]))
+        return BrokenRule{port.path, "goes by the way its input moves, and the output of " + loop.ports[k].path +
+                                         " jumps: in a diagram a low-pass block may stand between them"};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Subject subject_of(const LoopParts& parts) {
@@ -198,7 +227,9 @@ std::optional<BrokenRule> validate(const LoopParts& parts) try {
     return BrokenRule{reference, "a ramp and a delay cannot stand in one loop"};
   if (parts.reference_rate != 0.0)
     if (auto broken = move_along(loop, parts.reference_rate, reference)) return broken;
-  return validate_ports(loop);
+  if (auto broken = validate_ports(loop)) return broken;
+  if (auto broken = broken_way_of_input(loop)) return broken;
+  return loop.sampled ? broken_way_of_input(*loop.sampled) : std::nullopt;
 } catch (const BrokenDiagram& broken) {
   return broken.rule;
 }

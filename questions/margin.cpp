@@ -1,10 +1,15 @@
 #include "limcycle/questions/margin.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
+#include "limcycle/questions/argument_error.hpp"
 #include "limcycle/questions/threshold.hpp"
+#include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {
@@ -14,7 +19,68 @@ MarginParameter margin_parameter(const Case& from, const CaseNumber& number) {
           LoopVariation(from, "parameter", number.path)};
 }
 
+/// The straight line from the own numbers of a case, at 1, to others, at 2.
+struct Line {
+  std::vector<CaseNumber> own;
+  std::vector<double> to;
+  std::string target{};  ///< "kd = 10, ki = 2", with the names as they were given
+
+  std::vector<double> at(double place) const {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      values.push_back(own[i].value + (place - 1.0) * (to[i] - own[i].value));
+    return values;
+  }
+  std::string name() const { return "toward " + target; }
+};
+
+Line line_of(const Case& from, const std::string& argument, const Toward& toward) {
+  Line line;
+  for (const auto& [name, value] : toward) {
+    const CaseNumber number = number_named(from, argument, name);
+    if (!std::isfinite(number.value))
+      throw argument_error(argument, name, "is absent from the case: write it there first, so that it has a value");
+    if (std::ranges::find(line.own, number.path, &CaseNumber::path) != line.own.end())
+      throw argument_error(argument, name, "is there twice");
+    line.own.push_back(number);
+    line.to.push_back(value);
+    line.target += (line.target.empty() ? "" : ", ") + name + " = " + shortest(value);
+  }
+  return line;
+}
+
 }  // namespace
+
+MarginParameter toward_parameter(const Case& from, const std::string& argument, const Toward& toward) {
+  const Line line = line_of(from, argument, toward);
+  std::vector<std::string> paths;
+  bool friction = !line.own.empty(), changes = false;
+  for (std::size_t i = 0; i < line.own.size(); ++i) {
+    paths.push_back(line.own[i].path);
+    friction = friction && line.own[i].path.starts_with("loop.friction.");
+    changes = changes || line.to[i] != line.own[i].value;
+  }
+  if (!changes) throw argument_error(argument, line.target, "changes nothing: these are the numbers of the case");
+  const LoopVariation variation(from, argument, paths);
+  if (!variation.parts(line.to))
+    throw argument_error(argument, line.target, "these are not valid values with the other numbers as they stand");
+  return {line.name(), "1", 1.0, friction, [variation, line](double place) { return variation.loop(line.at(place)); }};
+}
+
+std::string numbers_toward(const Case& from, const std::string& argument, const Toward& toward,
+                           const MarginReport& report) {
+  const Line line = line_of(from, argument, toward);
+  const std::string name = line.name();
+  const auto one = std::ranges::find(report.parameters, name, [](const auto& p) { return p.parameter.path; });
+  const MarginSide* side = one == report.parameters.end() ? nullptr : one->nearest();
+  if (side == nullptr) return {};
+  std::string text;
+  const auto values = line.at(side->value);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text += fmt::format("{}{} = {:.6g}", i == 0 ? "" : ", ", line.own[i].path, values[i]);
+  return fmt::format("{}: 1 stands for the numbers of the case, 2 for those given; at {:.6g} {}", name, side->value,
+                     text);
+}
 
 std::vector<MarginParameter> margin_parameters(const Case& from, const std::string& argument,
                                                const std::vector<std::string>& paths, std::vector<std::string>& notes) {

@@ -14,7 +14,7 @@ Units units_of_diagram(const Diagram& diagram) {
     if (plant != nullptr && std::holds_alternative<FroudePendulum>(*plant)) return {"rad", "N m", "rad"};
     const bool masses =
         plant != nullptr && (std::holds_alternative<Mass>(*plant) || std::holds_alternative<Belt>(*plant) ||
-                             std::holds_alternative<TwoMass>(*plant));
+                             std::holds_alternative<TwoMass>(*plant) || std::holds_alternative<ServoDrive>(*plant));
     if (masses || block.contact == Contact::opposes) return {};
   }
   return {"", "", ""};
@@ -28,7 +28,8 @@ Units units_of_loop(const LoopParts& loop) {
     const PlantModel model = named->model();
     if (model.C_x != model.C_y) return {"", "N", "m"};  // the output is not the rubbing displacement: a flow, an angle
   }
-  const bool mechanical = loop.friction || plant == "mass" || plant == "belt" || plant == "two-mass";
+  const bool mechanical =
+      loop.friction || plant == "mass" || plant == "belt" || plant == "two-mass" || plant == "servo-drive";
   return mechanical ? Units{} : Units{"", "", ""};
 }
 

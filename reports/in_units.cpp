@@ -165,6 +165,7 @@ LoopReport in_units(LoopReport report, const Units& units) {
   const auto each = [&](auto& part) {
     if (part.found) part.found = in_units(*std::move(part.found), units);
   };
+  each(report.margin);
   each(report.sensitivity);
   each(report.map);
   each(report.precision);

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <sstream>
 
 #include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
@@ -18,6 +19,7 @@ struct MarginFlags : CommonFlags {
   std::string html;                     ///< --html
   double factor = 10.0;                 ///< --factor
   std::vector<std::string> parameters;  ///< --parameter PATH, repeatable; empty: all
+  std::vector<std::string> toward;      ///< --toward NAME=VALUE,..., repeatable
 };
 
 int exit_code(const MarginReport& report) {
@@ -28,13 +30,33 @@ int exit_code(const MarginReport& report) {
              : exit_done;
 }
 
+std::vector<Toward> directions(const std::vector<std::string>& written) {
+  std::vector<Toward> all;
+  for (const auto& text : written) {
+    Toward& one = all.emplace_back();
+    std::istringstream parts(text);
+    for (std::string part; std::getline(parts, part, ',');) {
+      const auto equals = part.find('=');
+      const auto value = equals == std::string::npos ? std::nullopt : finite_number(part.substr(equals + 1));
+      if (!value) throw refusal("--toward " + text, "must be NAME=VALUE,... with numbers, such as kd=10,ki=2");
+      one.emplace_back(part.substr(0, equals), *value);
+    }
+    if (one.empty()) throw refusal("--toward " + text, "must be NAME=VALUE,..., such as kd=10,ki=2");
+  }
+  return all;
+}
+
 int run(MarginFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   need_loop(from);
   const Units units = units_of(from);
   std::vector<std::string> notes;
-  const auto parameters = margin_parameters(from, "--parameter", flags.parameters, notes);
+  const auto toward = directions(flags.toward);
+  std::vector<MarginParameter> parameters;
+  if (toward.empty() || !flags.parameters.empty())
+    parameters = margin_parameters(from, "--parameter", flags.parameters, notes);
+  for (const Toward& one : toward) parameters.push_back(toward_parameter(from, "--toward", one));
   Output output(flags, &from);
   output.check_file("--html", flags.html);
 
@@ -44,6 +66,9 @@ int run(MarginFlags flags) {
     report = answer_of([&] { return ask_margin(from, parameters, flags.factor, asking_of(flags, progress)); });
   }
   report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+  for (const Toward& one : toward)
+    if (auto text = numbers_toward(from, "--toward", one, report); !text.empty())
+      report.notes.push_back(std::move(text));
   const auto made = provenance(flags, &from);
   const MarginReport shown = in_units(report, units);
   std::string text = margin_text(from.title, shown, units);
@@ -72,6 +97,9 @@ void add_margin(CLI::App& program, Action& action) {
       ->capture_default_str();
   command->add_option("--parameter", flags->parameters, "Only this parameter; repeatable")
       ->type_name("PATH")
+      ->allow_extra_args(false);
+  command->add_option("--toward", flags->toward, "These numbers together, from their own values (1) to those (2)")
+      ->type_name("NAME=VALUE,...")
       ->allow_extra_args(false);
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");

@@ -32,6 +32,8 @@ void take_over(ReportFlags& flags, const CaseInPage& page) {
   std::istringstream words(page.flags);
   for (std::string word, value; words >> word;) {
     if (word == "--quick") flags.wishes.quick = true;
+    if (word == "--remedies") flags.wishes.remedies = true;
+    if (word == "--benchmarks") flags.wishes.benchmarks = true;
     if (word == "--x" && words >> value && flags.wishes.x.empty()) flags.wishes.x = value;
     if (word == "--y" && words >> value && flags.wishes.y.empty()) flags.wishes.y = value;
     if (word == "--seed" && words >> value && flags.seed == 0) std::istringstream(value) >> flags.seed;
@@ -41,6 +43,8 @@ void take_over(ReportFlags& flags, const CaseInPage& page) {
 std::string flags_text(const ReportFlags& flags) {
   std::string text;
   if (flags.wishes.quick) text += " --quick";
+  if (flags.wishes.remedies) text += " --remedies";
+  if (flags.wishes.benchmarks) text += " --benchmarks";
   if (!flags.wishes.x.empty()) text += " --x " + flags.wishes.x + " --y " + flags.wishes.y;
   if (flags.seed != 0) text += " --seed " + std::to_string(flags.seed);
   return text.empty() ? text : text.substr(1);
@@ -100,7 +104,9 @@ void add_report(CLI::App& program, Action& action) {
   command->get_option("--output")
       ->description("Write the page to FILE, or to stdout alone with - (default: the name of the case, .html)");
   add_from_flag(*command, flags->from);
-  command->add_flag("--quick", flags->wishes.quick, "Omit sensitivity, dissipativity, and accuracy and cost");
+  command->add_flag("--quick", flags->wishes.quick, "Omit margins, sensitivity and dissipativity");
+  command->add_flag("--remedies", flags->wishes.remedies, "Try all remedies, as limcycle remedy does");
+  command->add_flag("--benchmarks", flags->wishes.benchmarks, "Chart accuracy and cost of the methods on this loop");
   for (const auto& [name, into] : {std::pair("--x", &flags->wishes.x), std::pair("--y", &flags->wishes.y)})
     command->add_option(name, *into, "With a hunting map: a parameter and its values, as for limcycle map")
         ->type_name("PATH=FROM:TO:N[:log]");

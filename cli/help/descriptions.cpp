@@ -84,9 +84,10 @@ std::vector<Description> what_if() {
       {"margin",
        change_group,
        "Varies each number of the case separately, up and down by a factor, until hunting begins or ends, and prints "
-       "the margin. Where a cycle ends at a fold, the fold itself is located.",
+       "the margin; with --toward several numbers together. Where a cycle ends at a fold, the fold itself is located.",
        {{"limcycle margin cases/relay-third-order.toml", "every number that is not 0"},
-        {"limcycle margin cases/tutorial-servo.toml --parameter loop.friction.Fs --factor 3", "one number only"}}},
+        {"limcycle margin cases/tutorial-servo.toml --parameter loop.friction.Fs --factor 3", "one number only"},
+        {"limcycle margin cases/tutorial-servo.toml --toward kd=300,kp=4000", "how far on the way to other gains"}}},
       {"remedy",
        change_group,
        "Finds why a loop hunts, by taking one feature away at a time, and tries the known remedies: for each the value "

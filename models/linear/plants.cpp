@@ -100,6 +100,22 @@ PlantModel TwoMass::model() const {
   return plant;
 }
 
+PlantModel ServoDrive::model() const {
+  const double drive = efficiency * ratio, mass = load + drive * ratio * motor_inertia;
+  PlantModel plant = oscillator(mass, damping, 0.0);
+  plant.B_u *= drive * torque_constant;
+  if (current_lag == 0.0) return plant;
+  plant.A.conservativeResizeLike(Eigen::MatrixXd::Zero(3, 3));
+  plant.A.block(0, 2, 2, 1) = plant.B_u;
+  plant.A(2, 2) = -1.0 / current_lag;
+  plant.B_u = Eigen::Vector3d(0.0, 0.0, 1.0 / current_lag);
+  for (Eigen::RowVectorXd* row : {&plant.C_y, &plant.C_v, &plant.C_x})
+    row->conservativeResizeLike(Eigen::RowVectorXd::Zero(3));
+  plant.B_F.conservativeResizeLike(Eigen::VectorXd::Zero(3));
+  plant.state_names.emplace_back("i");
+  return plant;
+}
+
 std::optional<BrokenRule> FirstOrder::validate() const { return not_zero("gain", gain); }
 
 PlantModel FirstOrder::model() const { return TransferFunction{{gain}, {time_constant, 1.0}, delay}.model(); }

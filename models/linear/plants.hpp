@@ -64,6 +64,34 @@ struct TwoMass {
   PlantModel model() const;
 };
 
+/// Axis of a servo drive, with y the travel of the load: an angle, rad, or a length, m. The controller commands a
+/// current u, A, and the closed current loop follows it as a lag. `ratio` is the turning of the motor per travel of the
+/// load, rad/rad of a gear, rad/m of a screw or belt (2 pi/lead; 1/radius); inertias and friction act at the load:
+///   (load + efficiency ratio^2 motor_inertia) dv/dt = efficiency ratio torque_constant i - damping v - F(v),
+///   current_lag di/dt = u - i  (i = u without a lag).
+/// For y in rad, load is kg m^2 and F is N m; for y in m, kg and N. The efficiency counts as while the motor drives the
+/// load; where the load drives the motor the gear would lose more, which a linear plant does not show.
+struct ServoDrive {
+  double motor_inertia{}, load{}, ratio{1.0}, efficiency{1.0}, torque_constant{1.0}, damping{0.0}, current_lag{0.0};
+  static constexpr std::string_view kind = "servo-drive";
+  static constexpr std::string_view equation =
+      "(load + efficiency ratio^2 motor_inertia) dv/dt = efficiency ratio torque_constant i - damping v - F(v), "
+      "current_lag di/dt = u - i, dy/dt = v";
+  static std::vector<Parameter<ServoDrive, double>> parameters() {
+    return {
+        {"motor_inertia", "kg m^2", "of the motor, about its own axis", &ServoDrive::motor_inertia, positive},
+        {"load", "kg", "moved mass, or moment of inertia (kg m^2) where y is an angle", &ServoDrive::load, positive},
+        {"ratio", "rad/m", "turning of the motor per travel of the load", &ServoDrive::ratio, positive, false},
+        {"efficiency", "1", "of the gear or screw", &ServoDrive::efficiency, {0.0, 1.0, true}, false},
+        {"torque_constant", "N m/A", "torque per current", &ServoDrive::torque_constant, positive, false},
+        {"damping", "N s/m", "viscous damping at the load", &ServoDrive::damping, any_number, false},
+        {"current_lag", "s", "time constant of the current loop; 0: none", &ServoDrive::current_lag, not_negative,
+         false}};
+  }
+  std::optional<BrokenRule> validate() const { return std::nullopt; }
+  PlantModel model() const;
+};
+
 /// Mass on a belt that runs at `speed`: m dv/dt = u - k y - c v - F(v - speed).
 struct Belt {
   double mass{}, stiffness{}, damping{0.0}, speed{};
@@ -198,8 +226,8 @@ struct StateSpacePlant {
   PlantModel model() const;
 };
 
-using Plant = std::variant<Mass, TwoMass, Belt, FroudePendulum, FirstOrder, SecondOrder, TransferFunction, ZeroPoleGain,
-                           StateSpacePlant, MeasuredPlant>;
+using Plant = std::variant<Mass, TwoMass, ServoDrive, Belt, FroudePendulum, FirstOrder, SecondOrder, TransferFunction,
+                           ZeroPoleGain, StateSpacePlant, MeasuredPlant>;
 
 inline PlantModel model_of(const Plant& plant) {
   return std::visit([](const auto& p) { return p.model(); }, plant);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limcycle/models/element/valve_stiction.hpp"
 #include "limcycle/models/linear/plants.hpp"
 #include "limcycle/reports/case_files/case_format.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
@@ -126,9 +127,10 @@ std::vector<NewPart> parts_of(const NewCase& wanted, const std::vector<Catalogue
   // plant of first order for a derivative.
   const bool guarded = !wanted.element.empty() || !wanted.error.empty() || wanted.plant == FirstOrder::kind;
   const char* of_controller = wanted.sampled ? "sampled controller" : guarded ? "guarded controller" : "controller";
-  std::vector<NewPart> parts{
-      {"loop.plant", wanted.friction.empty() ? "lone plant" : "plant", &entry_of(all, {"plant"}, wanted.plant)},
-      {"loop.controller", of_controller, &entry_of(all, {"controller"}, wanted.controller)}};
+  const bool valve = wanted.element == ValveStiction<double>::kind;  // not with dead time
+  const char* of_plant = !wanted.friction.empty() ? "plant" : valve ? "plant behind a valve" : "lone plant";
+  std::vector<NewPart> parts{{"loop.plant", of_plant, &entry_of(all, {"plant"}, wanted.plant)},
+                             {"loop.controller", of_controller, &entry_of(all, {"controller"}, wanted.controller)}};
   if (!wanted.friction.empty())
     parts.push_back({"loop.friction", "friction", &entry_of(all, {"friction"}, wanted.friction)});
   if (!wanted.element.empty()) {

@@ -58,8 +58,14 @@ constexpr std::array typical_rows{
 
     TypicalRow{"element", "relay", "level", {"5.0", "the actuator's output when on"}},
     TypicalRow{"element", "saturation", "limit", {"5.0", "the actuator's largest output"}},
+    TypicalRow{"element", "rate-limit", "limit", {"50.0", "the actuator's largest rate"}},
+    TypicalRow{"element", "rate-limit", "tau", {"0.01", "the actuator's time constant"}},
     TypicalRow{"element", "dead-zone", "half_width", {"0.1", "0.1 to 10 % of the largest input"}},
     TypicalRow{"element", "backlash", "half_gap", {"0.1", "0.1 to 10 % of the largest input"}},
+    TypicalRow{"element", "valve-stiction", "S", {"0.1", "1 to 10 % of the travel"}},
+    TypicalRow{"element", "valve-stiction", "J", {"0.05", "0 to S"}},
+    TypicalRow{"element", "lookup", "inputs", {"[0.0, 1.0, 3.0]", "ascending; from 0: odd"}},
+    TypicalRow{"element", "lookup", "outputs", {"[0.0, 2.0, 3.0]", "at these inputs"}},
     TypicalRow{"element", "clamped-pi", "ki", {"1.0", ""}},
     TypicalRow{"element", "clamped-pi", "limit", {"5.0", "the largest output"}},
     TypicalRow{"element", "reset-integrator", "gain", {"1.0", ""}},
@@ -90,6 +96,10 @@ constexpr std::array typical_rows{
     TypicalRow{"plant", "belt", "mass", {"1.0", "0.1 to 1000"}},
     TypicalRow{"plant", "belt", "stiffness", {"2.0", "1 to 1e6"}},
     TypicalRow{"plant", "belt", "speed", {"0.1", "0.001 to 10"}},
+    TypicalRow{"plant", "servo-drive", "motor_inertia", {"1e-4", "1e-6 to 0.1"}},
+    TypicalRow{"plant", "servo-drive", "load", {"10.0", "mass; where y is an angle, moment of inertia"}},
+    TypicalRow{"plant", "servo-drive", "ratio", {"628.3", "2 pi/lead of a screw; here 10 mm"}},
+    TypicalRow{"plant", "servo-drive", "torque_constant", {"0.1", "0.01 to 2"}},
     TypicalRow{"plant", "froude-pendulum", "mass", {"5.0", "0.1 to 10"}},
     TypicalRow{"plant", "froude-pendulum", "arm", {"0.2", "0.1 to 1"}},
     TypicalRow{"plant", "froude-pendulum", "inertia", {"0.25", "more than mass arm^2"}},
@@ -145,6 +155,7 @@ constexpr std::array typical_rows{
 TypicalValue typical_value(std::string_view group, std::string_view kind, std::string_view key) {
   for (const TypicalRow& row : typical_rows)
     if (row.group == group && row.key == key && (row.kind.empty() || row.kind == kind)) return row.typical;
+  if (group == "plant behind a valve") return key == "delay" ? TypicalValue{} : typical_value("lone plant", kind, key);
   if (group == "lone plant") return typical_value("plant", kind, key);
   const bool special = group == "guarded controller" || group == "sampled controller";
   return special ? typical_value("controller", kind, key) : TypicalValue{};

@@ -19,6 +19,9 @@ std::string margin_json(const Provenance& provenance, const MarginReport& report
 /// One row a side of a parameter.
 std::string margin_csv(const MarginReport& report);
 
+/// The tables of a page, with the sentences on their details, under headings of this level.
+std::string margin_sections(const MarginReport& report, int level);
+
 std::string margin_page(const MarginReport& report, const Provenance& provenance, const std::string& case_text,
                         const Units& units);
 

@@ -1,10 +1,11 @@
+#include <fmt/format.h>
+
 #include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {
 
-std::string margin_page(const MarginReport& report, const Provenance& provenance, const std::string& case_text,
-                        const Units& units) {
+std::string margin_sections(const MarginReport& report, int level) {
   std::string body;
   for (const bool friction : {false, true}) {
     Table table = margin_table(report, friction);
@@ -18,13 +19,17 @@ std::string margin_page(const MarginReport& report, const Provenance& provenance
       table.rows[row++].push_back(one.down.why);
     }
     const std::string heading = friction ? "Friction" : "Plant and controller";
-    body += "<h2>" + heading + "</h2>\n" +
+    body += html_tag(fmt::format("h{}", level), heading) +
             html_table(table, heading + ": where hunting " + (report.hunts ? "ends" : "begins"));
   }
-  body += html_notes(report.notes);
+  return body;
+}
+
+std::string margin_page(const MarginReport& report, const Provenance& provenance, const std::string& case_text,
+                        const Units& units) {
   return html_page({.provenance = provenance,
                     .answer = margin_answer(report, units),
-                    .body = body,
+                    .body = margin_sections(report, 2) + html_notes(report.notes),
                     .command = "margin",
                     .case_text = case_text});
 }

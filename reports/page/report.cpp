@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/dissipativity/dissipativity.hpp"
 #include "limcycle/reports/figures/block_diagram.hpp"
 #include "limcycle/reports/figures/figures.hpp"
@@ -16,6 +17,7 @@
 #include "limcycle/reports/precision/precision.hpp"
 #include "limcycle/reports/predict/answer.hpp"
 #include "limcycle/reports/predict/predict_sections.hpp"
+#include "limcycle/reports/remedy/remedy.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 #include "limcycle/reports/text.hpp"
 
@@ -30,7 +32,8 @@ struct ReportSection {
 /// The body of a part, or the reason for its absence.
 template <class Result>
 std::string body_of(const ReportPart<Result>& part, auto&& body) {
-  return part.found ? body(*part.found) : html_tag("p", part.why_not);
+  if (part.found) return body(*part.found);
+  return part.why_not.empty() ? std::string() : html_tag("p", part.why_not);
 }
 
 ReportSection loop_section(const LoopReport& report, const Units& units) {
@@ -95,10 +98,21 @@ std::string energy_body(const CountedRun& counted) {
          html_table(energy_table(counted.energy), "Energy supplied, stored and dissipated");
 }
 
+/// What ends the hunting, or where it would begin: single numbers, then the known remedies.
+ReportSection cure_section(const LoopReport& report, const Units& units) {
+  std::string body = body_of(report.margin, [&](const MarginReport& found) {
+    return html_tag("p", margin_answer(found, units)) + margin_sections(found, 3);
+  });
+  body += body_of(report.remedy, [&](const RemedyReport& found) {
+    return html_tag("p", remedy_answer(found, units)) + remedy_sections(found, units, 3);
+  });
+  return {"part-cure", report.margin.found && !report.margin.found->hunts ? "Margins" : "What would end it", body};
+}
+
 std::vector<ReportSection> sections_of(const LoopReport& report, const Units& units) {
   const SortedFigures figures = sorted_figures(report.predict, units);
-  std::vector<ReportSection> out{loop_section(report, units), motion_section(report, units, figures),
-                                 prediction_section(report, units, figures)};
+  std::vector<ReportSection> out{cure_section(report, units), loop_section(report, units),
+                                 motion_section(report, units, figures), prediction_section(report, units, figures)};
   const std::string outcomes = outcome_table(report.predict, units);
   out.push_back({"part-starts", "Outcome of each start",
                  outcomes.empty() ? html_tag("p", "No simulation was run to its end.") : outcomes});
@@ -115,6 +129,20 @@ std::vector<ReportSection> sections_of(const LoopReport& report, const Units& un
                    return html_tag("p", precision_answer(found)) + precision_sections(found, units, 3);
                  })});
   return out;
+}
+
+/// What was not asked for, with the flag that asks for it; empty if nothing is missing.
+std::string left_out(const LoopReport& report) {
+  const auto missing = [](const auto& part) { return !part.found && part.why_not.empty(); };
+  std::string list;
+  const auto add = [&](bool is_missing, std::string_view what) {
+    if (is_missing) list += (list.empty() ? "Left out: " : ", ") + std::string(what);
+  };
+  add(missing(report.margin), "margins, sensitivity and dissipativity (by --quick)");
+  add(missing(report.remedy), "remedies (--remedies)");
+  add(missing(report.map), "a hunting map (--x, --y)");
+  add(missing(report.precision), "accuracy and cost of the methods (--benchmarks)");
+  return list.empty() ? list : html_tag("p", list + ".");
 }
 
 std::string contents(const std::vector<ReportSection>& sections, bool notes) {
@@ -136,13 +164,15 @@ std::string report_page(const LoopReport& report, const Provenance& provenance, 
   if (report.interrupted)
     words.worth.insert(words.worth.begin(),
                        "Interrupted: this page shows the results computed so far and marks what is missing.");
-  const auto sections = sections_of(report, units);
+  auto sections = sections_of(report, units);
+  std::erase_if(sections, [](const ReportSection& section) { return section.body.empty(); });
   std::string body = contents(sections, !report.predict.notes.empty());
   for (const auto& section : sections)
     body +=
         fmt::format("<section id=\"{}\">\n{}{}</section>\n", section.id, html_tag("h2", section.heading), section.body);
   if (!report.predict.notes.empty())
     body += "<section id=\"part-notes\">\n" + html_notes(report.predict.notes) + "</section>\n";
+  body += left_out(report);
   return html_page({.provenance = provenance,
                     .answer = words.what_happens,
                     .worth = words.worth,

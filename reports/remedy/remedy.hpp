@@ -20,6 +20,9 @@ std::string remedy_json(const Provenance& provenance, const RemedyReport& report
 /// One row a remedy.
 std::string remedy_csv(const RemedyReport& report);
 
+/// The tables of a page and the step responses before and after each remedy, under headings of this level.
+std::string remedy_sections(const RemedyReport& report, const Units& units, int level);
+
 /// The same as the text, with the step response before and after each remedy, side by side on the same axes.
 std::string remedy_page(const RemedyReport& report, const Provenance& provenance, const std::string& case_text,
                         const Units& units);

@@ -81,22 +81,21 @@ std::string remedy_picture(const RemedyReport& report, const Remedy& remedy, con
                           remedy.costs.settling_time, units);
 }
 
-std::string remedy_page(const RemedyReport& report, const Provenance& provenance, const std::string& case_text,
-                        const Units& units) {
+std::string remedy_sections(const RemedyReport& report, const Units& units, int level) {
+  const auto heading = [&](std::string_view words) { return html_tag(fmt::format("h{}", level), words); };
   std::string body;
   const Table table = remedy_table(report, units);
   if (!table.rows.empty()) {
-    body +=
-        "<h2>What ends it</h2>\n" + html_table(table,
-                                               "Values nearest to the present at which the loop does not hunt; *: no "
-                                               "other remedy is at least as good in every cost and better in one");
-    body += "<h2>What it costs</h2>\n" + html_table(remedy_cost_table(report, units), "Costs at these values");
+    body += heading("What ends it") + html_table(table,
+                                                 "Values nearest to the present at which the loop does not hunt; *: no "
+                                                 "other remedy is at least as good in every cost and better in one");
+    body += heading("What it costs") + html_table(remedy_cost_table(report, units), "Costs at these values");
     std::string pictures;
     for (const Remedy& one : report.remedies)
       if (one.ends == true)
         pictures += html_picture(remedy_picture(report, one, units),
                                  "Step response as it stands and with " + one.candidate.name);
-    if (!pictures.empty()) body += "<h2>Before and after</h2>\n" + pictures;
+    if (!pictures.empty()) body += heading("Before and after") + pictures;
   }
   Table others{{{"remedy", "", Align::left}, {"verdict", "", Align::left}, {"why", "", Align::left}}, {}};
   for (const Remedy& one : report.remedies)
@@ -106,11 +105,15 @@ std::string remedy_page(const RemedyReport& report, const Provenance& provenance
                              : one.ends                     ? "does not end it"
                                                             : "undecided",
                              one.why});
-  if (!others.rows.empty()) body += "<h2>The others</h2>\n" + html_table(others, "Remedies that do not end it");
-  body += html_notes(report.notes);
+  if (!others.rows.empty()) body += heading("The others") + html_table(others, "Remedies that do not end it");
+  return body;
+}
+
+std::string remedy_page(const RemedyReport& report, const Provenance& provenance, const std::string& case_text,
+                        const Units& units) {
   return html_page({.provenance = provenance,
                     .answer = remedy_answer(report, units),
-                    .body = body,
+                    .body = remedy_sections(report, units, 2) + html_notes(report.notes),
                     .command = "remedy",
                     .case_text = case_text});
 }

@@ -202,6 +202,21 @@ TEST_CASE("gallery: the flow jumps by what the stem jumps, as long as the integr
   CHECK(starts_with_outcome(even, "rest") == static_cast<int>(even["outcomes"].size()));
 }
 
+TEST_CASE("gallery: the valve with dead time, and the valve by its records, as independent simulations have them") {
+  const auto late = only_cycle(scene("predict", "valve-dead-time"));
+  check_cycle(late, {38.209, 2.5847}, 2e-4);
+  CHECK(late["error"].get<double>() > 1e-4);  // of the approximated dead time, stated and not too small
+  CHECK(late["error"].get<double>() < 0.1);
+  const auto by_records = only_cycle(scene("predict", "valve-records"));
+  check_cycle(by_records, {98.653, 0.50286}, 3e-5);
+  // The process is linear: half the band and half the jump give half the swing.
+  const auto half = scene("predict", "valve-records", {"loop.element.S=0.5", "loop.element.J=0.15"});
+  check_cycle(only_cycle(half), {by_records["period"], 0.5 * by_records["amplitude"].get<double>()}, 1e-8);
+  // J = S, by the same independent simulation.
+  check_cycle(only_cycle(scene("predict", "valve-records", {"loop.element.S=0.5", "loop.element.J=0.5"})),
+              {42.3607, 0.553186}, 3e-5);
+}
+
 TEST_CASE("gallery: the older scenes") {
   check_cycle(only_cycle(scene("predict", "pid-lugre")), {24.43679, 0.063903}, 1e-5);
 

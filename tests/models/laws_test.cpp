@@ -48,6 +48,18 @@ TEST_CASE("elements are odd where they say so") {
   Backlash<double> backlash;
   backlash.half_gap = 0.2;
   check_odd(backlash, {{-1}, {0}, {1}});
+  RateLimit<double> rate_limit;
+  rate_limit.limit = 0.3;
+  rate_limit.tau = 0.5;
+  check_odd(rate_limit, {{-1}, {0}, {1}});
+  ValveStiction<double> valve;
+  valve.S = 0.3;
+  valve.J = 0.1;
+  check_odd(valve, {{-2}, {-1}, {1}, {2}});
+  Lookup<double> table;
+  table.inputs = {0.0, 0.2, 0.5};
+  table.outputs = {0.0, 0.4, 0.3};
+  check_odd(table, {{0}, {1}, {2}, {3}, {4}});
   Cubic<double> cubic;
   cubic.coefficient = 2.0;
   check_odd(cubic, {{0}});

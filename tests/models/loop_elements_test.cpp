@@ -8,6 +8,7 @@
 #include "limcycle/models/element/dead_zone.hpp"
 #include "limcycle/models/element/output_rate.hpp"
 #include "limcycle/models/element/quantizer.hpp"
+#include "limcycle/models/element/valve_stiction.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -231,6 +232,33 @@ TEST_CASE("rules of compensation and of the element on the error") {
   lagging.lag = 0.1;
   parts.controller = lagging;
   CHECK(rule(parts).empty());
+}
+
+TEST_CASE(
+    "an element that goes by the way its input moves stands behind none that jumps, nor a valve behind dead time") {
+  LoopParts parts;
+  parts.plant = TransferFunction{{1.0}, {1.0, 1.0, 0.0}, 0.0};
+  Pid controller = pid(1.0, 0.2, 0.0);
+  ValveStiction<double> valve;
+  valve.S = 0.2;
+  valve.J = 0.1;
+  Backlash<double> backlash;
+  backlash.half_gap = 0.1;
+  for (const Element& element : {Element(valve), Element(backlash)}) {
+    parts.element = element;
+    parts.controller = controller;
+    CHECK(rule(parts).empty());
+    controller.sample_time = 0.01;
+    parts.controller = controller;
+    CHECK(rule(parts).starts_with(
+        "loop.element: goes by the way its input moves, and the output of loop.controller jumps"));
+    controller.sample_time = 0.0;
+  }
+  parts.controller = controller;
+  parts.plant = TransferFunction{{1.0}, {1.0, 1.0, 0.0}, 0.5};
+  CHECK(rule(parts).empty());  // backlash
+  parts.element = valve;
+  CHECK(rule(parts).starts_with("loop.element: cannot stand in a loop with dead time"));
 }
 
 TEST_CASE("a load with friction, compensation and an element on the error: the integrator carries it at rest") {

@@ -28,7 +28,7 @@ def _arguments():
     parser.add_argument("--limit", type=float, default=60.0, help="seconds for one call of the program (60)")
     parser.add_argument("--decided", type=float, default=0.97, help="share of starts that have to be decided (0.97)")
     parser.add_argument("--reproducers", action="store_true", help="only tests/reproducers")
-    parser.add_argument("--commands", action="store_true", help="only map, margin, continue, sensitivity and dissipativity")
+    parser.add_argument("--commands", action="store_true", help="only map, margin, continue, sensitivity, dissipativity, remedy")
     for name, count in commands.COUNTS.items():
         parser.add_argument(f"--{name}", type=int, default=count, help=f"how many of them with --commands ({count})")
     parser.add_argument("--self-test", action="store_true", help="only hold the checker against known answers")

@@ -1,9 +1,9 @@
-"""The other commands on random loops: maps, margins, branches, derivatives and energy, against predict and simulation."""
+"""The other commands on random loops: maps, margins, branches, derivatives, energy, remedies, against predict and simulation."""
 
-from . import check_branch, check_derivatives, check_map, check_margin, check_passivity, families, random_laws, report
+from . import check_branch, check_derivatives, check_map, check_margin, check_passivity, check_remedy, families, random_laws, report
 from .asked import Asked
 
-COUNTS = {"cells": 100, "margins": 40, "branches": 20, "derivatives": 40, "dissipativity": 20}
+COUNTS = {"cells": 100, "margins": 40, "branches": 20, "derivatives": 40, "dissipativity": 20, "remedies": 0}
 OFFSET = 2 * 10**6  # of the indices of the loops of each command, in steps of 10^6
 MOST = 20  # loops that are drawn for each finding that is wanted
 
@@ -26,7 +26,7 @@ def _judge_energy(asked, dice):
 CHECKS = {
     "cells": (_family, check_map.judge), "margins": (_family, check_margin.judge),
     "branches": (_family, check_branch.judge), "derivatives": (_family, check_derivatives.judge),
-    "dissipativity": (_energy, _judge_energy),
+    "dissipativity": (_energy, _judge_energy), "remedies": (_family, check_remedy.judge),
 }  # fmt: skip
 
 

@@ -57,7 +57,7 @@ class SmoothLoop:
         if mode == 0:
 
             def stuck(t, X):
-                free = self.free_rate(X)
+                free = self.free_rate(self._stopped(X))  # behind a wound-up integral, a rounding of v moves y in time
                 return free - self.column * ((self.row @ free) / self.strength)
 
             return stuck

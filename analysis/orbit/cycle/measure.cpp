@@ -71,7 +71,7 @@ bool rubs_along_no_state(const Port& port) { return port.rubs && port.C.isZero(0
 Eigen::VectorXcd harmonics(const std::vector<double>& t, const std::vector<double>& y, const std::vector<double>& rate,
                            double period, int H) {
   const double w = 2.0 * std::numbers::pi / period;
-  // Gauss-Legendre, 4 points a step: exact for the cubic, and the steps are short against the period.
+  // Gauss-Legendre, 4 points a step: exact for the cubic. A step that is long for the highest harmonic is divided.
   constexpr std::array<double, 4> node{0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
                                        0.93056815579702629};
   constexpr std::array<double, 4> weight{0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
@@ -80,10 +80,13 @@ Eigen::VectorXcd harmonics(const std::vector<double>& t, const std::vector<doubl
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {
     const Cubic01 cubic = piece(t, y, rate, i);
     const double h = t[i + 1] - t[i];
-    for (std::size_t k = 0; k < node.size(); ++k) {
-      const double angle = w * (t[i] + node[k] * h);
+    const int parts = std::max(1, static_cast<int>(std::ceil(h * w * H)));
+    for (std::size_t k = 0; k < node.size() * static_cast<std::size_t>(parts); ++k) {
+      const double at = (static_cast<double>(k / node.size()) + node[k % node.size()]) / parts;
+      const double angle = w * (t[i] + at * h);
       const std::complex<double> turn(std::cos(angle), -std::sin(angle));
-      std::complex<double> term(0.0, cubic.at(node[k]) * h * weight[k]);  // j e^(-j n angle) = sin + j cos
+      std::complex<double> term(0.0,
+                                cubic.at(at) * h / parts * weight[k % node.size()]);  // j e^(-j n angle) = sin + j cos
       sum(0) += term;
       for (int n = 1; n <= H; ++n) sum(n) += term *= turn;
     }
@@ -106,6 +109,11 @@ Eigen::VectorXcd input_harmonics(const Cycle& cycle, int H) {
   std::vector<double> rate = trace.velocity;
   for (double& v : rate) v -= drift;
   return harmonics(trace.t, trace.input, rate, cycle.period, H);
+}
+
+Eigen::VectorXcd output_harmonics(const Cycle& cycle, int H) {
+  const Trace& trace = cycle.trace;
+  return harmonics(trace.t, trace.y, trace.rate, cycle.period, H);
 }
 
 void append(Trace& trace, LoopField& field, const State& x, const State& dx, double t) {

@@ -38,6 +38,8 @@ Extremes extremes(const Trace& trace);
 /// Harmonics 0..H of the input of the element of interest over one period, b + j a for b sin(n w t) + a cos(n w t), the
 /// mean as j times its value.
 Eigen::VectorXcd input_harmonics(const Cycle& cycle, int H);
+/// The same of y.
+Eigen::VectorXcd output_harmonics(const Cycle& cycle, int H);
 
 /// Fills amplitude, first_harmonic, offset and sticking_fraction of a cycle from its trace of one period.
 void measure(const Loop& loop, Cycle& cycle);

@@ -64,6 +64,7 @@ bool slides_at_rest(const Loop& loop) {
 bool died_out(const TurningPoints& turning, double rest, double floor) {
   const auto& points = turning.points();
   for (std::size_t k = 0; k < 3; ++k) {
+    if (!(turning.swing(k) < turning.swing(k + 1))) return false;
     const auto& point = points[points.size() - 1 - k];
     const auto& before = points[points.size() - 2 - k];
     if (turning.swing(k) > floor || std::abs(point.y - rest) > floor || point.t < 1.3 * before.t) return false;

@@ -57,9 +57,9 @@ double rubbing_speed(const Loop& loop);
 /// True if the body rubs steadily while the loop stands still (a belt, a ramp).
 bool slides_at_rest(const Loop& loop);
 
-/// Stick-slip that decays for ever: the last swings are below `floor`, about the point of rest (y = rest), and farther
-/// and farther apart in time. (The tremble of a bristle when the body stops is small too, but its swings follow one
-/// another at once, and the next slip may come much later.) Needs 5 turning points.
+/// Stick-slip that decays for ever: the last swings are below `floor`, about the point of rest (y = rest), smaller and
+/// smaller, and farther and farther apart in time. (The tremble of a bristle when the body stops is small too, but its
+/// swings follow one another at once, and the next slip may come much later.) Needs 5 turning points.
 bool died_out(const TurningPoints& turning, double rest, double floor);
 
 }  // namespace limcycle

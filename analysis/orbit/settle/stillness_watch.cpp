@@ -14,6 +14,14 @@ constexpr int patience = 12;
 constexpr double drift = 1e-6;  ///< rates below this are rounding, in sizes per slowest time constant
 constexpr double fades = 1e-6;  ///< largest rate of a state of rest that no algebra confirms, likewise
 
+/// True if a body sticks, by a law that holds it.
+bool sticks(const LoopField& field) {
+  const auto& elements = field.loop().elements;
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    if (elements[i].held(field.modes()[i]) == Held::rate) return true;
+  return false;
+}
+
 }  // namespace
 
 StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, double rtol)
@@ -75,10 +83,13 @@ std::optional<Stillness> StillnessWatch::within_rounding(const State& dx) const 
 }
 
 std::optional<Stillness> StillnessWatch::at_rest(LoopField& field, const State& x, const State& dx) const {
-  constexpr double near = 0.01;
+  constexpr double near = 0.01, rounding = 1e-13;
   const auto still = [](bool slides) {
     return slides ? Stillness{Outcome::sliding, "slides at constant speed"} : Stillness{Outcome::rest, "came to rest"};
   };
+  if (sticks(field) && rest_.rate(dx) > rounding && !approach_from(field, x, scale_) &&
+      !held_while_winding_up(field, x, dx, scale_))
+    return std::nullopt;
   const auto found = standstill_near(field, x, scale_);
   if (found && found->moved <= near) return still(found->slides);
   // Newton's method fails for a law whose slope jumps at the point of rest: then the rates themselves must vanish.

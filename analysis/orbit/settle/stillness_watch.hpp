@@ -19,7 +19,8 @@ struct Stillness {
 /// Watches if a motion comes to rest or slides for ever, by samples as for RestWatch. A verdict from the rates counts
 /// only once the equations of the loop hold: a state of rest near the motion solves dx/dt = 0 with every set-valued
 /// output within its interval, and a steady slide keeps its rates (J dx = 0). A decay too slow for its rates to die out
-/// counts as rest once the motion can no longer leave the linear decay (see approach_from).
+/// counts as rest once the motion can no longer leave the linear decay (see approach_from). A body that sticks, however
+/// near to the set-point, does not rest while an integrator winds up to its break-away.
 class StillnessWatch {
  public:
   /// The loop must outlive the watch.

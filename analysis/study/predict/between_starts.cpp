@@ -12,6 +12,7 @@ constexpr int bisections = 6;            ///< of one border
 constexpr double close_enough = 1.1;     ///< ratio of two starts between which the search ends
 constexpr double within_edge = 5.0;      ///< ratio of two starts between which an unstable cycle is searched for
 constexpr double ratio_of_starts = 5.0;  ///< ratio of neighbouring starts if those of a user come to rest
+constexpr double nudge = 1e-3;           ///< relative to the smallest swing of interest
 constexpr double step_aside = 0.01;      ///< relative distance from an unstable cycle
 
 /// The time between the third and the fifth turn of y: a motion that begins near an unstable cycle first follows it.
@@ -77,12 +78,15 @@ void BetweenStarts::look_between(std::vector<Start> starts, const Ray& ray) {
   std::ranges::sort(starts, {}, &Start::place);
   const auto outcome = [&](const Start& start) { return hunt_.outcomes()[start.outcome].outcome; };
   const auto diverges = [&](const Start& start) { return outcome(start) == Outcome::divergence; };
-  const auto calm = [&](const Start& start) {
-    return outcome(start) == Outcome::rest || outcome(start) == Outcome::sliding;
-  };
-  if (!starts.empty() && calm(starts.front()) && !over()) {
-    const double place = starts.front().place / ratio_of_starts;
-    probe(ray.state(place), ray.name(place));
+  const auto is_calm = [](Outcome one) { return one == Outcome::rest || one == Outcome::sliding; };
+  const auto calm = [&](const Start& start) { return is_calm(outcome(start)); };
+  const bool sticks = loop_.ports.back().rubs && loop_.elements.back().may_stick();
+  if (!starts.empty() && calm(starts.front())) {
+    const double lowest = starts.front().place / ratio_of_starts;
+    for (const double place : {lowest, nudge * hunt_.smallest_swing()}) {
+      if (over() || place > lowest) break;
+      if (!is_calm(probe(ray.state(place), ray.name(place)).outcome) || !sticks) break;
+    }
   }
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
     const Start &low = starts[i], &high = starts[i + 1];

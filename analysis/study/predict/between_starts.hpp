@@ -28,7 +28,8 @@ class BetweenStarts {
   /// neighbours that both come to rest or slide, motions begin at a ratio of about five and are followed until they
   /// swing less than the lower neighbour: a stable cycle may lie between. One motion more begins at a fifth of the
   /// lowest start if that came to rest: from smaller displacements a body does not slide to its set-point, but waits
-  /// for the integrator.
+  /// for the integrator. If that one rests too and a body may stick, the last begins next to the set-point: only from
+  /// there does it reach hunting that is far finer than any start.
   void look_between(std::vector<Start> starts, const Ray& ray);
 
   /// Simulates from just inside and just outside every unstable cycle not treated before (1 % nearer to the rest point

@@ -31,6 +31,8 @@ class CycleHunt {
   const std::vector<OutcomeOfStart>& outcomes() const { return outcomes_; }
   /// Tolerance of the simulations: that of SettleOptions, or less if bristles are too stiff for it.
   double rtol() const { return settle_.rtol; }
+  /// Swings of y below this are of no interest.
+  double smallest_swing() const { return settle_.amplitude_floor; }
   /// Return maps that shooting computed.
   long maps() const { return maps_; }
   /// Steps of the integrator in all computations.

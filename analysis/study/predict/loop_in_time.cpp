@@ -31,9 +31,25 @@ LoopInTime loop_in_time(const Loop& loop, double highest) {
   return made;
 }
 
+namespace {
+
+/// True if y alone passes through the dead time.
+bool delays_output(const Loop& loop) {
+  const auto along = [&](const Eigen::RowVectorXd& row) {
+    if (row.size() == 0) return true;
+    const double part = row.dot(loop.C_y);
+    return part * part >= (1.0 - 1e-12) * row.squaredNorm() * loop.C_y.squaredNorm();
+  };
+  for (Eigen::Index i = 0; i < loop.A_delayed.rows(); ++i)
+    if (!along(loop.A_delayed.row(i))) return false;
+  return std::ranges::all_of(loop.ports, [&](const Port& port) { return along(port.C_delayed); });
+}
+
+}  // namespace
+
 double delay_error(const Loop& loop, int pade_order, const Cycle& cycle) {
   if (pade_order == 0) return 0.0;
-  const Eigen::VectorXcd X = input_harmonics(cycle, 199);
+  const Eigen::VectorXcd X = delays_output(loop) ? output_harmonics(cycle, 199) : input_harmonics(cycle, 199);
   double sum = 0.0;
   for (int n = 1; n < X.size(); ++n) sum += std::abs(X(n)) * pade_error(n * cycle.frequency(), loop.delay, pade_order);
   return sum / std::abs(X(1));

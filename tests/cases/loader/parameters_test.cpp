@@ -75,6 +75,8 @@ std::string structured(std::string_view key) {
                                                           {"forces", "[1]"},
                                                           {"forces_minus", "[1]"},
                                                           {"coefficients", "[2, 2, 2, 2]"},
+                                                          {"inputs", "[1, 2]"},
+                                                          {"outputs", "[1, 2]"},
                                                           {"k", "[1]"},
                                                           {"W", "[2]"},
                                                           {"alpha", "[1]"},

@@ -136,6 +136,30 @@ TEST_CASE("margin: what must be changed, in a sentence, a table and documents") 
   CHECK_THAT(scratch.get("r.html"), StartsWith("<!DOCTYPE html>") && Contains("limcycle margin "));
 }
 
+TEST_CASE("margin: along a line of several numbers, as by hand where the loop is homogeneous") {
+  const std::vector<std::string> relay{
+      "margin", shipped("relay-third-order.toml"), "--set", "loop.element.dead_zone=0.05", "--json", "-"};
+  const auto edge = [&](const std::vector<std::string>& toward) {
+    auto arguments = relay;
+    for (const auto& one : toward) arguments.insert(arguments.end(), {"--toward", one});
+    const auto ran = run(arguments);
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    const auto document = Json::parse(ran.out);
+    REQUIRE(document["parameters"].size() == toward.size());
+    CHECK(document["notes"].dump().find("loop.element.level = ") != std::string::npos);
+    return document["parameters"][0];
+  };
+  // Hunting ends where dead_zone/level passes 0.0818750.. whatever the way there.
+  constexpr double ratio = 0.08187508078;
+  const auto both = edge({"level=0.5,dead_zone=0.1"});
+  CHECK(both["name"] == "toward level = 0.5, dead_zone = 0.1");
+  CHECK(both["nearest"].get<double>() == Approx(1.0 + (ratio - 0.05) / (0.05 + 0.5 * ratio)).epsilon(1e-6));
+  CHECK(edge({"level=0.5"})["nearest"].get<double>() == Approx(1.0 + (1.0 - 0.05 / ratio) / 0.5).epsilon(1e-6));
+  for (const auto* wrong : {"level", "level=x", "level=1", "levl=2", "level=2,level=3", "level=-1", ""})
+    CHECK(run({"margin", relay[1], "--toward", wrong}).code == 2);
+}
+
 TEST_CASE("margin: bad input ends with 2") {
   const std::string servo = shipped("pid-lugre.toml");
   CHECK(run({"margin", servo, "--factor", "0.5"}).code == 2);

@@ -64,7 +64,7 @@ TEST_CASE("new: every plant with every controller and every friction law is a va
           CHECK(made.simulate.has_value() == all);
           ++cases;
         }
-  CHECK(cases == 2 * 8 * std::ssize(some_of(kinds_in("controller"))) * 23);
+  CHECK(cases == 2 * 9 * std::ssize(some_of(kinds_in("controller"))) * 23);
 }
 
 TEST_CASE("new: a cascade as a diagram, without kinds of slots") {
@@ -118,7 +118,8 @@ TEST_CASE("new: the kinds that are told beside the chosen one are those that may
   CHECK(others(text, "loop.error") == "# others quantizer, saturation ");
   CHECK(others(text, "loop.element")
             .starts_with(
-                "# others saturation, dead-zone, backlash, cubic, clamped-pi, # reset-integrator, window, or a"));
+                "# others saturation, rate-limit, dead-zone, backlash, valve-stiction, cubic, # lookup, clamped-pi, "
+                "reset-integrator, window, or a"));
 }
 
 TEST_CASE("new: every element on the error, and every friction law as an element, where the format has it") {

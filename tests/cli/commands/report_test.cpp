@@ -50,6 +50,7 @@ TEST_CASE("report: one page with all parts, and the answer on stdout") {
   std::vector<std::string> command{"report", shipped("pid-lugre.toml"), "-o", file};
   const bool whole = limcycle::test::one_in == 1;  // where everything is watched, without the parts of other commands
   if (!whole) command.emplace_back("--quick");
+  if (whole) command.emplace_back("--benchmarks");
   const auto ran = run(command);
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
@@ -65,11 +66,14 @@ TEST_CASE("report: one page with all parts, and the answer on stdout") {
   for (const auto& figure : figures) CHECK(markup.find("data-figure=\"" + figure + "\"") != std::string::npos);
   CHECK_THAT(page_part(page, "loop"), Contains("class=\"diagram\"") && Contains("sigma1 = 316.228 N s/m"));
   CHECK_THAT(page_part(page, "predictions"), Contains("biased"));
-  CHECK_THAT(page_part(page, "map"), Contains("No map was asked for"));
+  CHECK(markup.find("id=\"part-map\"") == std::string::npos);
+  CHECK_THAT(markup, Contains("a hunting map (--x, --y)"));
   CHECK_THAT(page_part(page, "energy"), Contains("The energy balances to") && Contains("by friction"));
   if (!whole) return;
   CHECK_THAT(page_part(page, "sensitivity"), Contains("<svg") && Contains("friction.sigma0"));
   CHECK_THAT(page_part(page, "dissipativity"), Contains("The lugre law is not passive") && Contains("<svg"));
+  CHECK_THAT(page_part(page, "cure"),
+             Contains("<h2>What would end it</h2>") && Contains("<h3>Friction</h3>") && Contains("1.00940 (-32.7 %)"));
 }
 
 TEST_CASE("report: each case gives a page of less than 3 MB, complete and self-contained") {
@@ -199,7 +203,9 @@ TEST_CASE("report: with a map, which the page draws and makes again") {
   REQUIRE(ran.code == 0);
   const std::string page = scratch.get("m.html");
   CHECK_THAT(page_part(page, "map"), Contains("<svg") && Contains("loop.element.dead_zone over loop.element.level"));
-  CHECK_THAT(page_part(page, "sensitivity"), Contains("Left out by --quick."));
+  CHECK_THAT(without_scripts(page),
+             Contains("Left out: margins, sensitivity and dissipativity (by --quick), remedies") &&
+                 !Contains("a hunting map (--x") && !Contains("id=\"part-sensitivity\""));
   CHECK(limcycle::case_in_page(page).flags ==
         "--quick --x loop.element.level=1:2:3 --y loop.element.dead_zone=0:0.2:4");
   for (const auto& wrong : std::vector<std::vector<std::string>>{

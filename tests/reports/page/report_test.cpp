@@ -28,6 +28,8 @@ LoopReport nothing_but(PredictReport predicted) {
   report.loop.plant = Mass{.mass = 1.0};
   report.loop.controller = Pid{};
   report.predict = std::move(predicted);
+  report.margin.why_not = "No margin, for a reason.";
+  report.remedy.why_not = "No remedy, for a reason.";
   report.sensitivity.why_not = "No sensitivity, for a reason.";
   report.map.why_not = "No map, <for> a reason.";
   report.energy.why_not = "No energy, for a reason.";
@@ -53,8 +55,8 @@ TEST_CASE("report: a page in the order of a reader's questions, each section in 
   CHECK(test::markup_fault(text) == "");
   std::size_t last = text.find("This loop hunts");
   REQUIRE(last != std::string::npos);
-  for (const char* id : {"part-loop", "part-cycles", "part-predictions", "part-starts", "part-sensitivity", "part-map",
-                         "part-energy", "part-dissipativity", "part-precision", "part-notes"}) {
+  for (const char* id : {"part-cure", "part-loop", "part-cycles", "part-predictions", "part-starts", "part-sensitivity",
+                         "part-map", "part-energy", "part-dissipativity", "part-precision", "part-notes"}) {
     CHECK(holds(text, std::string("<a href=\"#") + id + "\">"));
     const auto at = text.find(std::string("<section id=\"") + id + "\">\n<h2>");
     REQUIRE(at != std::string::npos);

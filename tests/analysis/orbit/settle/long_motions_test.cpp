@@ -45,6 +45,27 @@ TEST_CASE("shooting: an even number of half maps is a map of the whole period, n
   CHECK_FALSE(twice.cycle.half_wave_symmetric);
 }
 
+TEST_CASE("settle: the finer the drop of friction, the finer and the slower the hunting") {
+  // The slip is linear in the drop Fs - Fc, so that the amplitude is proportional to it, and the waits between slips
+  // are 2 Fs/(ki amplitude) each, but for a constant. Both from an independent simulation at a drop of 0.02737 N.
+  constexpr double Fs = 7.72737, drop = 0.02737, amplitude = 5.0688934648e-5, period = 134.2007307066;
+  Pid controller = pid(276.045, 4537.75, 4.43241);
+  controller.lag = 0.000329559;
+  const auto waits = [&](double of) { return 4.0 * Fs / (controller.ki * of); };
+  for (const double finer : {1.0, 1e-2}) {
+    const Loop loop = loop_of(Mass{0.027473, 0.0, 0.0}, controller, coulomb(Fs, Fs - finer * drop));
+    for (const double start : {0.1, 0.9}) {  // of the amplitude; from afar it may creep up to the set-point
+      const Settled settled = from(loop, start * finer * amplitude, 1e-12);
+      CAPTURE(finer, start, settled.why);
+      REQUIRE(settled.outcome == Outcome::cycle);
+      const Cycle& cycle = settled.shot->cycle;
+      CHECK(cycle.amplitude == Approx(finer * amplitude).epsilon(1e-6));
+      CHECK(cycle.period == Approx(waits(finer * amplitude) + period - waits(amplitude)).epsilon(1e-7));
+      CHECK(cycle.stable == true);
+    }
+  }
+}
+
 TEST_CASE("settle: a bristle that rings for long while the controller winds up does not use up the step limit") {
   ElastoPlastic<double> law;
   law.Fc = law.Fc_minus = law.Fs = law.Fs_minus = 0.0100165;
