@@ -215,9 +215,8 @@ LoopReport report_parts(const Case& from, const ReportWishes& wishes, const Comm
   report.energy = attempted<CountedRun>(true, [&] { return energy_part(ask); });
   progress.show(0.7, "dissipativity");
   report.dissipativity = attempted<DissipativityReport>(!wishes.quick, [&] { return dissipativity_part(ask); });
-  report.map = attempted<MapReport>(!wishes.x.empty(),
-                                    "No map was asked for: --x PATH=FROM:TO:N and --y PATH=FROM:TO:N draw one.",
-                                    [&] { return map_part(ask, part_of_bar(0.75, 0.85, "the map")); });
+  report.map =
+      attempted<MapReport>(!wishes.x.empty(), [&] { return map_part(ask, part_of_bar(0.75, 0.85, "the map")); });
   progress.show(0.85, "accuracy and cost");
   report.precision = attempted<PrecisionReport>(wishes.benchmarks, [&] { return precision_part(ask); });
   report.interrupted = interrupted();

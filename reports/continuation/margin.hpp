@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "limcycle/analysis/study/continuation/margin.hpp"
 #include "limcycle/reports/provenance.hpp"
@@ -27,5 +28,7 @@ std::string margin_page(const MarginReport& report, const Provenance& provenance
 
 /// Parameters of the friction law, or of plant and controller.
 Table margin_table(const MarginReport& report, bool friction);
+/// A sentence on each of their sides where something happens or is not known.
+std::vector<std::string> margin_reasons(const MarginReport& report, bool friction);
 
 }  // namespace limcycle

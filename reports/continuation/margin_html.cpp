@@ -8,19 +8,14 @@ namespace limcycle {
 std::string margin_sections(const MarginReport& report, int level) {
   std::string body;
   for (const bool friction : {false, true}) {
-    Table table = margin_table(report, friction);
+    const Table table = margin_table(report, friction);
     if (table.rows.empty()) continue;
-    table.columns.push_back({"above: why", "", Align::left});
-    table.columns.push_back({"below: why", "", Align::left});
-    std::size_t row = 0;
-    for (const auto& one : report.parameters) {
-      if (one.parameter.friction != friction) continue;
-      table.rows[row].push_back(one.up.why);
-      table.rows[row++].push_back(one.down.why);
-    }
     const std::string heading = friction ? "Friction" : "Plant and controller";
     body += html_tag(fmt::format("h{}", level), heading) +
             html_table(table, heading + ": where hunting " + (report.hunts ? "ends" : "begins"));
+    std::string reasons;
+    for (const auto& sentence : margin_reasons(report, friction)) reasons += html_tag("li", sentence);
+    if (!reasons.empty()) body += "<ul>\n" + reasons + "</ul>\n";
   }
   return body;
 }

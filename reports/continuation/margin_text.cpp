@@ -68,18 +68,6 @@ std::string of_balance(const MarginReport& report) {
       as_percent(distance), where);
 }
 
-std::string reasons(const MarginReport& report, bool friction) {
-  std::string out;
-  for (const auto& one : report.parameters) {
-    if (one.parameter.friction != friction) continue;
-    for (const auto* side : {&one.up, &one.down})
-      if (side->what != MarginSide::What::none || side->why.find("none") == 0)
-        out +=
-            wrapped(fmt::format("{} {}: {}.", one.parameter.path, side == &one.up ? "up" : "down", side->why), 80, 2);
-  }
-  return out;
-}
-
 bool has_unknown_side(const MarginReport& report) {
   return std::ranges::any_of(report.parameters, [](const ParameterMargin& one) {
     return one.up.what == MarginSide::What::unknown || one.down.what == MarginSide::What::unknown;
@@ -87,6 +75,17 @@ bool has_unknown_side(const MarginReport& report) {
 }
 
 }  // namespace
+
+std::vector<std::string> margin_reasons(const MarginReport& report, bool friction) {
+  std::vector<std::string> sentences;
+  for (const auto& one : report.parameters) {
+    if (one.parameter.friction != friction) continue;
+    for (const auto* side : {&one.up, &one.down})
+      if (side->what != MarginSide::What::none || side->why.find("none") == 0)
+        sentences.push_back(fmt::format("{} {}: {}.", one.parameter.path, side == &one.up ? "up" : "down", side->why));
+  }
+  return sentences;
+}
 
 Table margin_table(const MarginReport& report, bool friction) {
   const std::string verb = report.hunts ? "ends" : "begins";
@@ -137,7 +136,8 @@ std::string margin_text(const std::string& title, const MarginReport& report, co
     if (table.rows.empty()) continue;
     out += fmt::format("\n{}: where hunting {}\n", friction ? "Friction" : "Plant and controller",
                        report.hunts ? "ends" : "begins") +
-           table.text() + reasons(report, friction);
+           table.text();
+    for (const auto& sentence : margin_reasons(report, friction)) out += wrapped(sentence, 80, 2);
   }
   out += notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));

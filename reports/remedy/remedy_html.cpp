@@ -82,7 +82,7 @@ std::string remedy_picture(const RemedyReport& report, const Remedy& remedy, con
 }
 
 std::string remedy_sections(const RemedyReport& report, const Units& units, int level) {
-  const auto heading = [&](std::string_view words) { return html_tag(fmt::format("h{}", level), words); };
+  const auto heading = [&](const std::string& words) { return html_tag(fmt::format("h{}", level), words); };
   std::string body;
   const Table table = remedy_table(report, units);
   if (!table.rows.empty()) {

@@ -32,7 +32,7 @@ def judge(asked, dice):
         return [Finding("failed", [f"{name}: --apply wrote no case"])]
     findings = [_at(asked, fixed, one, None, False)]
     findings += [_at(asked, fixed, one, value, True) for value in one["beyond"][:1]]
-    order = ("failed", "late", "wrong", "missed", "undecided", "right")
+    order = ("failed", "late", "wrong", "undecided", "unlisted", "right")
     worst = min(findings, key=lambda found: order.index(found.kind))
     return [Finding(worst.kind, [f"{name} ({one['why']}): {why}" for why in worst.why])]
 
@@ -51,4 +51,4 @@ def _at(asked, fixed, one, value, hunts):
     why = [f"at {where!r} predict lists {texts(document['cycles'])}"]
     if undecided(document):
         return Finding("undecided", why)
-    return Finding("missed" if hunts else "wrong", why)
+    return Finding("unlisted" if hunts else "wrong", why)  # remedy follows a cycle that no start of predict may reach

@@ -71,7 +71,19 @@ Hunts HuntingEdge::judged(double value, Care care) {
     if (one.stable == true) hunting = one.start;
   if (care == Care::quick || answer.hunts != Hunts::no) return answer.hunts;
   if (!answer.found.outcomes.empty()) run = std::move(answer.found.outcomes.front().trace);
-  return from_last_hunting(*loop, box);
+  last = from_last_hunting(*loop, box);
+  return last == Hunts::no ? from_own_starts(*loop) : last;
+}
+
+/// From the starts that predict() takes of itself: those of the loop without the remedy may be others.
+Hunts HuntingEdge::from_own_starts(const Loop& loop) {
+  if (loop_.box_is_given) return Hunts::no;  // these are the same
+  Judging judging = loop_.judging;
+  judging.predict.search.reset();
+  HuntsAnswer answer = hunts(loop, judging);
+  for (const Cycle& one : answer.found.cycles)
+    if (one.stable == true) hunting = one.start;
+  return answer.hunts == Hunts::yes ? Hunts::yes : Hunts::no;
 }
 
 /// Moves either side away from the other until predict() judges both as they should be.

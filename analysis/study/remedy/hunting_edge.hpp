@@ -21,7 +21,8 @@ struct HuntingLoop {
   Judging judging;
   std::vector<Cycle> cycles;  ///< as the loop stands
   HuntingSizes sizes;
-  bool followable = false;  ///< its cycles can be followed over a number: see in_exact_time()
+  bool followable = false;    ///< its cycles can be followed over a number: see in_exact_time()
+  bool box_is_given = false;  ///< by the case
 };
 
 /// Two values between which hunting ends.
@@ -40,7 +41,8 @@ class HuntingEdge {
   std::optional<Loop> loop_at(double value) const;
   bool stopped() const { return loop_.judging.predict.stop && loop_.judging.predict.stop(); }
 
-  /// By predict() and from the last hunting motion, or for a quick answer from that motion and two starts alone.
+  /// By predict() from the starts of the loop as it stands and of the changed one, and from the last hunting motion, or
+  /// for a quick answer from that motion and two starts alone.
   enum class Care { quick, full };
   Hunts judged(double value, Care care = Care::full);
 
@@ -57,6 +59,7 @@ class HuntingEdge {
 
  private:
   Hunts from_last_hunting(const Loop& loop, const SearchBox& box);
+  Hunts from_own_starts(const Loop& loop);
   bool widen(Bracket& bracket);
   bool narrow(Bracket& bracket);
   bool look_beyond(Bracket& bracket);

@@ -55,6 +55,7 @@ class RemedyStudy {
     report_.why = answer.why;
     report_.hunts = answer.hunts;
     loop_.judging = judging_of_variants(options_.predict, answer.found);
+    loop_.box_is_given = options_.predict.search.has_value();
     loop_.followable = in_exact_time(loop).has_value() &&
                        std::ranges::any_of(answer.found.cycles, [](const Cycle& one) { return one.stable == true; });
     measure_motion(loop, answer.found);
