@@ -13,6 +13,7 @@ from ._errors import NoAnswer
 from ._loop import Loop
 from ._toml import attribute_of, key_of_attribute
 
+_FIGURES = (".pdf", ".pgf", ".png")  # of Matplotlib
 _COMPLEX = {"multipliers", "gain", "harmonics"}  # keys whose pairs are [re, im]
 
 
@@ -184,7 +185,8 @@ class Result(Record):
         return self._answer.picture()
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes the document that the ending of `path` names: .json, .csv, .html, .svg or .txt."""
+        """Writes the document that the ending of `path` names: .json, .csv, .html, .svg or .txt, or the figure of plot()
+        as .pdf, .pgf or .png."""
         makers: Dict[str, Callable[[], Optional[str]]] = {".json": self.to_json, ".csv": self.to_csv}
         if self._answer.has_page:
             makers[".html"] = self.to_html
@@ -192,11 +194,20 @@ class Result(Record):
             makers[".svg"] = self.to_svg
         makers[".txt"] = self._answer.text
         ending = os.path.splitext(os.fspath(path))[1]
+        if ending in _FIGURES:
+            self._save_figure(path)
+            return
         if ending not in makers:
-            raise ValueError(f"{type(self).__name__} is saved as {', '.join(makers)}, not {ending or 'a file without ending'}")
+            raise ValueError(f"{type(self).__name__} is saved as {', '.join([*makers, *_FIGURES])}, "
+                             f"not {ending or 'a file without ending'}")
         document = makers[ending]()
         with open(path, "w", encoding="utf-8") as file:
             file.write(document or "")
+
+    def _save_figure(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        from . import _plots
+
+        _plots.save(self, path)
 
     def _arrays(self) -> Dict[str, Any]:
         if self._numbers is None:

@@ -151,10 +151,23 @@ class Documents(unittest.TestCase):
                 result.save(path)
                 with open(path, encoding="utf-8") as file:
                     self.assertTrue(file.read().startswith(begin), ending)
-            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.html, \.svg, \.txt, not \.pdf"):
-                result.save(os.path.join(folder, "result.pdf"))
-            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.txt, not \.svg"):
+            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.html, \.svg, \.txt, \.pdf, \.pgf, \.png, not \.tex"):
+                result.save(os.path.join(folder, "result.tex"))
+            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.txt, \.pdf, \.pgf, \.png, not \.svg"):
                 limcycle.df(limcycle.laws.relay(level=1.0), 1.0, 1.0).save(os.path.join(folder, "table.svg"))
+
+    def test_saved_figures(self):
+        import matplotlib.pyplot
+
+        results = limcycle.predict(relay_loop()), limcycle.simulate(relay_loop(), 2.0, sample=0.1)
+        with tempfile.TemporaryDirectory() as folder:
+            for result in results:
+                for ending, begin in ((".pdf", b"%PDF"), (".png", b"\x89PNG")):
+                    path = os.path.join(folder, "figure" + ending)
+                    result.save(path)
+                    with open(path, "rb") as file:
+                        self.assertTrue(file.read().startswith(begin), ending)
+        self.assertEqual(matplotlib.pyplot.get_fignums(), [])
 
     def test_a_notebook_shows_the_picture_and_the_words(self):
         html = limcycle.predict(relay_loop(title="a < b"))._repr_html_()
