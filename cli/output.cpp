@@ -157,7 +157,7 @@ void check_some_command_writes(const std::string& output) {
   throw refusal(
       "--output " + output, "no command writes " + std::string(promised->ending),
       "a page (-o FILE.html) can be printed to a PDF by a browser, a picture is -o FILE.svg; --help shows which of "
-      "them a command has. The Python module saves figures as PDF, PGF and PNG");
+      "them a command has. The Python module saves figures as PDF, PGF and PNG, and makes tables of LaTeX");
 }
 
 Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), csv_(flags.csv) {

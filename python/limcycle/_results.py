@@ -6,7 +6,7 @@ import copy
 import json
 import os
 from html import escape
-from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Type, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Type, Union
 
 from . import _core
 from ._errors import NoAnswer
@@ -183,6 +183,21 @@ class Result(Record):
     def to_svg(self) -> Optional[str]:
         """The picture of the program's --svg; None where it has none."""
         return self._answer.picture()
+
+    def to_latex(self, part: str, columns: Optional[Sequence[str]] = None, digits: int = 6) -> str:
+        """A part of the document that is a list of records, such as "cycles", as a table of LaTeX (with booktabs).
+        `columns`: keys of the records; by default those with a number or a word. `digits`: significant ones."""
+        from ._latex import table
+
+        records = self._document().get(part)
+        if not isinstance(records, list) or not all(isinstance(one, dict) for one in records):
+            tables = [key for key, value in self._document().items()
+                      if isinstance(value, list) and value and all(isinstance(one, dict) for one in value)]
+            raise ValueError(f"{part} is no list of records; there are: {', '.join(tables) or 'none'}")
+        missing = [name for name in columns or () if records and not any(name in one for one in records)]
+        if missing:
+            raise ValueError(f"{part} has no {missing[0]}; known: {', '.join(records[0])}")
+        return table(records, columns, digits)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes the document that the ending of `path` names: .json, .csv, .html, .svg or .txt, or the figure of plot()
