@@ -101,8 +101,8 @@ def describing_function(nonlinearity: Any, amplitude: Any) -> Any:
     """The describing function of an element over amplitudes > 0: a complex array of their shape, as that of
     python-control.
 
-    `nonlinearity`: an element of limcycle.laws, a nonlinearity of python-control, or a function F(u) of one number without
-    memory. NaN where the gain is not known to 0.1 %."""
+    `nonlinearity`: an element of limcycle.laws that does not depend on the frequency, a nonlinearity of python-control, or
+    a function F(u) of one number without memory. NaN where the gain is not known to 0.1 %."""
     import numpy
 
     sizes = numpy.asarray(amplitude, dtype=float)
@@ -113,10 +113,11 @@ def describing_function(nonlinearity: Any, amplitude: Any) -> Any:
         law = Law(**law)
     turn: complex = 1.0
     if isinstance(law, Law):
-        if law.section == "friction":
-            raise CaseError("nonlinearity", law.kind, "must be an element: that of a friction law depends on the frequency",
-                            "use limcycle.df")
-        answers = [df(law, sizes.ravel(), 1.0, threads=1)] if sizes.size else []
+        friction = law.section == "friction"
+        answers = [df(law, sizes.ravel(), [1.0, 2.0], threads=1)] if sizes.size and not friction else []
+        if friction or not all(numpy.allclose(one.gain[:, 0], one.gain[:, 1], rtol=1e-6, atol=0.0, equal_nan=True)
+                               for one in answers):
+            raise CaseError("nonlinearity", law.kind, "must not depend on the frequency", "use limcycle.df")
     elif callable(law):
         if not getattr(law, "_isstatic", lambda: True)():
             raise CaseError("nonlinearity", type(law).__name__, "must be without memory: a function F(u) of one number")
@@ -125,7 +126,7 @@ def describing_function(nonlinearity: Any, amplitude: Any) -> Any:
     else:
         raise CaseError("nonlinearity", type(law).__name__, "must be an element of limcycle.laws, a nonlinearity of "
                         "python-control or a function of one number")
-    gains = [numpy.where(one.error <= 1e-3, one.gain, numpy.nan).ravel() for one in answers]
+    gains = [numpy.where(one.error <= 1e-3, one.gain, numpy.nan)[:, 0].ravel() for one in answers]
     return turn * numpy.concatenate([numpy.zeros(0), *gains]).reshape(sizes.shape)
 
 

@@ -43,7 +43,8 @@ class DescribingFunction(unittest.TestCase):
         for what, amplitude, key, rule in (
                 (3.0, 1.0, "nonlinearity", "element of limcycle.laws"), (np.sin, [1.0, 0.0], "amplitude", "above 0"),
                 (lambda u: "far", 1.0, "nonlinearity", "finite number"), (np.log, 1.0, "nonlinearity", "finite number"),
-                (limcycle.laws.coulomb(Fc=1.0), 1.0, "nonlinearity", "depends on the frequency")):
+                (limcycle.laws.coulomb(Fc=1.0), 1.0, "nonlinearity", "must not depend on the frequency"),
+                (limcycle.laws.clamped_pi(ki=1.0, limit=1.0), 1.0, "nonlinearity", "must not depend on the frequency")):
             with self.subTest(rule), np.errstate(all="ignore"), self.assertRaisesRegex(limcycle.CaseError, rule) as caught:
                 limcycle.describing_function(what, amplitude)
             self.assertEqual(caught.exception.key, key)
