@@ -13,6 +13,7 @@
 
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/option_values.hpp"
+#include "limcycle/cli/output.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
 #include "limcycle/cli/time_limit.hpp"
 #include "limcycle/questions/provenance_of.hpp"
@@ -74,19 +75,9 @@ void add_computing_flags(CLI::App& command, CommonFlags& flags) {
       ->group(common);
 }
 
-/// Throws for a name of --output that asks for a document which no command writes.
-void check_kind(const std::string& output) {
-  for (const std::string_view ending : {".pdf", ".tex"})
-    if (output.ends_with(ending))
-      throw refusal(
-          "--output " + output, "no command writes " + std::string(ending),
-          "a page (-o FILE.html) can be printed to a PDF by a browser, a picture is -o FILE.svg; --help shows "
-          "which of them a command has");
-}
-
 /// Runs a command and, with --verbose, reports time and memory.
 int timed(const CommonFlags& flags, const Action& run) {
-  check_kind(flags.output);
+  check_some_command_writes(flags.output);
   const auto begin = std::chrono::steady_clock::now();
   const TimeLimit limit(rank() == 0 ? flags.time_limit : 0.0);  // rank 0 ends the others
   const int code = run();

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -108,14 +109,31 @@ bool same_file(const std::string& one, const std::string& other) {
   return !first.empty() && first == full_name(other);
 }
 
+/// Endings of --output that promise another document than text, and whether some commands write it.
+struct Promise {
+  std::string_view ending;
+  bool kept;
+};
+constexpr std::array<Promise, 7> promises{{{".html", true},
+                                           {".htm", true},
+                                           {".svg", true},
+                                           {".pdf", false},
+                                           {".tex", false},
+                                           {".png", false},
+                                           {".eps", false}}};
+
+const Promise* promised_by(const std::string& path) {
+  const auto* found = std::ranges::find_if(promises, [&](const Promise& one) { return path.ends_with(one.ending); });
+  return found == promises.end() ? nullptr : found;
+}
+
 /// Throws for the name of a file that would not hold what it promises: pages and pictures have been taken off --output.
 void check_holds_text(const std::string& path) {
-  constexpr std::array<std::string_view, 5> documents{".svg", ".png", ".html", ".htm", ".eps"};
-  for (const auto ending : documents)
-    if (path.ends_with(ending))
-      throw refusal("--output " + path, "would hold plain text: this command writes no " + std::string(ending),
-                    "choose another name, such as " + path.substr(0, path.size() - ending.size()) +
-                        ".txt; see --help for pages and pictures");
+  const Promise* promised = promised_by(path);
+  if (promised == nullptr) return;
+  throw refusal("--output " + path, "would hold plain text: this command writes no " + std::string(promised->ending),
+                "choose another name, such as " + path.substr(0, path.size() - promised->ending.size()) +
+                    ".txt; see --help for pages and pictures");
 }
 
 /// 0, or the error in writing a document, which is written next to the file that it then replaces.
@@ -132,6 +150,15 @@ int cannot_be_replaced(const std::string& path) {
 }
 
 }  // namespace
+
+void check_some_command_writes(const std::string& output) {
+  const Promise* promised = promised_by(output);
+  if (promised == nullptr || promised->kept) return;
+  throw refusal(
+      "--output " + output, "no command writes " + std::string(promised->ending),
+      "a page (-o FILE.html) can be printed to a PDF by a browser, a picture is -o FILE.svg; --help shows which of "
+      "them a command has. The Python module saves figures as PDF, PGF and PNG, and makes tables of LaTeX");
+}
 
 Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), csv_(flags.csv) {
   keep("the case file", flags.case_file);

@@ -14,6 +14,9 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Throws for a name of --output that promises a document which no command writes, such as a PDF.
+void check_some_command_writes(const std::string& output);
+
 /// Destinations of a command's documents, from its flags: the text to stdout or to --output, JSON and CSV to their
 /// files. With "-" for one of them stdout receives that document and nothing else; the text is then dropped unless
 /// --output names a file for it.

@@ -1,4 +1,5 @@
-# Debian packages by `cpack`: limcycle (the program) and liblimcycle-dev. tools/package makes and checks them.
+# Debian packages by `cpack`: limcycle (the program), liblimcycle-dev and, with the Python module, python3-limcycle.
+# tools/package makes and checks them.
 set(LIMCYCLE_MAINTAINER "limcycle maintainers <maintainers@limcycle.invalid>" CACHE STRING
   "Whom the Debian packages name: NAME <ADDRESS>")
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # cpack takes what is built; it does not build the tests
@@ -10,6 +11,9 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL development)
 if(LIMCYCLE_PROGRAM)
   list(APPEND CPACK_COMPONENTS_ALL program)
+endif()
+if(LIMCYCLE_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python_debian)
 endif()
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -42,5 +46,22 @@ with located events, continuation and sensitivity, for the friction laws of
 the program and for friction laws of your own.
 
 Headers and static libraries, with files for CMake and pkg-config.")
+if(LIMCYCLE_PYTHON)
+  math(EXPR python_next "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_NAME python3-limcycle)
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_DEPENDS "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~), \
+python3 (<< ${Python_VERSION_MAJOR}.${python_next}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_RECOMMENDS python3-matplotlib)
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_DEBIAN_DESCRIPTION
+"Python module for limit cycles of feedback loops with friction
+Asks the questions of the program limcycle from Python: predictions with
+verdicts, describing functions, simulation, continuation, margins, maps,
+sensitivity, dissipativity, remedies and identification. Loops are made of
+dictionaries, case files, or systems of python-control and SciPy; results have
+arrays of NumPy and figures of Matplotlib, and a friction law can be written
+in Python.")
+endif()
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/policy.cmake)
 include(CPack)

@@ -36,10 +36,16 @@ endforeach()
 add_custom_target(limcycle_python_package ALL DEPENDS ${python_copies} COMMENT "The Python package")
 add_dependencies(limcycle_python limcycle_python_package)
 
-# Into a virtual environment: cmake --install build/release --component python --prefix "$VIRTUAL_ENV"
-if(LIMCYCLE_INSTALL)
-  set(python_folder lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/site-packages)
-  install(TARGETS limcycle_python LIBRARY DESTINATION ${python_folder}/limcycle COMPONENT python EXCLUDE_FROM_ALL)
-  install(DIRECTORY python/limcycle DESTINATION ${python_folder} COMPONENT python EXCLUDE_FROM_ALL
+# Components that are installed when they are asked for, each into the folder of its place under the prefix:
+# a virtual environment (cmake --install build/release --component python --prefix "$VIRTUAL_ENV"), a wheel (pyproject.toml),
+# the Python of Debian (the package python3-limcycle).
+function(limcycle_install_python component folder)
+  install(TARGETS limcycle_python LIBRARY DESTINATION ${folder}/limcycle COMPONENT ${component} EXCLUDE_FROM_ALL)
+  install(DIRECTORY python/limcycle DESTINATION ${folder} COMPONENT ${component} EXCLUDE_FROM_ALL
     FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+endfunction()
+if(LIMCYCLE_INSTALL)
+  limcycle_install_python(python lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/site-packages)
+  limcycle_install_python(wheel .)
+  limcycle_install_python(python_debian lib/python3/dist-packages)
 endif()

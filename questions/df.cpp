@@ -5,6 +5,16 @@
 #include "limcycle/analysis/frequency/describing_function/df_table.hpp"
 
 namespace limcycle {
+namespace {
+
+DfOptions options_with(const DfSection& section, const Asking& asking) {
+  DfOptions options = section.options;
+  options.isa = asking.isa;
+  options.threads = asking.threads;
+  return options;
+}
+
+}  // namespace
 
 void need_memory_for(const DfSection& section, const HeldDocuments& held) {
   const double harmonics = section.options.harmonics;
@@ -18,9 +28,7 @@ void need_memory_for(const DfSection& section, const HeldDocuments& held) {
 std::vector<DescribingFunction> ask_df(const Case& from, const DfSection& section, const Asking& asking,
                                        const SweepRunner& sweep) {
   const auto points = section.points();
-  DfOptions options = section.options;
-  options.isa = asking.isa;
-  options.threads = asking.threads;
+  const DfOptions options = options_with(section, asking);
   DfTable table(df_element(from), points, options);
   const auto columns = df_columns(options.harmonics);
   SweepTask task{points.size(), columns.size(), table.block(), {}};
@@ -37,6 +45,14 @@ std::vector<DescribingFunction> ask_df(const Case& from, const DfSection& sectio
   for (std::size_t k = 0; k < points.size() && swept.known[k]; ++k)
     results.push_back(df_of_row(std::span(swept.rows).subspan(k * columns.size(), columns.size())));
   return results;
+}
+
+std::vector<DescribingFunction> ask_df(const Case& from, const DfSection& section, const Asking& asking) {
+  const auto points = section.points();
+  return describing_function_table(
+      df_element(from), points, options_with(section, asking), asking.stop, [&](std::size_t done) {
+        asking.report(static_cast<double>(done) / static_cast<double>(points.size()), "points");
+      });
 }
 
 }  // namespace limcycle

@@ -15,4 +15,7 @@ void need_memory_for(const DfSection& section, const HeldDocuments& held);
 std::vector<DescribingFunction> ask_df(const Case& from, const DfSection& section, const Asking& asking,
                                        const SweepRunner& sweep);
 
+/// The same in memory, without rows for a store: in half the time, where a kernel computes the points.
+std::vector<DescribingFunction> ask_df(const Case& from, const DfSection& section, const Asking& asking);
+
 }  // namespace limcycle

@@ -9,7 +9,7 @@ const [xml, out] = process.argv.slice(2);
 // The chapters, as they are listed at the side; pages of docs/ that are not named here follow.
 const chapters = [
   ['Begin', ['README.md', 'docs/tutorial.md', 'docs/gallery.md']],
-  ['Use', ['docs/how-to.md', 'docs/formats.md', 'docs/laws.md', 'docs/python.md', 'docs/library.md']],
+  ['Use', ['docs/how-to.md', 'docs/formats.md', 'docs/laws.md', 'docs/python.md', 'docs/notebooks.md', 'docs/library.md']],
   ['Understand', ['docs/methods.md', 'docs/theory.md', 'docs/dissipativity.md', 'docs/sensitivity.md', 'docs/numerical-stability.md']],
 ];
 const short_titles = {

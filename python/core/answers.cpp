@@ -181,16 +181,14 @@ Answer predict_answer(const Question& question) {
 Answer df_answer(const Question& question) {
   const auto from = question.from;
   need_memory_for(need_df(*from), {});
-  const auto points = std::make_shared<const std::vector<DfPoint>>(from->df->points());
-  const auto results =
-      computed([&] { return ask_df(*from, *from->df, question.asking, sweep_in_memory(question.asking)); });
-  Sheet sheet = sheet_of(question, results->size() < points->size() ? Status::interrupted : Status::converged);
+  const auto results = computed([&] { return ask_df(*from, *from->df, question.asking); });
+  Sheet sheet = sheet_of(question, results->size() < from->df->size() ? Status::interrupted : Status::converged);
   sheet.made.isa = to_string(question.asking.isa);
   sheet.last.clear();
   Answer answer = documents(
-      sheet, results, [=](const auto& made, const auto& all) { return df_json(made, *points, all); },
-      [=](const auto& all) { return df_csv(*points, all); },
-      [=](const std::string& title, const auto& all) { return df_text(title, *points, all); });
+      sheet, results, [=](const auto& made, const auto& all) { return df_json(made, from->df->points(), all); },
+      [=](const auto& all) { return df_csv(from->df->points(), all); },
+      [=](const std::string& title, const auto& all) { return df_text(title, from->df->points(), all); });
   answer.arrays = [=] { return df_arrays(*from->df, *results); };
   return answer;
 }

@@ -3,6 +3,8 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -35,12 +37,8 @@ SharedObject shared(py::object object) {
                        (found.is_none() ? "None" : "a " + std::string(Py_TYPE(found.ptr())->tp_name)));
 }
 
-/// The object's functions as a law of the library. Its members are called without the interpreter's lock, which each
-/// call takes: methods that use several threads are no faster with it.
-struct PythonLaw {
-  static constexpr std::string_view kind = "python-law";
-
-  SharedObject output_of, rate_of;
+/// What a law of Python states about itself.
+struct Stated {
   int count = 0;
   bool is_odd = false;
   Scales sizes;
@@ -52,9 +50,19 @@ struct PythonLaw {
   double state_scale(int i) const {
     return state_sizes.empty() ? sizes.displacement : state_sizes[static_cast<std::size_t>(i)];
   }
+};
+
+/// The object's functions as a law of the library. Its members are called without the interpreter's lock, which each
+/// call takes: methods that use several threads are no faster with it.
+struct PythonLaw : Stated {
+  static constexpr std::string_view kind = "python-law";
+
+  SharedObject output_of, rate_of;
+
   double output(const Input<double>& in, Mode, std::span<const double> z) const {
     const py::gil_scoped_acquire lock;
-    const py::object force = (*output_of)(in.v, tuple_of(z));
+    const py::object force = called(*output_of, in.v, z);
+    if (PyFloat_CheckExact(force.ptr())) return PyFloat_AS_DOUBLE(force.ptr());
     try {
       return force.cast<double>();
     } catch (const py::cast_error&) {
@@ -64,7 +72,7 @@ struct PythonLaw {
   void rate(const Input<double>& in, Mode, std::span<const double> z, std::span<double> dz) const {
     if (count == 0) return;
     const py::gil_scoped_acquire lock;
-    const py::object rates = (*rate_of)(in.v, tuple_of(z));
+    const py::object rates = called(*rate_of, in.v, z);
     try {
       if (count == 1 && (PyFloat_Check(rates.ptr()) || PyLong_Check(rates.ptr()))) {
         dz[0] = rates.cast<double>();
@@ -82,15 +90,47 @@ struct PythonLaw {
   }
 
  private:
-  static py::tuple tuple_of(std::span<const double> z) {
-    py::tuple states(z.size());
-    for (std::size_t i = 0; i < z.size(); ++i) states[i] = z[i];
-    return states;
+  /// function(v, z), by the protocol that costs least: the call takes longer than many a law.
+  static py::object called(const py::object& function, double v, std::span<const double> z) {
+    const py::object velocity = number(v);
+    const py::tuple states(z.size());
+    for (std::size_t i = 0; i < z.size(); ++i)
+      PyTuple_SET_ITEM(states.ptr(), static_cast<Py_ssize_t>(i), number(z[i]).release().ptr());
+    const std::array<PyObject*, 2> arguments{velocity.ptr(), states.ptr()};
+    PyObject* const answer = PyObject_Vectorcall(function.ptr(), arguments.data(), arguments.size(), nullptr);
+    if (answer == nullptr) throw py::error_already_set();
+    return py::reinterpret_steal<py::object>(answer);
+  }
+  static py::object number(double value) {
+    PyObject* const made = PyFloat_FromDouble(value);
+    if (made == nullptr) throw py::error_already_set();
+    return py::reinterpret_steal<py::object>(made);
   }
 };
 
-PythonLaw law_of(const py::object& law) {
-  PythonLaw made;
+/// A law whose functions are machine code, as Numba and ctypes have it: no call needs the interpreter.
+struct CompiledLaw : Stated {
+  static constexpr std::string_view kind = "compiled-law";
+
+  double (*output_of)(double v, const double* z) = nullptr;
+  void (*rate_of)(double v, const double* z, double* dz) = nullptr;
+  SharedObject code;  ///< whose functions they are
+
+  double output(const Input<double>& in, Mode, std::span<const double> z) const { return output_of(in.v, z.data()); }
+  void rate(const Input<double>& in, Mode, std::span<const double> z, std::span<double> dz) const {
+    if (count > 0) rate_of(in.v, z.data(), dz.data());
+  }
+};
+
+/// Where the code of a function of Numba (cfunc) or ctypes stands; 0 for one that Python has to call.
+std::uintptr_t address_of(const py::object& function) {
+  if (py::hasattr(function, "address")) return function.attr("address").cast<std::uintptr_t>();
+  if (!py::hasattr(function, "argtypes") || !py::hasattr(function, "restype")) return 0;
+  const auto ctypes = py::module_::import("ctypes");
+  return ctypes.attr("cast")(function, ctypes.attr("c_void_p")).attr("value").cast<std::uintptr_t>();
+}
+
+Stated stated_by(const py::object& law) {
   if (!py::hasattr(law, "output"))
     refuse(
         "must be a dictionary, an object of limcycle.laws, or one of your own with output(v, z), the force that "
@@ -98,12 +138,11 @@ PythonLaw law_of(const py::object& law) {
         std::string(Py_TYPE(law.ptr())->tp_name));
   if (!py::hasattr(law, "scales"))
     refuse("must have scales = (displacement, velocity, output): the sizes over which the law changes");
-  made.output_of = shared(law.attr("output"));
+  Stated made;
   made.count = py::getattr(law, "states", py::int_(0)).cast<int>();
   made.is_odd = py::bool_(py::getattr(law, "odd", py::bool_(false)));
   if (made.count < 0) refuse("states must be 0 or more");
   if (made.count > 0 && !py::hasattr(law, "rate")) refuse("has states and must have rate(v, z), their rates");
-  if (made.count > 0) made.rate_of = shared(law.attr("rate"));
   const auto scales = law.attr("scales").cast<std::vector<double>>();
   if (scales.size() != 3) refuse("scales must be three numbers: displacement, velocity, output");
   made.sizes = {.displacement = scales[0], .velocity = scales[1], .output = scales[2]};
@@ -113,11 +152,30 @@ PythonLaw law_of(const py::object& law) {
   return made;
 }
 
+Element element_of(const py::object& law) {
+  const Stated stated = stated_by(law);
+  const py::object output = law.attr("output");
+  py::object rate = py::none();
+  if (stated.count > 0) rate = law.attr("rate");
+  const std::uintptr_t output_at = address_of(output), rate_at = address_of(rate);
+  if (stated.count > 0 && (output_at == 0) != (rate_at == 0))
+    refuse("output and rate must both be compiled, or neither");
+  if (output_at == 0) {
+    PythonLaw made{stated, shared(output), {}};
+    if (stated.count > 0) made.rate_of = shared(rate);
+    return own_law(made);
+  }
+  // NOLINTBEGIN(performance-no-int-to-ptr): Python hands functions over as numbers
+  return own_law(CompiledLaw{stated, reinterpret_cast<decltype(CompiledLaw::output_of)>(output_at),
+                             reinterpret_cast<decltype(CompiledLaw::rate_of)>(rate_at), shared(law)});
+  // NOLINTEND(performance-no-int-to-ptr)
+}
+
 }  // namespace
 
 Element own_element(const py::object& law) {
   try {
-    return own_law(law_of(law));
+    return element_of(law);
   } catch (const std::invalid_argument& broken) {
     refuse(broken.what());
   } catch (const py::type_error& wrong) {

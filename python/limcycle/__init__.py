@@ -17,15 +17,17 @@ from . import laws
 from ._core import version as __version__
 from ._errors import CaseError, NoAnswer
 from ._loop import Loop, Number, load
-from ._questions import continue_, df, dissipativity, identify, map, margin, predict, remedy, sensitivity, simulate, tune
+from ._questions import (continue_, describing_function, df, dissipativity, identify, map, margin, predict, remedy,
+                         sensitivity, simulate, tune)
 from ._results import (Continuation, DescribingFunctions, Dissipativity, Identification, Map, Margin, Prediction, Record,
-                       Remedies, Result, Sensitivity, Simulation)
+                       Remedies, Result, Sensitivity, Simulation, Tuning)
 
 # Without `map`, which would hide the one of Python.
 __all__ = [
     "CaseError", "Continuation", "DescribingFunctions", "Dissipativity", "Identification", "Loop", "Map", "Margin",
-    "NoAnswer", "Number", "Prediction", "Record", "Remedies", "Result", "Sensitivity", "Simulation", "continue_", "df",
-    "dissipativity", "identify", "laws", "load", "margin", "predict", "remedy", "sensitivity", "simulate", "tune",
+    "NoAnswer", "Number", "Prediction", "Record", "Remedies", "Result", "Sensitivity", "Simulation", "Tuning", "continue_",
+    "describing_function", "df", "dissipativity", "identify", "laws", "load", "margin", "predict", "remedy", "sensitivity",
+    "simulate", "tune",
 ]
 
 for _name in [*__all__, "map"]:

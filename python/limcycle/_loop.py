@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
 from . import _core
 from ._errors import CaseError
 from ._own_law import KIND, is_own
-from ._systems import table_of
+from ._systems import element_of, table_of
 from ._toml import lines_of, text_of
 
 
@@ -26,7 +26,7 @@ class Loop:
 
     `plant` and `controller` are dictionaries with the keys of a case file, (num, den), (A, B, C, D), (zeros, poles,
     gain), or continuous systems of python-control or SciPy; `friction`, `element` and `error` dictionaries or objects of
-    limcycle.laws; `friction` may be a law of your own, an object with `output(v, z)` (see docs/python.md).
+    limcycle.laws; `element` may be a nonlinearity of python-control, and `friction` a law of your own, an object with `output(v, z)` (see docs/python.md).
     `reference` is a number or {"kind": "ramp", "rate": ...}, `load` a constant force on the plant, `delay`
     the dead time of a plant that has one (transfer-function, zpk), s. Other sections of a case file are keywords too:
     `diagram` (then without plant), `search`, `predict`, `simulate`, `df`, `sensitivity`, `dissipativity`,
@@ -39,6 +39,7 @@ class Loop:
                  error: Any = None, reference: Any = None, load: Optional[float] = None,
                  delay: Optional[float] = None, title: str = "Loop", **sections: Any) -> None:
         plant = table_of(plant, "loop.plant")
+        element = element_of(element, "loop.element")
         if delay is not None:
             plant = {**(plant or {}), "delay": delay}
         for name, part in (("element", element), ("error", error)):

@@ -18,6 +18,17 @@ def _axes(ax: Any) -> Any:
     return plt.subplots()[1] if ax is None else ax
 
 
+def save(result: Any, path: Any) -> None:
+    """The figure of result.plot(), in a file."""
+    before = set(plt.get_fignums())
+    try:
+        drawn = np.ravel(result.plot())[0].figure
+        drawn.savefig(path, bbox_inches="tight")
+    finally:
+        for number in set(plt.get_fignums()) - before:
+            plt.close(number)
+
+
 def _window(ax: Any, points: Sequence[complex]) -> None:
     """Shows the surroundings of some points, with the origin."""
     radius = 1.6 * max((abs(one) for one in points), default=1.0)

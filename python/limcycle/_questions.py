@@ -10,7 +10,8 @@ from . import _core, _results
 from ._checks import number, stretch, whole, word, words
 from ._errors import CaseError
 from ._loop import Loop, changed
-from ._own_law import is_own, own_case
+from ._own_law import StaticLaw, is_own, own_case
+from ._systems import element_of
 from ._toml import plain
 from .laws import Law
 
@@ -77,7 +78,7 @@ def predict(loop: Loop, *, time_limit: Optional[float] = None, progress: Progres
 
 
 @_explained
-def df(loop_or_law: Union[Loop, Law, Mapping[str, Any]], amplitude: Any = None, frequency: Any = None, bias: Any = None,
+def df(loop_or_law: Any, amplitude: Any = None, frequency: Any = None, bias: Any = None,
        *, harmonics: Optional[int] = None, accuracy: Optional[float] = None, method: Optional[str] = None,
        threads: int = 0, isa: str = "auto", time_limit: Optional[float] = None,
        progress: Progress = None) -> _results.DescribingFunctions:
@@ -94,6 +95,39 @@ def df(loop_or_law: Union[Loop, Law, Mapping[str, Any]], amplitude: Any = None, 
                 raise CaseError(name, "", "is required: the case has no section [df]")
     answer = _core.df(changed(case, given) if given else case, _work(time_limit, progress, threads=threads, isa=isa))
     return _results.DescribingFunctions(answer)
+
+
+def describing_function(nonlinearity: Any, amplitude: Any) -> Any:
+    """The describing function of an element over amplitudes > 0: a complex array of their shape, as that of
+    python-control.
+
+    `nonlinearity`: an element of limcycle.laws that does not depend on the frequency, a nonlinearity of python-control, or
+    a function F(u) of one number without memory. NaN where the gain is not known to 0.1 %."""
+    import numpy
+
+    sizes = numpy.asarray(amplitude, dtype=float)
+    for one in sizes.flat:
+        number("amplitude", one, "finite and above 0", lambda x: 0.0 < x < math.inf)
+    law = element_of(nonlinearity, "nonlinearity")
+    if isinstance(law, Mapping):
+        law = Law(**law)
+    turn: complex = 1.0
+    if isinstance(law, Law):
+        friction = law.section == "friction"
+        answers = [df(law, sizes.ravel(), [1.0, 2.0], threads=1)] if sizes.size and not friction else []
+        if friction or not all(numpy.allclose(one.gain[:, 0], one.gain[:, 1], rtol=1e-6, atol=0.0, equal_nan=True)
+                               for one in answers):
+            raise CaseError("nonlinearity", law.kind, "must not depend on the frequency", "use limcycle.df")
+    elif callable(law):
+        if not getattr(law, "_isstatic", lambda: True)():
+            raise CaseError("nonlinearity", type(law).__name__, "must be without memory: a function F(u) of one number")
+        answers = [df(StaticLaw(law, one), one, 1.0, threads=1) for one in sizes.ravel().tolist()]
+        turn = -1.0j  # gains of friction laws are of the displacement
+    else:
+        raise CaseError("nonlinearity", type(law).__name__, "must be an element of limcycle.laws, a nonlinearity of "
+                        "python-control or a function of one number")
+    gains = [numpy.where(one.error <= 1e-3, one.gain, numpy.nan)[:, 0].ravel() for one in answers]
+    return turn * numpy.concatenate([numpy.zeros(0), *gains]).reshape(sizes.shape)
 
 
 def _axis(values: Any) -> Any:

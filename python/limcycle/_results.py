@@ -6,13 +6,14 @@ import copy
 import json
 import os
 from html import escape
-from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Type, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Type, Union
 
 from . import _core
 from ._errors import NoAnswer
 from ._loop import Loop
 from ._toml import attribute_of, key_of_attribute
 
+_FIGURES = (".pdf", ".pgf", ".png")  # of Matplotlib
 _COMPLEX = {"multipliers", "gain", "harmonics"}  # keys whose pairs are [re, im]
 
 
@@ -183,8 +184,24 @@ class Result(Record):
         """The picture of the program's --svg; None where it has none."""
         return self._answer.picture()
 
+    def to_latex(self, part: str, columns: Optional[Sequence[str]] = None, digits: int = 6) -> str:
+        """A part of the document that is a list of records, such as "cycles", as a table of LaTeX (with booktabs).
+        `columns`: keys of the records; by default those with a number or a word. `digits`: significant ones."""
+        from ._latex import table
+
+        records = self._document().get(part)
+        if not isinstance(records, list) or not all(isinstance(one, dict) for one in records):
+            tables = [key for key, value in self._document().items()
+                      if isinstance(value, list) and value and all(isinstance(one, dict) for one in value)]
+            raise ValueError(f"{part} is no list of records; there are: {', '.join(tables) or 'none'}")
+        missing = [name for name in columns or () if records and not any(name in one for one in records)]
+        if missing:
+            raise ValueError(f"{part} has no {missing[0]}; known: {', '.join(records[0])}")
+        return table(records, columns, digits)
+
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes the document that the ending of `path` names: .json, .csv, .html, .svg or .txt."""
+        """Writes the document that the ending of `path` names: .json, .csv, .html, .svg or .txt, or the figure of plot()
+        as .pdf, .pgf or .png."""
         makers: Dict[str, Callable[[], Optional[str]]] = {".json": self.to_json, ".csv": self.to_csv}
         if self._answer.has_page:
             makers[".html"] = self.to_html
@@ -192,11 +209,20 @@ class Result(Record):
             makers[".svg"] = self.to_svg
         makers[".txt"] = self._answer.text
         ending = os.path.splitext(os.fspath(path))[1]
+        if ending in _FIGURES:
+            self._save_figure(path)
+            return
         if ending not in makers:
-            raise ValueError(f"{type(self).__name__} is saved as {', '.join(makers)}, not {ending or 'a file without ending'}")
+            raise ValueError(f"{type(self).__name__} is saved as {', '.join([*makers, *_FIGURES])}, "
+                             f"not {ending or 'a file without ending'}")
         document = makers[ending]()
         with open(path, "w", encoding="utf-8") as file:
             file.write(document or "")
+
+    def _save_figure(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        from . import _plots
+
+        _plots.save(self, path)
 
     def _arrays(self) -> Dict[str, Any]:
         if self._numbers is None:

@@ -1,4 +1,5 @@
-"""Linear systems of other packages as tables of a case file. Told by what they offer, so that none is needed."""
+"""Systems and nonlinearities of other packages as tables of a case file. Told by what they offer, so that none is
+needed."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ def table_of(system: Any, path: str) -> Any:
         if len(system) == 4:
             return _state_space(system[0], system[1], system[2], system[3], path)
         raise CaseError(path, "", f"must be (num, den), (zeros, poles, gain) or (A, B, C, D), found {len(system)} parts")
-    if hasattr(system, "fresp") or hasattr(system, "frdata"):
+    if hasattr(system, "frdata") or hasattr(system, "fresp"):
         raise CaseError(path, type(system).__name__, "is a frequency response without a model",
                         'write its points to a CSV file and give {"kind": "frf", "file": ...}')
     if getattr(system, "dt", None) not in (None, 0, 0.0, False):
@@ -33,6 +34,24 @@ def table_of(system: Any, path: str) -> Any:
     if hasattr(system, "zeros") and hasattr(system, "gain") and not callable(system.zeros):
         return _zpk(system.zeros, system.poles, system.gain)
     raise CaseError(path, "", f"must be a dictionary or a linear system, found a {type(system).__name__}")
+
+
+def element_of(nonlinearity: Any, path: str) -> Any:
+    """The table of a nonlinearity of python-control with a describing function of its own; anything else unchanged."""
+    if not hasattr(nonlinearity, "describing_function") or hasattr(nonlinearity, "to_table"):
+        return nonlinearity
+    has = [name for name in ("lb", "ub", "b", "c", "center") if hasattr(nonlinearity, name)]
+    if has == ["lb", "ub"]:
+        if nonlinearity.lb != -nonlinearity.ub:
+            raise CaseError(path, f"saturation from {nonlinearity.lb:g} to {nonlinearity.ub:g}", "must be symmetric",
+                            "shift the reference by the middle of its limits")
+        return {"kind": "saturation", "limit": plain(nonlinearity.ub)}
+    if has == ["b", "c"]:
+        return {"kind": "relay", "level": plain(nonlinearity.b), "hysteresis": plain(nonlinearity.c)}
+    if has == ["b", "center"]:  # b is the whole gap
+        return {"kind": "backlash", "half_gap": plain(nonlinearity.b) / 2.0}
+    raise CaseError(path, type(nonlinearity).__name__, "must be one of saturation_nonlinearity, "
+                    "relay_hysteresis_nonlinearity and friction_backlash_nonlinearity, or an object of limcycle.laws")
 
 
 def _numbers(values: Any) -> List[Any]:

@@ -48,7 +48,7 @@ TEST_CASE("files: a name that promises another document than is written is refus
   const Scratch scratch;
   const std::string servo = shipped("pid-lugre.toml");
   for (const char* command : {"check", "predict", "report", "simulate", "remedy", "df"})
-    for (const char* name : {"x.pdf", "x.tex"}) {
+    for (const char* name : {"x.pdf", "x.tex", "x.png"}) {
       check_refused_with(run({command, servo, "-o", scratch.file(name)}),
                          "no command writes ." + std::string(name + 2));
       CHECK_FALSE(std::filesystem::exists(scratch.file(name)));

@@ -1,8 +1,13 @@
-"""Laws written in Python, against the same laws of the library."""
+"""Laws written in Python, and compiled ones, against the same laws of the library."""
 
+import ctypes
 import math
 import pickle
+import subprocess
+import tempfile
 import unittest
+from pathlib import Path
+from types import SimpleNamespace
 
 import limcycle
 import numpy as np
@@ -160,6 +165,45 @@ class OwnLaws(unittest.TestCase):
         cured = limcycle.remedy(loop, "damping").apply("damping")
         self.assertAlmostEqual(cured["loop.plant.damping"], 0.5, delta=2e-3)  # it hunts while the damping is less than mu
         self.assertIn('kind = "own"', pickle.loads(pickle.dumps(cured)).text)
+
+
+class CompiledLaws(unittest.TestCase):
+    """Functions of ctypes; those of Numba have an address as the stand-in here has."""
+
+    @classmethod
+    def setUpClass(cls):
+        code = ("extern \"C\" double output(double v, const double *z) { return 100.0 * z[0]; }\n"
+                "extern \"C\" void rate(double v, const double *z, double *dz)\n"
+                "{ dz[0] = v - 100.0 * (v < 0.0 ? -v : v) * z[0]; }\n")
+        with tempfile.TemporaryDirectory() as folder:
+            source, library = Path(folder, "law.cpp"), str(Path(folder, "law.so"))
+            source.write_text(code, encoding="utf-8")
+            subprocess.run(["g++", "-shared", "-fPIC", str(source), "-o", library], check=True)
+            cls.library = ctypes.CDLL(library)
+
+    def dahl(self, **changes):
+        library = self.library
+        parts = {"states": 1, "odd": True, "scales": Dahl.scales, "output": library.output, "rate": library.rate}
+        return SimpleNamespace(**{**parts, **changes})
+
+    def test_gain_is_that_of_the_library(self):
+        grid = ([0.003, 0.02], [1.0, 5.0])
+        ours = limcycle.df(limcycle.laws.dahl(Fc=1.0, sigma0=100.0), *grid).gain
+        np.testing.assert_allclose(limcycle.df(self.dahl(), *grid).gain, ours, rtol=1e-5)
+        addressed = {name: SimpleNamespace(address=ctypes.cast(getattr(self.library, name), ctypes.c_void_p).value)
+                     for name in ("output", "rate")}
+        np.testing.assert_array_equal(limcycle.df(self.dahl(**addressed), *grid).gain, limcycle.df(self.dahl(), *grid).gain)
+
+    def test_runs_are_those_of_python(self):
+        plant = {"kind": "belt", "mass": 1.0, "stiffness": 4.0, "damping": 0.2, "speed": 0.1}
+        runs = [limcycle.simulate(limcycle.Loop(plant=plant, friction=law), 1.0, initial={"y": 0.3}, sample=0.5)["y"]
+                for law in (Dahl(), self.dahl())]
+        np.testing.assert_allclose(runs[0], runs[1], rtol=1e-9)
+
+    def test_both_or_neither(self):
+        with self.assertRaisesRegex(limcycle.CaseError, "friction: output and rate must both be compiled, or neither"):
+            limcycle.df(self.dahl(rate=Dahl().rate), 0.01, 1.0)
+        self.assertIn("compiled-law", " ".join(limcycle.predict(servo(friction=self.dahl()), time_limit=0.2).notes))
 
 
 if __name__ == "__main__":

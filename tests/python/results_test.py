@@ -151,10 +151,50 @@ class Documents(unittest.TestCase):
                 result.save(path)
                 with open(path, encoding="utf-8") as file:
                     self.assertTrue(file.read().startswith(begin), ending)
-            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.html, \.svg, \.txt, not \.pdf"):
-                result.save(os.path.join(folder, "result.pdf"))
-            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.txt, not \.svg"):
+            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.html, \.svg, \.txt, \.pdf, \.pgf, \.png, not \.tex"):
+                result.save(os.path.join(folder, "result.tex"))
+            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.txt, \.pdf, \.pgf, \.png, not \.svg"):
                 limcycle.df(limcycle.laws.relay(level=1.0), 1.0, 1.0).save(os.path.join(folder, "table.svg"))
+
+    def test_tables_of_latex(self):
+        result = limcycle.predict(relay_loop())
+        lines = result.to_latex("cycles", ["period", "amplitude", "stable", "method", "locked"], digits=4).splitlines()
+        self.assertEqual(lines[0], r"\begin{tabular}{rrrlr}")
+        self.assertEqual(lines[2], r"period & amplitude & stable & method & locked \\")
+        cells = lines[4][:-3].split(" & ")
+        self.assertEqual(cells[0], "$3.68$")  # 2 x 1.83988
+        self.assertEqual(cells[2:], ["yes", "exact", "--"])
+        self.assertEqual(lines[-1], r"\end{tabular}")
+        whole = result.to_latex("cycles").splitlines()
+        self.assertIn("first harmonic", whole[2])
+        self.assertNotIn("multipliers", whole[2])
+        self.assertEqual({line.count("&") for line in (whole[2], whole[4])}, {whole[2].count("&")})
+        self.assertRegex(result.to_latex("cycles", ["error"]), r"\$1 \\times 10\^\{-1[0-9]\}\$|\$[0-9.]+ \\times")
+        with self.assertRaisesRegex(ValueError, "status is no list of records; there are: cycles"):
+            result.to_latex("status")
+        with self.assertRaisesRegex(ValueError, "cycles has no speed; known: amplitude"):
+            result.to_latex("cycles", ["speed"])
+
+    def test_what_latex_would_read_is_escaped(self):
+        from limcycle._latex import table
+
+        text = table([{"a_b": "50 % of {x} & $y_1$ \\ ~#^"}], None, 3)
+        self.assertIn(r"a b \\", text)
+        self.assertIn(r"50 \% of \{x\} \& \$y\_1\$ \textbackslash{} \textasciitilde{}\#\textasciicircum{} \\", text)
+        self.assertEqual(table([], None, 3).splitlines()[0], r"\begin{tabular}{}")
+
+    def test_saved_figures(self):
+        import matplotlib.pyplot
+
+        results = limcycle.predict(relay_loop()), limcycle.simulate(relay_loop(), 2.0, sample=0.1)
+        with tempfile.TemporaryDirectory() as folder:
+            for result in results:
+                for ending, begin in ((".pdf", b"%PDF"), (".png", b"\x89PNG")):
+                    path = os.path.join(folder, "figure" + ending)
+                    result.save(path)
+                    with open(path, "rb") as file:
+                        self.assertTrue(file.read().startswith(begin), ending)
+        self.assertEqual(matplotlib.pyplot.get_fignums(), [])
 
     def test_a_notebook_shows_the_picture_and_the_words(self):
         html = limcycle.predict(relay_loop(title="a < b"))._repr_html_()

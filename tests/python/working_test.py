@@ -88,17 +88,17 @@ class Costs(unittest.TestCase):
         self.assertEqual(subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout, "set()\n")
 
     def test_memory_is_flat(self):
-        law = limcycle.laws.relay(level=1.0)
+        loop = relay_loop(df={"amplitude": [1.0], "frequency": [1.0]})
 
         def ask(times):
             for _ in range(times):
-                limcycle.df(law, 1.0, 1.0, threads=1).gain
+                limcycle.df(loop, threads=1).gain
             gc.collect()
             with open("/proc/self/statm", encoding="ascii") as file:
                 return int(file.read().split()[1]) * resource.getpagesize()
 
         before = ask(500)
-        self.assertLess(ask(1500) - before, 2_000_000)  # a leak of 2 kB a call would show
+        self.assertLess(ask(10000) - before, 2_000_000)  # a leak of 200 bytes a call would show
 
 
 if __name__ == "__main__":
