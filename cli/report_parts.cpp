@@ -61,9 +61,7 @@ Asking asking(const ReportQuestion& ask, const std::function<void(double)>& prog
 }
 
 ReportPart<MarginReport> margin_part(const ReportQuestion& ask, const std::function<void(double)>& progress) {
-  std::vector<std::string> notes;
-  MarginReport report = ask_margin(ask.from, margin_parameters(ask.from, "margin", {}, notes), MarginOptions{}.factor,
-                                   asking(ask, progress));
+  MarginReport report = ask_margin(ask.from, {}, asking(ask, progress));
   if (!report.refused.empty()) return {{}, "Margins: " + report.refused + "."};
   return {std::move(report), {}};
 }

@@ -49,8 +49,6 @@ Line line_of(const Case& from, const std::string& argument, const Toward& toward
   return line;
 }
 
-}  // namespace
-
 MarginParameter toward_parameter(const Case& from, const std::string& argument, const Toward& toward) {
   const Line line = line_of(from, argument, toward);
   std::vector<std::string> paths;
@@ -67,6 +65,7 @@ MarginParameter toward_parameter(const Case& from, const std::string& argument, 
   return {line.name(), "1", 1.0, friction, [variation, line](double place) { return variation.loop(line.at(place)); }};
 }
 
+/// Where the numbers of such a parameter stand at the change nearest to 1; empty if none was found.
 std::string numbers_toward(const Case& from, const std::string& argument, const Toward& toward,
                            const MarginReport& report) {
   const Line line = line_of(from, argument, toward);
@@ -82,11 +81,9 @@ std::string numbers_toward(const Case& from, const std::string& argument, const 
                      text);
 }
 
-std::vector<MarginParameter> margin_parameters(const Case& from, const std::string& argument,
-                                               const std::vector<std::string>& paths, std::vector<std::string>& notes) {
+/// All numbers that a factor changes; the others into a note.
+std::vector<MarginParameter> all_parameters(const Case& from, std::vector<std::string>& notes) {
   std::vector<MarginParameter> chosen;
-  for (const auto& number : threshold_numbers(from, argument, paths)) chosen.push_back(margin_parameter(from, number));
-  if (!chosen.empty()) return chosen;
   std::string zero;
   for (const auto& number : numbers_of(from)) {
     if (number.follows || !std::isfinite(number.value)) continue;
@@ -99,14 +96,32 @@ std::vector<MarginParameter> margin_parameters(const Case& from, const std::stri
   return chosen;
 }
 
-MarginReport ask_margin(const Case& from, const std::vector<MarginParameter>& parameters, double factor,
-                        const Asking& asking) {
+}  // namespace
+
+std::vector<MarginParameter> margin_parameters(const Case& from, const MarginWishes& wishes,
+                                               std::vector<std::string>& notes) {
+  if (wishes.paths.empty() && wishes.toward.empty()) return all_parameters(from, notes);
+  std::vector<MarginParameter> chosen;
+  for (const auto& number : threshold_numbers(from, wishes.names.paths, wishes.paths))
+    chosen.push_back(margin_parameter(from, number));
+  for (const Toward& one : wishes.toward) chosen.push_back(toward_parameter(from, wishes.names.toward, one));
+  return chosen;
+}
+
+MarginReport ask_margin(const Case& from, const MarginWishes& wishes, const Asking& asking) {
+  std::vector<std::string> notes;
+  const auto parameters = margin_parameters(from, wishes, notes);
   MarginOptions options;
-  options.factor = factor;
+  options.factor = wishes.factor;
   options.predict = from.predict;
   options.predict.stop = asking.stop;
   options.predict.progress = asking.progress;
-  return margin(build_loop(need_loop(from)), parameters, options);
+  MarginReport report = margin(build_loop(need_loop(from)), parameters, options);
+  for (const Toward& one : wishes.toward)
+    if (auto text = numbers_toward(from, wishes.names.toward, one, report); !text.empty())
+      notes.push_back(std::move(text));
+  report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+  return report;
 }
 
 }  // namespace limcycle

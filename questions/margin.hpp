@@ -9,25 +9,28 @@
 
 namespace limcycle {
 
-/// The numbers at these paths, or without paths all that a factor can change; those left out go into `notes`. Throws
-/// InputError (of `argument`, such as "--parameter") if there is no such number, or no factor changes it.
-std::vector<MarginParameter> margin_parameters(const Case& from, const std::string& argument,
-                                               const std::vector<std::string>& paths, std::vector<std::string>& notes);
-
 /// Numbers that are changed together, in proportion: names, or paths, and the values that they would have.
 using Toward = std::vector<std::pair<std::string, double>>;
 
-/// The change of all these numbers as one parameter: 1 for the own numbers, 2 for those of `toward`, beyond and before
-/// that on the same straight line. Throws InputError (of `argument`) for a name that is unknown, absent or there twice,
-/// and for values that change nothing or are not valid together.
-MarginParameter toward_parameter(const Case& from, const std::string& argument, const Toward& toward);
-/// Where the numbers of such a parameter stand at the change nearest to 1, for a reader; empty if none was found.
-std::string numbers_toward(const Case& from, const std::string& argument, const Toward& toward,
-                           const MarginReport& report);
+/// What is wanted of margins. Names: how the arguments are called in messages.
+struct MarginWishes {
+  std::vector<std::string> paths;  ///< of single numbers; empty, and nothing in `toward`: all that a factor can change
+  std::vector<Toward>
+      toward;            ///< each as one parameter: 1 for the own numbers, 2 for those given, and the line through
+  double factor = 10.0;  ///< up and down
+  struct Names {
+    std::string paths = "parameters", toward = "toward";
+  } names{};
+};
 
-/// How far they are, up to `factor` up and down, from where hunting begins or ends. Throws std::invalid_argument if the
-/// numbers are valid but too extreme for a method.
-MarginReport ask_margin(const Case& from, const std::vector<MarginParameter>& parameters, double factor,
-                        const Asking& asking);
+/// The numbers that are wanted. Throws InputError for one that is unknown, absent, or changed by no factor, and for a
+/// line that changes nothing or leads to values that are not valid together. What is left out goes into `notes`.
+std::vector<MarginParameter> margin_parameters(const Case& from, const MarginWishes& wishes,
+                                               std::vector<std::string>& notes);
+
+/// How far they are, up to the factor up and down, from where hunting begins or ends. A note gives the numbers at the
+/// nearest change along each line. Throws as margin_parameters(), and std::invalid_argument if the numbers are valid
+/// but too extreme for a method.
+MarginReport ask_margin(const Case& from, const MarginWishes& wishes, const Asking& asking);
 
 }  // namespace limcycle

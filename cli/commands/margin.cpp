@@ -51,24 +51,17 @@ int run(MarginFlags flags) {
   const Case from = load_case(flags);
   need_loop(from);
   const Units units = units_of(from);
+  const MarginWishes wishes{flags.parameters, directions(flags.toward), flags.factor, {"--parameter", "--toward"}};
   std::vector<std::string> notes;
-  const auto toward = directions(flags.toward);
-  std::vector<MarginParameter> parameters;
-  if (toward.empty() || !flags.parameters.empty())
-    parameters = margin_parameters(from, "--parameter", flags.parameters, notes);
-  for (const Toward& one : toward) parameters.push_back(toward_parameter(from, "--toward", one));
+  margin_parameters(from, wishes, notes);  // reports errors before anything is computed
   Output output(flags, &from);
   output.check_file("--html", flags.html);
 
   MarginReport report;
   {
     Progress progress(flags.quiet, flags.verbose);
-    report = answer_of([&] { return ask_margin(from, parameters, flags.factor, asking_of(flags, progress)); });
+    report = answer_of([&] { return ask_margin(from, wishes, asking_of(flags, progress)); });
   }
-  report.notes.insert(report.notes.end(), notes.begin(), notes.end());
-  for (const Toward& one : toward)
-    if (auto text = numbers_toward(from, "--toward", one, report); !text.empty())
-      report.notes.push_back(std::move(text));
   const auto made = provenance(flags, &from);
   const MarginReport shown = in_units(report, units);
   std::string text = margin_text(from.title, shown, units);

@@ -221,14 +221,10 @@ Answer continue_answer(const Question& question, const std::string& path, double
   return answer;
 }
 
-Answer margin_answer(const Question& question, const std::vector<std::string>& paths, double factor) {
-  std::vector<std::string> notes;
-  const auto parameters = margin_parameters(*question.from, "parameters", paths, notes);
-  const auto report = computed([&] {
-    MarginReport found = ask_margin(*question.from, parameters, factor, question.asking);
-    found.notes.insert(found.notes.end(), notes.begin(), notes.end());
-    return found;
-  });
+Answer margin_answer(const Question& question, const std::vector<std::string>& paths, double factor,
+                     const std::vector<Toward>& toward) {
+  const MarginWishes wishes{paths, toward, factor};
+  const auto report = computed([&] { return ask_margin(*question.from, wishes, question.asking); });
   const Sheet sheet = sheet_of(question, report->status);
   Answer answer = documents(sheet, report, margin_json, margin_csv, margin_text);
   answer.page = paged(sheet, report, margin_page);

@@ -2,6 +2,7 @@
 #include "limcycle/python/core/answer.hpp"
 #include "limcycle/questions/dissipativity.hpp"
 #include "limcycle/questions/map.hpp"
+#include "limcycle/questions/margin.hpp"
 #include "limcycle/questions/remedy.hpp"
 #include "limcycle/questions/sensitivity.hpp"
 #include "limcycle/questions/tune.hpp"
@@ -16,7 +17,8 @@ Answer predict_answer(const Question& question);
 Answer df_answer(const Question& question);
 Answer simulate_answer(const Question& question, bool check, bool audit);
 Answer continue_answer(const Question& question, const std::string& path, double low, double high);
-Answer margin_answer(const Question& question, const std::vector<std::string>& paths, double factor);
+Answer margin_answer(const Question& question, const std::vector<std::string>& paths, double factor,
+                     const std::vector<Toward>& toward);
 Answer map_answer(const Question& question, const MapAxis& x, const MapAxis& y, const std::vector<std::string>& methods,
                   int starts);
 Answer sensitivity_answer(const Question& question, const SensitivityWishes& wishes);

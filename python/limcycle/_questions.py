@@ -163,12 +163,20 @@ def continue_(loop: Loop, parameter: str, start: float, stop: float, *, time_lim
 
 
 @_explained
-def margin(loop: Loop, parameters: Union[str, Sequence[str]] = (), *, factor: float = 10.0,
-           time_limit: Optional[float] = None, progress: Progress = None) -> _results.Margin:
-    """How far each parameter (or those given) is, up to a factor, from where hunting begins or ends."""
+def margin(loop: Loop, parameters: Union[str, Sequence[str]] = (), *, toward: Optional[Mapping[str, float]] = None,
+           factor: float = 10.0, time_limit: Optional[float] = None, progress: Progress = None) -> _results.Margin:
+    """How far each parameter (or those given) is, up to a factor, from where hunting begins or ends.
+
+    `toward`: numbers that change together, such as {"kd": 10.0, "ki": 2.0}, as one parameter: 1 stands for the
+    numbers of the loop, 2 for those given."""
     most = number("factor", factor, "1.01 to 1000", lambda x: 1.01 <= x <= 1000.0)
     paths = words("parameters", parameters, _PATH)
-    return _results.Margin(_core.margin(_case_of(loop), _work(time_limit, progress), paths, most))
+    if toward is not None and not isinstance(toward, Mapping):
+        raise CaseError("toward", repr(toward), 'must be values by number, such as {"kd": 10.0, "ki": 2.0}')
+    line = [(word("toward", name, _PATH), number(f"toward[{name!r}]", value, "a finite number"))
+            for name, value in (toward or {}).items()]
+    return _results.Margin(_core.margin(_case_of(loop), _work(time_limit, progress), paths, most,
+                                        [line] if line else []))
 
 
 @_explained

@@ -67,6 +67,9 @@ class Documents(unittest.TestCase):
 
     def test_margin(self):
         file = case("belt-coulomb")
+        relay = case("relay-third-order")
+        self.same(limcycle.margin(limcycle.load(relay), toward={"level": 0.5}, factor=3.0), "margin", relay, "--toward",
+                  "level=0.5", "--factor", "3")
         self.same(limcycle.margin(limcycle.load(file), "loop.plant.speed", factor=2.0), "margin", file, "--parameter",
                   "loop.plant.speed", "--factor", "2")
 

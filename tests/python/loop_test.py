@@ -66,6 +66,9 @@ class Wrong(unittest.TestCase):
         self.refused(lambda: limcycle.margin(loop, "loop.controller.tf"), key="parameters", value="loop.controller.tf",
                      rule="is zero or absent: no factor changes it")
         self.refused(lambda: limcycle.margin(loop, 3), key="parameters", value="3")
+        self.refused(lambda: limcycle.margin(loop, toward={"kx": 1.0}), key="toward", value="kx")
+        self.refused(lambda: limcycle.margin(loop, toward=3), key="toward", value="3")
+        self.refused(lambda: limcycle.margin(loop, toward={"kp": float("nan")}), key="toward['kp']", value="nan")
         self.refused(lambda: limcycle.margin(loop, factor=1.0), key="factor")
         self.refused(lambda: limcycle.margin(loop, factor="2"), key="factor", value="'2'")
         self.refused(lambda: limcycle.map(loop, ("loop.controller.kd", 1, 2, 1), ("loop.plant.mass", 1, 2, 2)), key="x")
