@@ -228,8 +228,7 @@ std::optional<BrokenRule> validate(const LoopParts& parts) try {
   if (parts.reference_rate != 0.0)
     if (auto broken = move_along(loop, parts.reference_rate, reference)) return broken;
   if (auto broken = validate_ports(loop)) return broken;
-  if (auto broken = broken_way_of_input(loop)) return broken;
-  return loop.sampled ? broken_way_of_input(*loop.sampled) : std::nullopt;
+  return broken_way_of_input(loop.sampled ? *loop.sampled : loop);  // with samples, `loop` is their average
 } catch (const BrokenDiagram& broken) {
   return broken.rule;
 }

@@ -207,7 +207,10 @@ TEST_CASE("gallery: the valve with dead time, and the valve by its records, as i
   check_cycle(late, {38.209, 2.5847}, 2e-4);
   CHECK(late["error"].get<double>() > 1e-4);  // of the approximated dead time, stated and not too small
   CHECK(late["error"].get<double>() < 0.1);
-  const auto by_records = only_cycle(scene("predict", "valve-records"));
+  const auto records = scene("predict", "valve-records");
+  CHECK(records["cause"]["kind"] == "integral-action-and-stiction");
+  CHECK(records["cause"]["why"].get<std::string>().find("in which the valve sticks") != std::string::npos);
+  const auto by_records = only_cycle(records);
   check_cycle(by_records, {98.653, 0.50286}, 3e-5);
   // The process is linear: half the band and half the jump give half the swing.
   const auto half = scene("predict", "valve-records", {"loop.element.S=0.5", "loop.element.J=0.15"});

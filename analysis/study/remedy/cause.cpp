@@ -56,6 +56,11 @@ class CauseStudy {
       return decided(CauseKind::negative_slope, "Friction falls as the speed rises" + falling_range() +
                                                     ", which feeds the oscillation: with Fs lowered to Fc the loop "
                                                     "does not hunt.");
+    if (ends("with a valve that does not stick", without_sticking_valve(parts_)) && integral)
+      return decided(CauseKind::integral_action_and_stiction,
+                     "The integral action drives the command through the band in which the valve sticks, and the valve "
+                     "then jumps too far: without integral action, or with a valve that does not stick, the loop does "
+                     "not hunt.");
     if (ends("with a saturation in place of the relay", without_relay(parts_, relay_swing())))
       return decided(CauseKind::relay,
                      "The relay switches at full level however small the error: with a saturation that reaches this "

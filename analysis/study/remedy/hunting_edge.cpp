@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "limcycle/analysis/study/predict/interest.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -80,10 +82,15 @@ Hunts HuntingEdge::from_own_starts(const Loop& loop) {
   if (loop_.box_is_given) return Hunts::no;  // these are the same
   Judging judging = loop_.judging;
   judging.predict.search.reset();
-  HuntsAnswer answer = hunts(loop, judging);
-  for (const Cycle& one : answer.found.cycles)
-    if (one.stable == true) hunting = one.start;
-  return answer.hunts == Hunts::yes ? Hunts::yes : Hunts::no;
+  const HuntsAnswer answer = hunts(loop, judging);
+  bool any = std::ranges::any_of(answer.found.outcomes,
+                                 [](const OutcomeOfStart& one) { return one.outcome == Outcome::irregular; });
+  for (const Cycle& one : answer.found.cycles) {
+    if (one.stable != true || !is_of_interest(*loop_.judging.predict.search, one)) continue;
+    hunting = one.start;
+    any = true;
+  }
+  return any ? Hunts::yes : Hunts::no;
 }
 
 /// Moves either side away from the other until predict() judges both as they should be.

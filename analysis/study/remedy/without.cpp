@@ -8,6 +8,7 @@
 #include "limcycle/models/element/compensation.hpp"
 #include "limcycle/models/element/relay.hpp"
 #include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/valve_stiction.hpp"
 #include "limcycle/models/linear/integral_action.hpp"
 
 namespace limcycle {
@@ -198,6 +199,20 @@ std::optional<LoopParts> without_compensation(LoopParts parts) {
   change.element = [](Element& element) {
     auto* compensation = element.as<Compensation<double>>();
     return compensation != nullptr && std::exchange(compensation->level, 0.0) != 0.0;
+  };
+  return changed_parts(std::move(parts), change);
+}
+
+std::optional<LoopParts> without_sticking_valve(LoopParts parts) {
+  constexpr double far = 1e9;  // times the band: never reached
+  PartChange change;
+  change.element = [](Element& element) {
+    const auto* valve = element.as<ValveStiction<double>>();
+    if (valve == nullptr) return false;
+    Saturation<double> straight;
+    straight.limit = far * valve->S;
+    element = straight;
+    return true;
   };
   return changed_parts(std::move(parts), change);
 }

@@ -18,6 +18,8 @@ std::optional<LoopParts> without_delay(LoopParts parts);
 std::optional<LoopParts> without_relay(LoopParts parts, double swing);
 /// Friction compensation.
 std::optional<LoopParts> without_compensation(LoopParts parts);
+/// With a straight line in place of every valve-stiction element.
+std::optional<LoopParts> without_sticking_valve(LoopParts parts);
 /// Limits of the command, and saturations.
 std::optional<LoopParts> without_limits(LoopParts parts);
 
