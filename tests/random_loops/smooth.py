@@ -149,6 +149,8 @@ class Run:
         if self.solver is None:
             self.solver = self._solver()
         solver = self.solver
+        if solver.status != "running":
+            return False
         solver.step()
         if solver.status == "failed" or not np.isfinite(solver.y).all():
             return False
