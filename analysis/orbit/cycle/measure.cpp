@@ -80,13 +80,13 @@ Eigen::VectorXcd harmonics(const std::vector<double>& t, const std::vector<doubl
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {
     const Cubic01 cubic = piece(t, y, rate, i);
     const double h = t[i + 1] - t[i];
-    const int parts = std::max(1, static_cast<int>(std::ceil(h * w * H)));
-    for (std::size_t k = 0; k < node.size() * static_cast<std::size_t>(parts); ++k) {
-      const double at = (static_cast<double>(k / node.size()) + node[k % node.size()]) / parts;
-      const double angle = w * (t[i] + at * h);
+    const auto parts = static_cast<std::size_t>(std::max(1.0, std::ceil(h * w * H)));
+    for (std::size_t k = 0; k < node.size() * parts; ++k) {
+      const std::size_t part = k / node.size(), point = k % node.size();
+      const double at = (static_cast<double>(part) + node[point]) / static_cast<double>(parts);
+      const double angle = w * (t[i] + at * h), share = h * weight[point] / static_cast<double>(parts);
       const std::complex<double> turn(std::cos(angle), -std::sin(angle));
-      std::complex<double> term(0.0,
-                                cubic.at(at) * h / parts * weight[k % node.size()]);  // j e^(-j n angle) = sin + j cos
+      std::complex<double> term(0.0, cubic.at(at) * share);  // j e^(-j n angle) = sin + j cos
       sum(0) += term;
       for (int n = 1; n <= H; ++n) sum(n) += term *= turn;
     }
