@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "limcycle/models/diagram/assemble.hpp"
@@ -173,16 +172,8 @@ std::optional<BrokenRule> validate_sampled_diagram(const LoopParts& parts) {
   return std::nullopt;
 }
 
-/// True if the output changes at once at some instants.
-bool jumps(const Element& element) {
-  constexpr std::array<std::string_view, 9> kinds{"relay",          "delayed-relay", "quantizer",
-                                                  "sampled",        "window",        "reset-integrator",
-                                                  "valve-stiction", "output-rate",   "friction-compensation"};
-  return std::ranges::find(kinds, element.kind()) != kinds.end();
-}
-
-/// An element that stops where its input turns sees that by the sign of the input's rate, which a jump does not show
-/// and an approximated dead time shows wrongly.
+/// An element that stops where its input turns sees that by the sign of the input's rate, which an approximated dead
+/// time shows wrongly, and which does not show the jumps of a sampled controller (the only ones: see validate_ports).
 std::optional<BrokenRule> broken_way_of_input(const Loop& loop) {
   for (std::size_t i = 0; i < loop.elements.size(); ++i) {
     const Element& element = loop.elements[i];
@@ -193,10 +184,9 @@ std::optional<BrokenRule> broken_way_of_input(const Loop& loop) {
                         "cannot stand in a loop with dead time: the stem stops where its command turns, and in the "
                         "time domain an approximation of the dead time would turn it too early; a valve of a mass, a "
                         "spring and friction can"};
-    for (std::size_t k = 0; k < i; ++k)
-      if (port.D(static_cast<Index>(k)) != 0.0 && jumps(loop.elements[k]))
-        return BrokenRule{port.path, "goes by the way its input moves, and the output of " + loop.ports[k].path +
-                                         " jumps: in a diagram a low-pass block may stand between them"};
+    if (!port.D.isZero())
+      return BrokenRule{port.path, "goes by the way its input moves, and the output of " + straight_into(loop, port) +
+                                       " jumps: in a diagram a low-pass block may stand between them"};
   }
   return std::nullopt;
 }

@@ -99,7 +99,7 @@ int run(ReportFlags flags) {
 
 void add_report(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<ReportFlags>();
-  CLI::App* command = add_command(program, action, "report", "One self-contained page with all results for the loop",
+  CLI::App* command = add_command(program, action, "report", "One self-contained page with the results for the loop",
                                   true, flags, [flags] { return run(*flags); });
   command->get_option("--output")
       ->description("Write the page to FILE, or to stdout alone with - (default: the name of the case, .html)");

@@ -61,8 +61,10 @@ std::vector<Description> does_it_hunt() {
          "for a script: exit code 1 if a method is wrong"}}},
       {"report",
        hunt_group,
-       "Writes one page that needs no network: the answer, a block diagram of the loop, all figures, the verdict on "
-       "every method, sensitivity, energy balance, accuracy and cost, provenance and the case file itself. The page "
+       "Writes one page that needs no network: the answer, what would end the hunting, a block diagram of the loop, "
+       "all "
+       "figures, the verdict on every method, sensitivity, energy balance, provenance and the case file itself. The "
+       "page "
        "alone suffices to reproduce the result.",
        {{"limcycle report cases/relay-integrator.toml --quick -o relay.html", "without the slow parts"}}},
       {"simulate",

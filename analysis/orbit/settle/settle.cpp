@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "limcycle/analysis/motion/parallel.hpp"
 #include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
@@ -29,13 +30,6 @@ constexpr std::size_t enough_turns = 12;  ///< for a cycle to be recognised
 constexpr int most_restarts = 3;          ///< with short steps, of a march that left the range of numbers
 constexpr long periods_of_a_try = 40;     ///< of return maps; most that converge take 5 to 20, up to 15 maps
 
-/// True if y is the displacement of the body that rubs, to a factor.
-bool rubs_at_output(const Loop& loop) {
-  const Eigen::RowVectorXd& rubs = loop.ports.back().C;
-  const double along = rubs.dot(loop.C_y);
-  return along * along >= (1.0 - 1e-12) * rubs.squaredNorm() * loop.C_y.squaredNorm();
-}
-
 /// One run: simulation, and shooting whenever the swings look steady.
 class Settling {
  public:
@@ -47,7 +41,7 @@ class Settling {
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
         stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol),
         switching_(loop, loop_sizes(loop)),
-        rubs_elsewhere_(loop.ports.back().rubs && !loop.continuous && !rubs_at_output(loop)) {}
+        rubs_elsewhere_(loop.ports.back().rubs && !loop.continuous && !parallel(loop.ports.back().C, loop.C_y)) {}
 
   Settled run() {
     field_.modes() = start_.modes;

@@ -18,7 +18,7 @@ constexpr double fades = 1e-6;  ///< largest rate of a state of rest that no alg
 bool sticks(const LoopField& field) {
   const auto& elements = field.loop().elements;
   for (std::size_t i = 0; i < elements.size(); ++i)
-    if (elements[i].held(field.modes()[i]) == Held::rate) return true;
+    if (field.holds(i) && elements[i].may_stick()) return true;
   return false;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "limcycle/analysis/motion/parallel.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
@@ -35,14 +36,10 @@ namespace {
 
 /// True if y alone passes through the dead time.
 bool delays_output(const Loop& loop) {
-  const auto along = [&](const Eigen::RowVectorXd& row) {
-    if (row.size() == 0) return true;
-    const double part = row.dot(loop.C_y);
-    return part * part >= (1.0 - 1e-12) * row.squaredNorm() * loop.C_y.squaredNorm();
-  };
   for (Eigen::Index i = 0; i < loop.A_delayed.rows(); ++i)
-    if (!along(loop.A_delayed.row(i))) return false;
-  return std::ranges::all_of(loop.ports, [&](const Port& port) { return along(port.C_delayed); });
+    if (!parallel(loop.A_delayed.row(i), loop.C_y)) return false;
+  return std::ranges::all_of(
+      loop.ports, [&](const Port& port) { return port.C_delayed.size() == 0 || parallel(port.C_delayed, loop.C_y); });
 }
 
 }  // namespace
