@@ -162,7 +162,7 @@ void check_some_command_writes(const std::string& output) {
 
 Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), csv_(flags.csv) {
   keep("the case file", flags.case_file);
-  if (from != nullptr && from->loop) {
+  if (from != nullptr) {
     keep_data(*from);
     basis_ = basis_lines(*from);
   }
@@ -175,8 +175,9 @@ Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), 
 }
 
 void Output::keep_data(const Case& from) {
-  if (!from.loop) return;
   const auto folder = std::filesystem::path(from.file).parent_path();
+  for (const CurveFile& curve : from.curves) keep("the data of " + curve.path, (folder / curve.file).string());
+  if (!from.loop) return;
   for (const MeasuredPlantAt& plant : measured_plants(*from.loop))
     keep("the data of " + plant.path, (folder / plant.response->data().file).string());
 }

@@ -197,6 +197,13 @@ double pade_error(double w, double delay, int order) {
   return 2.0 * std::abs(std::sin(0.5 * turn - std::atan(g)));
 }
 
+int pade_order_for(double w, double delay) {
+  constexpr double accurate = 1e-9;
+  int order = lowest_pade_order;
+  while (order < highest_pade_order && pade_error(w, delay, order) > accurate) ++order;
+  return order;
+}
+
 TimeDomainLoop in_time_domain(const Loop& loop, int pade_order) {
   if (loop.sampled) return {with_fits(*loop.sampled), 0, 0};
   if (!loop.measured.empty()) return in_time_domain(with_fits(loop), pade_order);

@@ -29,6 +29,9 @@ inline constexpr int lowest_pade_order = 1, highest_pade_order = 60;
 /// approximation makes depend on the element's own output.
 TimeDomainLoop in_time_domain(const Loop& loop, int pade_order);
 
+/// The lowest order whose error is at most 1e-9 up to frequency w (rad/s), or the highest.
+int pade_order_for(double w, double delay);
+
 /// Linear states of the time-domain loop for states X of the original loop that have been constant for all past time.
 Eigen::VectorXd with_constant_history(const TimeDomainLoop& from, const Eigen::VectorXd& X);
 

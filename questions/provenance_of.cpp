@@ -23,6 +23,7 @@ Provenance provenance_of(std::uint64_t seed, int threads, const Case* from) {
     made.file = from->file;
     made.sha256 = from->sha256;
     made.overrides = from->overrides;
+    made.curves = from->curves;
     if (from->loop) made.measured = measured_plants(*from->loop);
   }
   return made;

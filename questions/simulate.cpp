@@ -17,7 +17,7 @@ SimulateAnswer ask_simulate(const Case& from, bool check, bool audit, const Aski
   options.stop = asking.stop;
   options.progress = [&](double fraction) { asking.report(share * fraction, "simulation"); };
   std::optional<EnergyAudit> books;
-  if (audit && has_energy(*from.loop)) {
+  if (audit && has_energy(*from.loop) && loop.delay == 0.0) {
     books.emplace(*from.loop, loop, options.rtol);
     options.watch = [&](LoopField& field, March& march, const std::vector<Mode>& modes) {
       books->step(field, march, modes);

@@ -20,8 +20,8 @@ struct SimulateAnswer {
 /// Throws InputError if the samples of the run, with these documents, would not fit into memory.
 void need_memory_for(const Case& from, const HeldDocuments& held);
 
-/// `check`: run it twice; `audit`: compute the energy balance of a loop that has energies. Throws InputError if the
-/// case has no [simulate].
+/// `check`: run it twice; `audit`: compute the energy balance of a loop that has energies and no dead time. Throws
+/// InputError if the case has no [simulate].
 SimulateAnswer ask_simulate(const Case& from, bool check, bool audit, const Asking& asking);
 
 }  // namespace limcycle

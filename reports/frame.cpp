@@ -32,8 +32,12 @@ Json case_json(const Provenance& provenance) {
   Json made{{"title", text_or_null(provenance.title)},
             {"file", text_or_null(provenance.file)},
             {"sha256", text_or_null(provenance.sha256)},
-            {"measured", Json::array()}};
+            {"measured", Json::array()},
+            {"curves", Json::array()}};
   for (const MeasuredPlantAt& plant : provenance.measured) made["measured"].push_back(measured_json(plant));
+  for (const CurveFile& curve : provenance.curves)
+    made["curves"].push_back(
+        {{"path", curve.path}, {"file", curve.file}, {"sha256", curve.sha256}, {"points", curve.points}});
   return made;
 }
 

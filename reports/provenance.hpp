@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/models/measured/curve_file.hpp"
 #include "limcycle/models/measured/plants_of_loop.hpp"
 
 namespace limcycle {
@@ -20,6 +21,7 @@ struct Provenance {
   std::vector<std::string> overrides;       ///< "PATH=VALUE" as given by --set, in order
   std::vector<std::string> flags{};         ///< words of the command line that change the result: "--only", "gain-kp"
   std::vector<MeasuredPlantAt> measured{};  ///< plants of the case that are known by data
+  std::vector<CurveFile> curves{};          ///< measured friction curves of the case
 };
 
 }  // namespace limcycle

@@ -229,8 +229,9 @@ inline std::vector<Sample> samples_of_kind(std::string_view kind) {
   if (kind == "stribeck-table")
     return {{.name = "measured", .settings = measured, .level = 1.5, .passive = true, .holds_below = 1.5},
             {.name = "uneven",
-             .settings =
-                 with(measured, {{"Fs_minus", 1.3}, {"forces_minus", std::vector<double>{1.2, 1.1, 1.0, 0.9, 0.9}}}),
+             .settings = with(measured, {{"Fs_minus", 1.3},
+                                         {"velocities_minus", std::vector<double>{6e-4, 1e-3, 4e-3, 0.01}},
+                                         {"forces_minus", std::vector<double>{1.2, 1.1, 0.95, 0.9}}}),
              .level = 1.5,
              .passive = true,
              .holds_below = 1.3}};

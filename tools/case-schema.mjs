@@ -41,11 +41,32 @@ const table_suffix = /-table$/;
 const kind_of = (law) => !table_suffix.test(law.kind) ? { kind: { const: law.kind } } :
   { kind: { enum: [law.kind.replace(table_suffix, ''), law.kind] }, curve: { const: 'table' } };
 
+/// Its points stand in lists or in a file: read_curve.cpp.
+const lists = ['velocities', 'forces'];
+const column = { type: ['string', 'integer'], minLength: 1, minimum: 1, maximum: 10000 };
+const file_keys = {
+  file: { type: 'string', minLength: 1, description: 'CSV file with the points, in the place of the lists' },
+  velocity: { ...column, description: 'its column of velocities: name, or number from 1' },
+  force: { ...column, description: 'its column of forces: name, or number from 1' },
+  scale: table('factors of the columns', {
+    velocity: { type: 'number', not: { const: 0 } }, force: { type: 'number', not: { const: 0 } },
+  }),
+};
+const has_points = (law) => table_suffix.test(law.kind);
+const keys_of = (law) => ({
+  ...Object.fromEntries(law.parameters.map((p) => [p.key, parameter(p)])), ...(has_points(law) && file_keys),
+});
+const required_of = (law) =>
+  law.parameters.filter(({ key, required }) => required && !(has_points(law) && lists.includes(key))).map((p) => p.key);
+const in_lists = ['velocities_minus', 'forces_minus', ...lists];
+const rules_of = (law) => !has_points(law) ? {} : {
+  if: { required: ['file'] },
+  then: { properties: Object.fromEntries(in_lists.map((key) => [key, false])) },
+  else: { required: lists, properties: { velocity: false, force: false, scale: false } },
+};
+
 const kind_definition = (law) =>
-  table(law.equation, {
-    ...kind_of(law),
-    ...Object.fromEntries(law.parameters.map((p) => [p.key, parameter(p)])),
-  }, ['kind', ...law.parameters.filter((p) => p.required).map((p) => p.key)]);
+  table(law.equation, { ...kind_of(law), ...keys_of(law) }, ['kind', ...required_of(law)], rules_of(law));
 
 const group = (description, some) =>
   by_kind(description, Object.fromEntries(some.map((law) => [law.kind, name_of(law)])),
@@ -73,10 +94,9 @@ const block_definition = (law) => {
     name,
     ...kind_of(law),
     ...signals,
-    ...Object.fromEntries(law.parameters.map((p) => [p.key, parameter(p)])),
-  }, ['name', 'kind', ...(touches || law.kind === 'constant' ? [] : ['input']),
-    ...law.parameters.filter((p) => p.required).map((p) => p.key)],
-  touches ? { oneOf: ['input', 'on', 'between'].filter((key) => key in signals).map((key) => ({ required: [key] })) } : {});
+    ...keys_of(law),
+  }, ['name', 'kind', ...(touches || law.kind === 'constant' ? [] : ['input']), ...required_of(law)],
+  { ...rules_of(law), ...(touches && { oneOf: ['input', 'on', 'between'].filter((key) => key in signals).map((key) => ({ required: [key] })) }) });
 };
 
 /// JSON in one line, and with what fits into a line of 120 in one.

@@ -73,7 +73,9 @@ Case read_case(std::string_view text, const std::string& file, const std::vector
   case_file::check_text(text, file);
   case_file::Document document = case_file::parse(text, file);
   for (const auto& override : overrides) case_file::apply_override(document, override);
+  auto curves = case_file::read_curves(document);
   Case result = read_document(document, own);
+  result.curves = std::move(curves);
   result.text = text;
   if (!own) result.sha256 = sha256(text);
   return result;

@@ -13,6 +13,7 @@
 #include "limcycle/cases/loader/csv_reader.hpp"
 #include "limcycle/cases/loader/input_error.hpp"
 #include "limcycle/models/loop.hpp"
+#include "limcycle/models/measured/curve_file.hpp"
 
 namespace limcycle {
 
@@ -70,6 +71,7 @@ struct Case {
   std::optional<LoopParts> loop;   ///< empty: a case for a lone element, or for records only
   std::optional<Element> element;  ///< the lone element; empty if there is a loop, or records only
   std::string element_path;        ///< "loop.friction", "loop.element" or "loop.error": the subject of `df`
+  std::vector<CurveFile> curves;   ///< of the friction laws
 
   std::optional<OutputUnit> y_unit;
   std::optional<DfSection> df;

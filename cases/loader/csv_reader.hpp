@@ -25,6 +25,8 @@ class CsvReader {
   /// Opens the file and reads its header. Throws InputError if it is missing, a directory, unreadable, binary, or holds
   /// no row.
   explicit CsvReader(std::string file);
+  CsvReader(const CsvReader&) = delete;  // fields refer to the row
+  CsvReader& operator=(const CsvReader&) = delete;
 
   const std::string& file() const { return file_; }
   /// Names in the header; empty if there is none.

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <stdexcept>
 
-#include "limcycle/cases/loader/case.hpp"
-#include "limcycle/cases/loader/csv_reader.hpp"
+#include "limcycle/cases/loader/data_file.hpp"
 #include "limcycle/cases/loader/parameters.hpp"
 #include "limcycle/models/measured/measured_plant.hpp"
 
@@ -16,7 +13,6 @@ namespace limcycle::case_file {
 namespace {
 
 constexpr std::size_t most_points = 100'000;
-constexpr std::uintmax_t largest_data_file = std::uintmax_t{1} << 26;
 
 /// Which columns of the file are read.
 struct Columns {
@@ -114,32 +110,18 @@ void check_degrees(const CsvReader& csv, const MeasuredPlant& plant, const Frequ
       largest_phase, -std::min(slopes.low, slopes.high)));
 }
 
-std::string bytes_of(const std::string& path, const CsvReader& csv) {
-  std::error_code failed;
-  if (std::filesystem::file_size(path, failed) > largest_data_file && !failed)
-    throw csv.error("is larger than 64 MiB, the limit for a frequency response");
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 void complete(const Section& section, MeasuredPlant& plant) {
   if (plant.validate()) return;  // reported by whoever reads the plant
-  if (plant.file.empty()) throw section.error("file", "must be the name of a file");
   const Columns columns = columns_of(section, plant);
-  const std::filesystem::path path = std::filesystem::path(section.document().file).parent_path() / plant.file;
-  std::error_code failed;
-  if (!std::filesystem::exists(path, failed)) throw section.error("file", "no such file: " + path.string());
-  if (!std::filesystem::is_directory(path, failed) &&
-      !std::filesystem::is_regular_file(path, failed))  // the data are read, and then their digest is made
-    throw section.error("file", "must be a file that can be read twice, not a device or a pipe");
-  CsvReader csv(path.string());
+  DataFile opened(section, plant.file);
+  CsvReader& csv = opened.csv;
   csv.choose(columns.chosen);
   check_header(csv, columns, plant);
   FrequencyData data;
   data.file = plant.file;
-  data.sha256 = sha256(bytes_of(path.string(), csv));
+  data.sha256 = std::move(opened.sha256);
   double largest_phase = 0.0;
   for (std::vector<double> row; csv.next(row);) {
     const double frequency = plant.frequency.index == 0 ? row[0] : 2.0 * std::numbers::pi * row[0];

@@ -44,25 +44,14 @@ std::vector<Element> read_laws(const std::optional<Place>& place) {
 
 std::vector<std::string> kind_names() { return {std::begin(record_kinds), std::end(record_kinds)}; }
 
-/// As the program finds it: relative to the folder of the case.
-std::string beside(const std::string& case_file, const std::string& file) {
-  return (std::filesystem::path(case_file).parent_path() / file).string();
-}
-
-CsvColumn read_key(const Place& place) {
-  if (place.value.as<std::string>() != nullptr) return read_string(place);
-  if (place.value.as<std::int64_t>() == nullptr) throw place.wrong_type("the name of a column, or its number from 1");
-  return static_cast<std::size_t>(read_integer(place, 1, 10000));
-}
-
 RecordFile read_record(const Section& section) {
   section.allow({"kind", "file", "time", "position", "velocity", "force", "scale", "skip", "force_limit", "hold"});
   RecordFile record;
   const Place kind = section.at("kind", "which experiment: " + joined(kind_names()));
   record.kind = static_cast<RecordKind>(read_choice(kind, record_kinds));
-  record.path = beside(section.document().file, read_string(section.at("file", "with the columns of the record")));
+  record.path = section.document().beside(read_string(section.at("file", "with the columns of the record")));
   for (std::size_t k = 0; k < std::size(quantities); ++k)
-    if (const auto key = section.find(quantities[k])) record.columns[k] = read_key(*key);
+    if (const auto key = section.find(quantities[k])) record.columns[k] = read_column(*key);
   if (const auto scale = section.section("scale")) {
     scale->allow({"time", "position", "velocity", "force"});
     for (std::size_t k = 0; k < std::size(quantities); ++k)

@@ -109,6 +109,12 @@ std::vector<std::complex<double>> read_complex_list(const Place& place, std::siz
   return numbers;
 }
 
+CsvColumn read_column(const Place& place) {
+  if (place.value.as<std::string>() != nullptr) return read_string(place);
+  if (place.value.as<std::int64_t>() == nullptr) throw place.wrong_type("the name of a column, or its number from 1");
+  return static_cast<std::size_t>(read_integer(place, 1, 10000));
+}
+
 std::size_t read_choice(const Place& place, std::span<const std::string_view> names) {
   const std::string name = read_string(place);
   const auto found = std::ranges::find(names, name);

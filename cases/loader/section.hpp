@@ -2,6 +2,7 @@
 #include <complex>
 #include <optional>
 
+#include "limcycle/cases/loader/csv_reader.hpp"
 #include "limcycle/cases/loader/value.hpp"
 #include "limcycle/models/parameter.hpp"
 
@@ -40,6 +41,8 @@ std::vector<double> read_list(const Place& place, std::size_t most, const Range&
 Eigen::MatrixXd read_matrix(const Place& place, Eigen::Index most);
 std::vector<std::complex<double>> read_complex_list(const Place& place, std::size_t most);
 std::size_t read_choice(const Place& place, std::span<const std::string_view> names);
+/// The name of a column of a file, or its number from 1.
+CsvColumn read_column(const Place& place);
 
 /// One table of a case file.
 class Section {

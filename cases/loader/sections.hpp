@@ -13,6 +13,10 @@ void read_loop(const Section& section, Case& into);
 /// [diagram]: blocks joined by the names of their signals, as the file is after name_blocks().
 void read_diagram(const Section& section, Case& into);
 
+/// Reads the files that hold the points of measured friction curves (curve = "table" with `file`), and puts the points
+/// in their place.
+std::vector<CurveFile> read_curves(Document& document);
+
 /// The reference of a loop: a number or {kind = "ramp", rate = ...}.
 void read_reference(const Place& place, LoopParts& parts);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace limcycle::case_file {
 namespace {
@@ -81,6 +82,10 @@ InputError Document::error(const Value& where, const std::string& key, const std
                    .suggestion = suggestion};
   if (where.override >= 0) fault.override = overrides[static_cast<std::size_t>(where.override)];
   return InputError(std::move(fault));
+}
+
+std::string Document::beside(const std::string& named) const {
+  return (std::filesystem::path(file).parent_path() / named).string();
 }
 
 InputError Document::error_at(const std::string& path, const std::string& rule) const {

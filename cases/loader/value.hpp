@@ -51,6 +51,9 @@ struct Document {
   std::string file;
   std::vector<std::string> overrides;
 
+  /// A file that the case names, as the program finds it: relative to the folder of the case.
+  std::string beside(const std::string& named) const;
+
   /// The error to throw for the value at `key`; `where` is that value, or the table in which it is missing.
   InputError error(const Value& where, const std::string& key, const std::string& rule,
                    const std::string& suggestion = {}, const std::string& value = {}) const;

@@ -9,13 +9,13 @@
 namespace limcycle {
 
 /// Sliding friction as it was measured: the force at some speeds, with the break-away force Fs at rest, and separate
-/// values for motion in the negative direction (`forces_minus`, `Fs_minus`, by default the same). Between the points
-/// a cubic that rises and falls only where they do, C1 (Fritsch and Butland 1984, SIAM J. Sci. Stat. Comput. 5(2),
-/// 300-304); beyond the last point level. Lies between the least and the largest of its points. Viscous friction is in
-/// the forces. Cost O(log points).
+/// values for motion in the negative direction (`velocities_minus`, `forces_minus`, `Fs_minus`, by default the same).
+/// Between the points a cubic that rises and falls only where they do, C1 (Fritsch and Butland 1984, SIAM J. Sci. Stat.
+/// Comput. 5(2), 300-304); beyond the last point level. Lies between the least and the largest of its points. Viscous
+/// friction is in the forces. Cost O(log points).
 template <class S>
 struct MeasuredCurve {
-  std::vector<S> velocities, forces, forces_minus;
+  std::vector<S> velocities, forces, velocities_minus, forces_minus;
   S Fs{}, Fs_minus{};
 
   /// g(v), N. v = 0 counts as v >= 0.
@@ -25,11 +25,10 @@ struct MeasuredCurve {
   }
   /// g at a speed >= 0 in a given direction, also for v = 0.
   S level(const S& speed, bool forward) const {
-    const Side side{velocities, forward ? forces : forces_minus, forward ? Fs : Fs_minus};
-    return side.at(speed);
+    return forward ? Side{velocities, forces, Fs}.at(speed) : Side{velocities_minus, forces_minus, Fs_minus}.at(speed);
   }
 
-  bool symmetric() const { return Fs == Fs_minus && forces == forces_minus; }
+  bool symmetric() const { return Fs == Fs_minus && velocities == velocities_minus && forces == forces_minus; }
   double highest_level() const {
     return extreme([](double a, double b) { return std::max(a, b); });
   }
@@ -43,13 +42,18 @@ struct MeasuredCurve {
   /// The least distance of two speeds of the points.
   double velocity_scale() const {
     double least = infinite;
-    for (std::size_t i = 0; i < velocities.size(); ++i)
-      least = std::min(least, value_of(velocities[i]) - (i > 0 ? value_of(velocities[i - 1]) : 0.0));
+    for (const auto* list : {&velocities, &velocities_minus})
+      for (std::size_t i = 0; i < list->size(); ++i)
+        least = std::min(least, value_of((*list)[i]) - (i > 0 ? value_of((*list)[i - 1]) : 0.0));
     return least;
   }
+  /// Speeds of the points of either direction, ascending.
   std::vector<double> knots() const {
     std::vector<double> list;
-    for (const S& v : velocities) list.push_back(value_of(v));
+    for (const auto* speeds : {&velocities, &velocities_minus})
+      for (const S& v : *speeds) list.push_back(value_of(v));
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
     return list;
   }
 
@@ -58,21 +62,28 @@ struct MeasuredCurve {
     return {{"velocities", "m/s", "speeds of the points, ascending, above 0", &Owner::velocities, positive},
             {"forces", "N", "friction at these speeds, viscous friction included", &Owner::forces, positive},
             {"Fs", "N", "break-away (stiction) level", &Owner::Fs, positive},
-            {"forces_minus", "N", "friction for v < 0", &Owner::forces_minus, positive, false, "forces"},
+            {"velocities_minus", "m/s", "speeds of the points for v < 0", &Owner::velocities_minus, positive, false,
+             "velocities"},
+            {"forces_minus", "N", "friction at these for v < 0", &Owner::forces_minus, positive, false, "forces"},
             {"Fs_minus", "N", "break-away level for v < 0", &Owner::Fs_minus, positive, false, "Fs"}};
   }
 
   std::optional<BrokenRule> validate_curve() const {
-    if (velocities.empty()) return BrokenRule{"velocities", "must have one speed or more"};
-    for (std::size_t i = 1; i < velocities.size(); ++i)
-      if (!(velocities[i] > velocities[i - 1])) return BrokenRule{"velocities", "must ascend from point to point"};
-    for (const auto& [key, list] : {std::pair("forces", &forces), {"forces_minus", &forces_minus}})
-      if (list->size() != velocities.size())
-        return BrokenRule{key, "must be as many as the " + std::to_string(velocities.size()) + " velocities"};
-    return std::nullopt;
+    if (auto broken = broken_points("velocities", velocities, "forces", forces)) return broken;
+    return broken_points("velocities_minus", velocities_minus, "forces_minus", forces_minus);
   }
 
  private:
+  static std::optional<BrokenRule> broken_points(const char* speed_key, const std::vector<S>& speeds,
+                                                 const char* force_key, const std::vector<S>& at_speeds) {
+    if (speeds.empty()) return BrokenRule{speed_key, "must have one speed or more"};
+    for (std::size_t i = 1; i < speeds.size(); ++i)
+      if (!(speeds[i] > speeds[i - 1])) return BrokenRule{speed_key, "must ascend from point to point"};
+    if (at_speeds.size() != speeds.size())
+      return BrokenRule{force_key, "must be as many as the " + std::to_string(speeds.size()) + " " + speed_key};
+    return std::nullopt;
+  }
+
   template <class F>
   double extreme(const F& of) const {
     double found = of(value_of(Fs), value_of(Fs_minus));

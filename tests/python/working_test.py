@@ -78,8 +78,8 @@ class WhileItWorks(unittest.TestCase):
         self.assertEqual(points(1), points(3))
 
     def test_what_a_method_cannot_handle(self):
-        with self.assertRaisesRegex(limcycle.NoAnswer, "this case is valid, but could not be computed: .*delay"):
-            limcycle.simulate(limcycle.load(case("relay-delay")), 1.0)
+        with self.assertRaisesRegex(limcycle.NoAnswer, "this case is valid, but could not be computed: .*stepper exact"):
+            limcycle.simulate(limcycle.load(case("pid-lugre"), {"simulate.stepper": "exact"}))
 
 
 class Costs(unittest.TestCase):

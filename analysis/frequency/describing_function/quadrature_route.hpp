@@ -72,7 +72,8 @@ class QuadratureRoute {
   /// The result on one mesh. `error` holds only the errors common to two meshes: defect of periodicity and rounding.
   DescribingFunction on_mesh(MeshSettings settings) {
     settings.harmonics = options_.harmonics;
-    const PeriodMesh mesh = graded_mesh(motion_, element_.scales(), settings);
+    PeriodMesh mesh = graded_mesh(motion_, element_.scales(), settings);
+    if (const auto knots = element_.knots(); !knots.empty()) split_at_speeds(mesh, motion_, knots);
     sums_.restart();
     if (auto periodic = linear_ ? linear_->find(motion_, mesh, settings.stages, try_symmetric_, sums_) : std::nullopt)
       return take(std::move(*periodic), linear_->evaluations());

@@ -85,6 +85,15 @@ MotionNode PrescribedMotion::at(int anchor, double local) const {
   return node;
 }
 
+std::vector<double> PrescribedMotion::positions_of_rate(double rate) const {
+  const double cosine = (rate - drift_) / (amplitude_ * frequency_);
+  if (!(std::abs(cosine) < 1.0)) return {};
+  std::vector<double> positions;
+  for (const double phase : {std::acos(cosine), -std::acos(cosine)})
+    positions.push_back(phase - origin() - 2.0 * pi * std::floor((phase - origin()) / (2.0 * pi)));
+  return positions;
+}
+
 double PrescribedMotion::layer(int anchor, const Scales& scales) const {
   const Anchor& a = anchors_[index(anchor)];
   const double peak = amplitude_ * frequency_, slope = std::abs(a.sine);
@@ -111,6 +120,33 @@ PeriodMesh graded_mesh(const PrescribedMotion& motion, const Scales& scales, con
   append_graded(mesh.first, 1, motion.reverses() ? 2 : 3, motion.first_length(), cap1, cap2, settings);
   if (motion.reverses()) append_graded(mesh.second, 2, 3, motion.second_length(), cap2, cap1, settings);
   return mesh;
+}
+
+void split_at_speeds(PeriodMesh& mesh, const PrescribedMotion& motion, const std::vector<double>& speeds) {
+  std::vector<double> positions;
+  for (const double speed : speeds)
+    for (const double rate : {speed, -speed})
+      for (const double position : motion.positions_of_rate(rate)) {
+        positions.push_back(position);
+        positions.push_back(position - 2.0 * pi);  // on the way to the period from phase 0
+      }
+  std::ranges::sort(positions);
+  for (auto* panels : {&mesh.virgin, &mesh.first, &mesh.second}) {
+    std::vector<Panel> split;
+    for (Panel panel : *panels) {
+      const double sliver = 1e-6 * (panel.to - panel.from), begin = motion.position(panel.anchor, panel.from);
+      const double shift = panel.from - begin;
+      const double end = panel.to - shift;
+      for (auto at = std::ranges::upper_bound(positions, begin + sliver); at != positions.end() && *at < end - sliver;
+           ++at) {
+        if (*at + shift - panel.from <= sliver) continue;
+        split.push_back({panel.anchor, panel.from, *at + shift});
+        panel.from = *at + shift;
+      }
+      split.push_back(panel);
+    }
+    *panels = std::move(split);
+  }
 }
 
 PeriodMesh uniform_mesh(const PrescribedMotion& motion, int samples) {

@@ -56,6 +56,8 @@ class PrescribedMotion {
   double second_length() const { return second_length_; }  ///< from anchor 2 to 3; 0 without reversals
   /// Distance of a phase of anchor `anchor` from the beginning of the period.
   double position(int anchor, double local) const { return anchors_[index(anchor)].phase + local - origin(); }
+  /// Distances from the beginning of the period at which the rate has this value, within the next period.
+  std::vector<double> positions_of_rate(double rate) const;
   /// Phase over which the motion leaves the neighbourhood of the anchor in which an element with these scales changes.
   double layer(int anchor, const Scales& scales) const;
 
@@ -92,6 +94,10 @@ void append_graded(std::vector<Panel>& panels, int left, int right, double lengt
 /// Panels that shrink geometrically towards both ends of each stretch between reversals, down to the cap. The count
 /// grows with the logarithm of the layer only.
 PeriodMesh graded_mesh(const PrescribedMotion& motion, const Scales& scales, const MeshSettings& settings);
+
+/// Splits the panels where the motion has one of these speeds (m/s), in either direction: a friction curve through
+/// measured points is not smooth there.
+void split_at_speeds(PeriodMesh& mesh, const PrescribedMotion& motion, const std::vector<double>& speeds);
 
 /// `samples` (a multiple of 4) equal steps per period, split at reversals.
 PeriodMesh uniform_mesh(const PrescribedMotion& motion, int samples);

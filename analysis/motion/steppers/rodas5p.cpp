@@ -92,16 +92,33 @@ void Rodas5p::begin(const State& x, double t) {
   t0_ = t;
 }
 
-/// I/(gamma h) - J into lu_: its LU factors with row pivoting, or for a small system its inverse, because a product
-/// with that has no chain of dependent operations. A vanishing pivot makes the stages infinite or NaN, which the error
-/// norm detects.
+/// A law with memory keeps many numbers that stand still for most of the time, such as return points.
+void Rodas5p::find_moving() {
+  const auto n = jacobian_.rows();
+  moving_.clear();
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (jacobian_(i, j) != 0.0) {
+        moving_.push_back(static_cast<std::size_t>(i));
+        break;
+      }
+}
+
+/// I/(gamma h) - J into lu_, of a large system for the moving states: its LU factors with row pivoting, or for a small
+/// system its inverse, because a product with that has no chain of dependent operations. A vanishing pivot makes the
+/// stages infinite or NaN, which the error norm detects.
 template <int N>
 void Rodas5p::factorise() {
-  const std::size_t n = size_of<N>(x0_.size());
+  const std::size_t n = N > 0 ? static_cast<std::size_t>(N) : moving_.size();
   double* const a = lu_.data();
   const double* const jacobian = jacobian_.data();
   const double diagonal = 1.0 / (rodas5p::gamma * h_);
-  for (std::size_t i = 0; i < n * n; ++i) a[i] = -jacobian[i];
+  if constexpr (N > 0) {
+    for (std::size_t i = 0; i < n * n; ++i) a[i] = -jacobian[i];
+  } else {
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = 0; i < n; ++i) a[j * n + i] = -jacobian[moving_[j] * x0_.size() + moving_[i]];
+  }
   for (std::size_t i = 0; i < n; ++i) a[i * n + i] += diagonal;
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   if constexpr (N > 0)
@@ -110,25 +127,39 @@ void Rodas5p::factorise() {
     decompose(a, order_.data(), n);
 }
 
-/// Solution for the right side right_.
+/// Solution for the right side right_. A state whose row of the Jacobian is zero has an equation of its own.
 template <int N>
 void Rodas5p::solve(double* solution) {
-  const std::size_t n = size_of<N>(x0_.size());
   const double* const a = lu_.data();
   if constexpr (N > 0) {
+    constexpr std::size_t n = N;
     double sum[N] = {};
 #pragma GCC unroll 6
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t i = 0; i < n; ++i) sum[i] += a[j * n + i] * right_[j];
     std::copy_n(sum, n, solution);
   } else {
-    for (std::size_t i = 0; i < n; ++i) solution[i] = right_[order_[i]];
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = j + 1; i < n; ++i) solution[i] -= a[j * n + i] * solution[j];
-    for (std::size_t j = n; j-- > 0;) {
-      solution[j] *= a[j * n + j];
-      for (std::size_t i = 0; i < j; ++i) solution[i] -= a[j * n + i] * solution[j];
+    const std::size_t n = moving_.size();
+    reduced_.resize(n);
+    solved_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) reduced_[i] = right_[moving_[i]];
+    for (std::size_t j = 0, next = 0; j < x0_.size(); ++j) {
+      if (next < n && moving_[next] == j) {
+        ++next;
+        continue;
+      }
+      solution[j] = rodas5p::gamma * h_ * right_[j];
+      if (solution[j] == 0.0) continue;
+      for (std::size_t i = 0; i < n; ++i) reduced_[i] += jacobian_.data()[j * x0_.size() + moving_[i]] * solution[j];
     }
+    for (std::size_t i = 0; i < n; ++i) solved_[i] = reduced_[order_[i]];
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = j + 1; i < n; ++i) solved_[i] -= a[j * n + i] * solved_[j];
+    for (std::size_t j = n; j-- > 0;) {
+      solved_[j] *= a[j * n + j];
+      for (std::size_t i = 0; i < j; ++i) solved_[i] -= a[j * n + i] * solved_[j];
+    }
+    for (std::size_t i = 0; i < n; ++i) solution[moving_[i]] = solved_[i];
   }
 }
 
@@ -173,6 +204,7 @@ void Rodas5p::run(const RightSide& f, double h) {
     case 6:
       return run_sized<6>(f, h);
     default:
+      find_moving();
       return run_sized<0>(f, h);
   }
 }

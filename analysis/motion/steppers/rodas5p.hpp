@@ -130,6 +130,7 @@ class Rodas5p {
   }
 
   void resize(std::size_t n);
+  void find_moving();
   void run(const RightSide& f, double h);
   template <int N>
   void run_sized(const RightSide& f, double h);
@@ -147,6 +148,9 @@ class Rodas5p {
   /// I/(gamma h) - J by columns, factorised or inverted, and its rows in the order of the pivots.
   std::vector<double> lu_;
   std::vector<std::size_t> order_;
+  /// Of a large system: the states whose row of the Jacobian is not zero. Only they have a system to solve.
+  std::vector<std::size_t> moving_;
+  State reduced_, solved_;  ///< its right side and its solution
   double t0_ = 0;
   double h_ = 0;
 };

@@ -154,6 +154,7 @@ double other_tolerance(double rtol) { return rtol >= 1e-10 ? std::min(0.01 * rto
 Agreement agreement(const Loop& loop, SimulateOptions options, const Simulation& run, double rtol) {
   const double told = std::exchange(options.rtol, rtol);
   options.watch = {};
+  options.delay_band *= 2.0;
   const Simulation second = simulate(loop, options);
   Agreement found;
   found.rtol = rtol;

@@ -8,6 +8,8 @@
 #include "limcycle/analysis/motion/steppers/stepper_limits.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/settle/outcome_watch.hpp"
+#include "limcycle/analysis/short_number.hpp"
+#include "limcycle/models/delay.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -29,19 +31,22 @@ State initial_state(const Loop& loop, const std::map<std::string, double>& named
 }
 
 /// External signals of a run: the loop's constants, replaced or supplemented by the case's signals. Up to the next
-/// break they are continued smoothly, so that a step that ends there is not affected by the jump.
-ExternalSignals external(const Loop& loop, const SimulateOptions& options, const double& next_break) {
-  return [constants = loop.external, origin = loop.external_origin, options, &next_break](double time, External& value,
-                                                                                          External& rate) {
+/// break they are continued smoothly, so that a step that ends there is not affected by the jump. `lead`: by which the
+/// reference is read ahead, s.
+ExternalSignals external(const Loop& loop, const SimulateOptions& options, double lead, const double& next_break) {
+  return [constants = loop.external, origin = loop.external_origin, options, lead, &next_break](
+             double time, External& value, External& rate) {
     const double t = std::min(time, std::nextafter(next_break, 0.0));
     value = constants;
     rate.setZero();
     if (options.reference) {
-      rate(reference_value) = options.reference->slope(t);
-      value(reference_value) = options.reference->at(t) - origin(reference_value);
+      const double ahead = t + lead;
+      rate(reference_value) = options.reference->slope(ahead);
+      value(reference_value) = options.reference->at(ahead) - origin(reference_value);
       value(reference_slope) = rate(reference_value) - origin(reference_slope);
-      if (options.reference->kind == Signal::Kind::sine && t >= options.reference->start)
-        rate(reference_slope) = -options.reference->at(t) * options.reference->frequency * options.reference->frequency;
+      if (options.reference->kind == Signal::Kind::sine && ahead >= options.reference->start)
+        rate(reference_slope) =
+            -options.reference->at(ahead) * options.reference->frequency * options.reference->frequency;
     }
     if (options.force) {
       value(external_force) += options.force->at(t);
@@ -50,9 +55,10 @@ ExternalSignals external(const Loop& loop, const SimulateOptions& options, const
   };
 }
 
-std::vector<std::string> columns(const Loop& loop) {
+std::vector<std::string> columns(const Loop& loop, const std::vector<std::size_t>& shown) {
   std::vector<std::string> names{"t"};
-  for (const auto& name : state_names(loop)) names.push_back("state." + name);
+  const auto states = state_names(loop);
+  for (const std::size_t i : shown) names.push_back("state." + states[i]);
   names.insert(names.end(), {"y", "dy_dt"});
   for (const auto& port : loop.ports)
     for (const char* what : {".input", ".rate", ".output"}) names.push_back(port.path + what);
@@ -60,15 +66,17 @@ std::vector<std::string> columns(const Loop& loop) {
 }
 
 /// Times at which a step must end: samples and breaks of the signals, in order.
-std::vector<std::pair<double, bool>> stops(const SimulateOptions& options, double sample) {
+std::vector<std::pair<double, bool>> stops(const SimulateOptions& options, double sample, double lead) {
   std::vector<std::pair<double, bool>> times;
   const auto count = static_cast<long>(std::floor(options.duration / sample + 1e-9));
   for (long i = 1; i <= count; ++i)
     times.emplace_back(std::min(sample * static_cast<double>(i), options.duration), true);
   if (times.empty() || times.back().first < options.duration) times.emplace_back(options.duration, true);
-  for (const auto* signal : {&options.force, &options.reference})
-    if (*signal)
-      for (const double t : (*signal)->breaks(options.duration)) times.emplace_back(t, false);
+  if (options.force)
+    for (const double t : options.force->breaks(options.duration)) times.emplace_back(t, false);
+  if (options.reference)
+    for (const double t : options.reference->breaks(options.duration + lead))
+      if (t > lead) times.emplace_back(t - lead, false);
   std::ranges::sort(times);
   return times;
 }
@@ -83,17 +91,35 @@ void check(const SimulateOptions& options) {
     throw std::invalid_argument("simulate.sample asks for more than 1e7 rows");
 }
 
+/// Where a run begins, and what is behind its states.
+struct Beginning {
+  State state;
+  std::vector<std::size_t> shown;  ///< the states that are shown
+  double lead = 0.0;               ///< by which the controller runs ahead of the plant, s
+};
+
+/// Where the states of these names are among those of a loop that has them all, and perhaps others.
+std::vector<std::size_t> places_of(const std::vector<std::string>& names, const Loop& in) {
+  const auto all = state_names(in);
+  std::vector<std::size_t> places;
+  for (const auto& name : names)
+    if (const auto at = std::ranges::find(all, name); at != all.end())
+      places.push_back(static_cast<std::size_t>(at - all.begin()));
+  return places;
+}
+
 /// One run: rows at the samples, and after every step the data for the watch of the motion.
 class Running {
  public:
-  Running(const Loop& loop, const SimulateOptions& options)
+  Running(const Loop& loop, const SimulateOptions& options, Beginning begins)
       : loop_(loop),
         options_(options),
-        times_(stops(options, options.sample > 0.0 ? options.sample : options.duration / 1000.0)),
+        begins_(std::move(begins)),
+        times_(stops(options, options.sample > 0.0 ? options.sample : options.duration / 1000.0, begins_.lead)),
         next_break_(break_after(0.0)),
         field_(loop) {
-    run_.columns = columns(loop);
-    field_.set_external(external(loop, options, next_break_));
+    run_.columns = columns(loop, begins_.shown);
+    field_.set_external(external(loop, options, begins_.lead, next_break_));
     if (!options.force && !options.reference && !loop.elements.empty())
       // Tighter tolerances do not improve turning points beyond the cubic through each step.
       watch_.emplace(loop, OutcomeOptions{std::max(options.rtol, 1e-7), 1e-9, cycle_accuracy}, typical_sizes(loop),
@@ -101,11 +127,10 @@ class Running {
   }
 
   Simulation operator()() {
-    State x = initial_state(loop_, options_.initial);
-    const State given = x;
+    State x = begins_.state;
     field_.start(x, 0.0);
     for (auto i = static_cast<std::size_t>(loop_.states()); i < x.size(); ++i)
-      if (given[i] != 0.0) x[i] = given[i];  // an element's own state named in the case
+      if (begins_.state[i] != 0.0) x[i] = begins_.state[i];  // an element's own state named in the case
     March march(field_, stepper_kind(options_.stepper), loop_weights(loop_, options_.rtol));
     run_.stepper = to_string(march.kind());
     run_.notes = stepper_notes(loop_, march.kind(), options_.rtol);
@@ -171,7 +196,7 @@ class Running {
     field_.rate(x, dx_, t);
     std::vector<double> row{t};
     const State values = own_values(loop_, x);
-    row.insert(row.end(), values.begin(), values.end());
+    for (const std::size_t i : begins_.shown) row.push_back(values[i]);
     row.push_back(loop_.output_origin + field_.y(x));
     row.push_back(field_.y_rate(dx_));
     for (std::size_t i = 0; i < loop_.elements.size(); ++i) {
@@ -203,6 +228,7 @@ class Running {
 
   const Loop& loop_;
   const SimulateOptions& options_;
+  Beginning begins_;
   std::vector<std::pair<double, bool>> times_;
   double next_break_;  ///< read by the external signals of the field
   LoopField field_;
@@ -211,6 +237,33 @@ class Running {
   State dx_;
   std::vector<Mode> modes_;  ///< before a step, for the watch function
 };
+
+std::string note_of_delay(const TimeDomainLoop& made, double delay, double up_to) {
+  if (made.pade_order == 0)
+    return "the dead time is exact: the relay acts " + short_number(delay) +
+           " s after it decides, and the states of a controller are those of the decision";
+  const std::string order = std::to_string(made.pade_order);
+  return "the dead time is a Pade approximation of order " + order + "/" + order + ", off by at most " +
+         short_number(pade_error(up_to, delay, made.pade_order), 2) + " of the delayed signal up to " +
+         short_number(up_to, 3) + " rad/s; before t = 0 the loop stood as it starts";
+}
+
+Simulation simulate_with_delay(const Loop& loop, const SimulateOptions& options) {
+  const double up_to = options.delay_band / loop.delay;
+  const TimeDomainLoop made = in_time_domain(loop, pade_order_for(up_to, loop.delay));
+  const State own = initial_state(loop, options.initial);
+  const auto n = static_cast<std::ptrdiff_t>(loop.states());
+  const Eigen::VectorXd X = with_constant_history(made, Eigen::Map<const Eigen::VectorXd>(own.data(), n));
+  const auto names = state_names(loop);
+  Beginning begins{State(state_names(made.loop).size(), 0.0), places_of(names, made.loop),
+                   made.pade_order == 0 ? loop.delay : 0.0};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (const auto at = places_of({names[i]}, made.loop); !at.empty()) begins.state[at.front()] = own[i];
+  std::ranges::copy(X, begins.state.begin());
+  Simulation run = Running(made.loop, options, std::move(begins))();
+  run.notes.push_back(note_of_delay(made, loop.delay, up_to));
+  return run;
+}
 
 }  // namespace
 
@@ -243,8 +296,8 @@ State state_of(const Loop& loop, State values) {
 Simulation simulate(const Loop& loop, const SimulateOptions& options) {
   check(options);
   if (loop.sampled) return simulate(*loop.sampled, options);
-  if (loop.delay > 0.0) throw std::invalid_argument("loop.plant.delay: simulate does not treat a delay yet");
-  return Running(loop, options)();
+  if (loop.delay > 0.0) return simulate_with_delay(loop, options);
+  return Running(loop, options, {initial_state(loop, options.initial), places_of(state_names(loop), loop)})();
 }
 
 }  // namespace limcycle

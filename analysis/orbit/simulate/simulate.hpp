@@ -36,6 +36,8 @@ struct SimulateOptions {
   std::string stepper = "auto";           ///< auto, rodas5p, dopri5, fehlberg78, cash-karp54
   double rtol = 1e-7;
   double sample = 0.0;  ///< output interval, s; 0: duration/1000
+  /// A dead time that is not exact is approximated to 1e-9 up to this frequency times itself, rad.
+  double delay_band = 20.0;
   std::function<bool()> stop;
   std::function<void(double)> progress;  ///< fraction done
   /// Called after every step, with the field as it is then, and the modes in which the step was made.
@@ -67,7 +69,9 @@ struct Simulation {
 /// Share by which the swings and the period of a run's cycle may still change.
 inline constexpr double cycle_accuracy = 1e-4;
 
-/// Time-domain run with located events. Throws std::invalid_argument for an unknown state or stepper name.
+/// Time-domain run with located events. A dead time is exact behind a relay, else a Pade approximation (see
+/// in_time_domain); before t = 0 the loop stood as it starts. Throws std::invalid_argument for an unknown state or
+/// stepper name.
 Simulation simulate(const Loop& loop, const SimulateOptions& options);
 
 /// Names of all states in the order of LoopState: linear states, then "z" of the friction law (z1, z2, ... if it has

@@ -19,8 +19,7 @@ LoopInTime loop_in_time(const Loop& loop, double highest) {
             "its pulse transfer function, hold and computation delay, without aliases and without its quanta"};
   if (loop.delay == 0.0) return {{loop, 0, 0}, {}};
   const double up_to = std::min(highest > 0.0 ? 7.0 * highest : 7.0 / loop.delay, 40.0 / loop.delay);
-  int order = lowest_pade_order;
-  while (order < highest_pade_order && pade_error(up_to, loop.delay, order) > 1e-9) ++order;
+  const int order = pade_order_for(up_to, loop.delay);
   LoopInTime made{in_time_domain(loop, order), {}};
   made.note =
       made.treated.pade_order == 0

@@ -45,6 +45,8 @@ void PredictionCheck::check(Prediction& p, const LoopState& start, std::string n
     return compare(p, hunt_.cycles(), *outcome.cycle);
   if (const auto cycle = nearest(hunt_.cycles(), p); cycle && (!p.stable || hunt_.cycles()[*cycle].stable == p.stable))
     return compare(p, hunt_.cycles(), *cycle);
+  // The criterion of a balance may err: a stable cycle at its place is what it predicted.
+  if (outcome.cycle && is_close(p, hunt_.cycles()[*outcome.cycle])) return compare(p, hunt_.cycles(), *outcome.cycle);
   conclude_without_cycle(p, outcome);
 }
 

@@ -45,12 +45,16 @@ std::optional<std::size_t> nearest(const std::vector<Cycle>& cycles, const Predi
   return best;
 }
 
+bool is_close(const Prediction& prediction, const Cycle& cycle) {
+  return std::abs(prediction.amplitude / cycle.first_harmonic - 1.0) <= agreement &&
+         std::abs(prediction.frequency / cycle.frequency() - 1.0) <= agreement;
+}
+
 void compare(Prediction& prediction, const std::vector<Cycle>& cycles, std::size_t cycle) {
   const double amplitude = prediction.amplitude / cycles[cycle].first_harmonic;
   const double frequency = prediction.frequency / cycles[cycle].frequency();
   prediction.cycle = cycle;
-  const bool close = std::abs(amplitude - 1.0) <= agreement && std::abs(frequency - 1.0) <= agreement;
-  prediction.verdict = close ? Verdict::confirmed : Verdict::biased;
+  prediction.verdict = is_close(prediction, cycles[cycle]) ? Verdict::confirmed : Verdict::biased;
   prediction.why =
       "first harmonic " + percent_off(amplitude) + ", frequency " + percent_off(frequency) + " against the true cycle";
   if (prediction.stable && cycles[cycle].stable && *prediction.stable != *cycles[cycle].stable) {

@@ -10,8 +10,11 @@ std::size_t merge(std::vector<Cycle>& cycles, const Cycle& cycle);
 /// its frequency within a factor of 3.
 std::optional<std::size_t> nearest(const std::vector<Cycle>& cycles, const Prediction& prediction);
 
-/// Sets cycle, verdict and sentence of a prediction that refers to this cycle: confirmed if first harmonic and
-/// frequency are within 5 %, biased otherwise.
+/// First harmonic and frequency within 5 % of those of the cycle.
+bool is_close(const Prediction& prediction, const Cycle& cycle);
+
+/// Sets cycle, verdict and sentence of a prediction that refers to this cycle: confirmed if it is close and
+/// does not err about stability, biased otherwise.
 void compare(Prediction& prediction, const std::vector<Cycle>& cycles, std::size_t cycle);
 
 /// Cycles to which no prediction of the method refers.

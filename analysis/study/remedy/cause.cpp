@@ -47,15 +47,18 @@ class CauseStudy {
     if (ends("without dead time and sampling", without_delay(parts_)))
       return decided(CauseKind::delay, "The loop reacts too late: without dead time and sampling it does not hunt.");
     const bool integral = ends("without integral action", without_integral_action(parts_));
-    const bool falling = ends("with Fs lowered to Fc", without_falling_friction(parts_));
+    const std::string level = friction_is_measured(parts_) ? "with a friction curve that is level at its least force"
+                                                           : "with Fs lowered to Fc";
+    const bool falling = ends(level, without_falling_friction(parts_));
     if (integral && falling)
       return decided(CauseKind::integral_action_and_stiction,
                      "The integral action pushes until the body breaks away from stiction, and it then slides too "
-                     "far: without integral action, or with Fs lowered to Fc, the loop does not hunt.");
+                     "far: without integral action, or " +
+                         level + ", the loop does not hunt.");
     if (falling)
       return decided(CauseKind::negative_slope, "Friction falls as the speed rises" + falling_range() +
-                                                    ", which feeds the oscillation: with Fs lowered to Fc the loop "
-                                                    "does not hunt.");
+                                                    ", which feeds the oscillation: " + level +
+                                                    " the loop does not hunt.");
     if (ends("with a valve that does not stick", without_sticking_valve(parts_)) && integral)
       return decided(CauseKind::integral_action_and_stiction,
                      "The integral action drives the command through the band in which the valve sticks, and the valve "

@@ -50,7 +50,7 @@ Hunts HuntingEdge::from_last_hunting(const Loop& loop, const SearchBox& box) {
   const auto settled = hunting ? settled_from(loop, *hunting, box, loop_.judging.predict) : std::nullopt;
   if (!settled) return Hunts::no;
   const Hunts answer = hunts_of(*settled);
-  if (answer == Hunts::yes && settled->outcome == Outcome::cycle) hunting = settled->shot->cycle.start;
+  if (answer == Hunts::yes && settled->outcome == Outcome::cycle) hunting->state = settled->shot->cycle.start;
   return answer;
 }
 
@@ -70,7 +70,7 @@ Hunts HuntingEdge::judged(double value, Care care) {
   }
   HuntsAnswer answer = hunts(*loop, judging);
   for (const Cycle& one : answer.found.cycles)
-    if (one.stable == true) hunting = one.start;
+    if (one.stable == true) hunting = motion_state(one, *loop);
   if (care == Care::quick || answer.hunts != Hunts::no) return answer.hunts;
   if (!answer.found.outcomes.empty()) run = std::move(answer.found.outcomes.front().trace);
   last = from_last_hunting(*loop, box);
@@ -87,7 +87,7 @@ Hunts HuntingEdge::from_own_starts(const Loop& loop) {
                                  [](const OutcomeOfStart& one) { return one.outcome == Outcome::irregular; });
   for (const Cycle& one : answer.found.cycles) {
     if (one.stable != true || !is_of_interest(*loop_.judging.predict.search, one)) continue;
-    hunting = one.start;
+    hunting = motion_state(one, loop);
     any = true;
   }
   return any ? Hunts::yes : Hunts::no;

@@ -19,7 +19,8 @@ struct HuntingSizes {
 /// What is known of a loop before its remedies are sought.
 struct HuntingLoop {
   Judging judging;
-  std::vector<Cycle> cycles;  ///< as the loop stands
+  std::vector<Cycle> cycles;        ///< as the loop stands
+  std::vector<std::string> states;  ///< their names
   HuntingSizes sizes;
   bool followable = false;    ///< its cycles can be followed over a number: see in_exact_time()
   bool box_is_given = false;  ///< by the case
@@ -28,8 +29,8 @@ struct HuntingLoop {
 /// Two values between which hunting ends.
 struct Bracket {
   double rests = 0.0, hunts = 0.0;
-  bool diverges = false;               ///< beyond it the motion diverges: it does not hunt
-  std::optional<LoopState> hunting{};  ///< on the last hunting motion before it
+  bool diverges = false;                 ///< beyond it the motion diverges: it does not hunt
+  std::optional<MotionState> hunting{};  ///< on the last hunting motion before it
 };
 
 /// Judges values of a remedy's number, and confirms the edges between those at which the loop hunts and those at which
@@ -54,7 +55,7 @@ class HuntingEdge {
   /// nearest of some on either side that are judged with full care to hunt and, with the next one beyond, to rest.
   std::optional<Bracket> well_apart(const Bracket& bracket);
 
-  std::optional<LoopState> hunting = {};  ///< on the last hunting motion that was met
+  std::optional<MotionState> hunting = {};  ///< on the last hunting motion that was met
   Trace run = {};  ///< from the largest displacement, of the last judgement with full care without hunting
 
  private:

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/motion/field/loop_field.hpp"
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
 #include "limcycle/analysis/study/predict/cycle_search.hpp"
 #include "limcycle/analysis/study/predict/loop_in_time.hpp"
 
@@ -53,12 +54,12 @@ void judge(HuntsAnswer& answer, const std::vector<std::string>& may_diverge) {
   decide(Hunts::no, "every start comes to rest or slides steadily");
 }
 
-/// The state for a loop with as many states but perhaps more elements, whose modes then begin anew; empty for others.
-std::optional<LoopState> carried_to(const Loop& loop, const LoopState& from) {
+/// The state for a loop with the same states but perhaps more elements, whose modes then begin anew; empty for others.
+std::optional<LoopState> carried_to(const Loop& loop, const MotionState& from) {
+  if (state_names(loop) != from.names) return std::nullopt;
+  if (from.state.modes.size() == loop.elements.size()) return from.state;
   LoopField field(loop);
-  if (field.size() != from.x.size()) return std::nullopt;
-  if (from.modes.size() == loop.elements.size()) return from;
-  LoopState state{from.x, {}};
+  LoopState state{from.state.x, {}};
   field.start(state.x, 0.0);
   state.modes = field.modes();
   return state;
@@ -114,7 +115,11 @@ Hunts hunts_of(const Settled& motion) {
   return Hunts::undecided;
 }
 
-std::optional<Settled> settled_from(const Loop& loop, const LoopState& motion, const SearchBox& box,
+MotionState motion_state(const Cycle& cycle, const Loop& loop) {
+  return {cycle.start, state_names(loop_in_time(loop, 0.0).treated.loop)};
+}
+
+std::optional<Settled> settled_from(const Loop& loop, const MotionState& motion, const SearchBox& box,
                                     const PredictOptions& options, long steps) {
   const Loop time = loop_in_time(loop, 0.0).treated.loop;
   const auto from = carried_to(time, motion);

@@ -40,10 +40,18 @@ HuntsAnswer hunts(const Loop& loop, const Judging& judging);
 /// rest or slides steadily.
 Hunts hunts_of(const Settled& motion);
 
-/// Where the loop goes from a state on the hunting motion of another one with as many states: a cycle may be stable
+/// A state on a motion, and the names of the states of its loop, by which another loop knows if they are its own.
+struct MotionState {
+  LoopState state;
+  std::vector<std::string> names;
+};
+/// Of a cycle of the loop.
+MotionState motion_state(const Cycle& cycle, const Loop& loop);
+
+/// Where the loop goes from a state on the hunting motion of another one with the same states: a cycle may be stable
 /// where no start of predict() comes upon it. Elements that only this one has begin anew. `steps`: as of SettleOptions;
-/// 0: its own. Empty if the states do not fit.
-std::optional<Settled> settled_from(const Loop& loop, const LoopState& motion, const SearchBox& box,
+/// 0: its own. Empty if the states are others.
+std::optional<Settled> settled_from(const Loop& loop, const MotionState& motion, const SearchBox& box,
                                     const PredictOptions& options, long steps = 0);
 
 /// For variants of a loop that was judged with `predict`: the same starts, and those may diverge that did.

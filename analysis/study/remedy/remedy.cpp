@@ -6,8 +6,10 @@
 #include <numbers>
 
 #include "limcycle/analysis/on_threads.hpp"
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
+#include "limcycle/analysis/study/predict/loop_in_time.hpp"
 #include "limcycle/analysis/study/remedy/dither.hpp"
 #include "limcycle/analysis/study/remedy/remedy_order.hpp"
 #include "limcycle/analysis/study/remedy/remedy_search.hpp"
@@ -63,6 +65,7 @@ class RemedyStudy {
     report_.step = start_displacements(output_per_input(loop), answer.found.search, 1).front();
     report_.now = loop_costs(parts_, report_.step, report_.before, answer.hunts == Hunts::no);
     loop_.cycles = std::move(answer.found.cycles);
+    loop_.states = state_names(loop_in_time(loop, 0.0).treated.loop);
   }
 
   /// Sizes of the motion, from the cycle or the motion without a period with the largest swing.

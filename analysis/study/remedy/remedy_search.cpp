@@ -62,7 +62,7 @@ std::optional<Bracket> RemedySearch::followed_from(double value, const std::vect
 
 /// About the value of a side, by its error.
 Bracket RemedySearch::around(const MarginSide& side, bool up, bool rests_beyond) {
-  if (side.cycle) edge_.hunting = side.cycle->start;
+  if (const auto loop = edge_.loop_at(side.value); side.cycle && loop) edge_.hunting = motion_state(*side.cycle, *loop);
   const double apart = std::isnan(side.error) ? 0.1 : std::clamp(2.0 * side.error, 0.25 * narrow_enough, 0.1);
   const double low = side.value * (1.0 - apart), high = side.value * (1.0 + apart);
   return up == rests_beyond ? Bracket{high, low} : Bracket{low, high};
@@ -82,12 +82,12 @@ std::optional<Bracket> RemedySearch::followed_from_nothing(bool up) {
     const PredictOptions& options = loop_.judging.predict;
     for (const Cycle& one : loop_.cycles) {
       if (one.stable != true) continue;
-      auto settled = settled_from(*exact, one.start, *options.search, options);
+      auto settled = settled_from(*exact, {one.start, loop_.states}, *options.search, options);
       if (settled && settled->shot && settled->shot->cycle.stable == true)
         cycles.push_back(std::move(settled->shot->cycle));
     }
     if (!cycles.empty()) {
-      edge_.hunting = cycles.front().start;
+      edge_.hunting = motion_state(cycles.front(), *exact);
       return followed_from(value, cycles, up);
     }
     if (edge_.judged(value, HuntingEdge::Care::quick) == Hunts::yes) return scanned(up, value, Until::rests);
@@ -99,7 +99,7 @@ std::optional<Bracket> RemedySearch::followed(bool up) {
   if (!loop_.followable) return scanned(up, candidate_.own, Until::rests);
   if (candidate_.is_absent()) return followed_from_nothing(up);
   const auto stable = std::ranges::find(loop_.cycles, std::optional<bool>(true), &Cycle::stable);
-  edge_.hunting = stable->start;
+  edge_.hunting = {stable->start, loop_.states};
   return followed_from(candidate_.own, loop_.cycles, up);
 }
 

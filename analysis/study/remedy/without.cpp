@@ -78,20 +78,26 @@ bool lower_to(Element& law, std::string_view key, std::string_view to) {
   return true;
 }
 
-/// A measured curve becomes level at its least force.
+/// Each direction of a measured curve becomes level at its least force.
 bool flatten_table(Element& law) {
   const auto& rows = law.parameters();
   auto values = law.values();
   bool any = false;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    auto* forces = std::get_if<std::vector<double>>(&values[i]);
-    if (forces == nullptr || rows[i].key != "forces" || forces->empty()) continue;
+  const auto flatten = [&](std::string_view forces_key, std::string_view rest_key) {
+    const auto place = [&](std::string_view key) {
+      return static_cast<std::size_t>(std::ranges::find(rows, key, &ParameterRow::key) - rows.begin());
+    };
+    const std::size_t at = place(forces_key), rest = place(rest_key);
+    if (at == rows.size() || rest == rows.size()) return;
+    auto* forces = std::get_if<std::vector<double>>(&values[at]);
+    if (forces == nullptr || forces->empty()) return;
     const double least = *std::ranges::min_element(*forces);
-    any = any || *std::ranges::max_element(*forces) > least;
+    any = any || *std::ranges::max_element(*forces) > least || values[rest] != ParameterValue(least);
     std::ranges::fill(*forces, least);
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      if (rows[k].key == "Fs") values[k] = least;
-  }
+    values[rest] = least;
+  };
+  flatten("forces", "Fs");
+  flatten("forces_minus", "Fs_minus");
   if (any) law = law.with(values);
   return any;
 }
@@ -156,6 +162,18 @@ std::optional<LoopParts> without_falling_friction(LoopParts parts) {
     return flatten_table(element) || any;
   };
   return changed_parts(std::move(parts), change);
+}
+
+bool friction_is_measured(LoopParts parts) {
+  bool any = false;
+  PartChange look;
+  look.element = [&](Element& element) {
+    any = any || (element.is_friction() && std::ranges::find(element.parameters(), std::string_view("forces"),
+                                                             &ParameterRow::key) != element.parameters().end());
+    return false;
+  };
+  changed_parts(std::move(parts), look);
+  return any;
 }
 
 std::optional<LoopParts> without_delay(LoopParts parts) {

@@ -11,6 +11,8 @@ namespace limcycle {
 std::optional<LoopParts> without_integral_action(LoopParts parts);
 /// Stiction and the falling part of the friction curve: Fs = Fc, or a measured curve at its least force.
 std::optional<LoopParts> without_falling_friction(LoopParts parts);
+/// True if a friction law has a measured curve.
+bool friction_is_measured(LoopParts parts);
 /// Dead times of plants and blocks, and sampling.
 std::optional<LoopParts> without_delay(LoopParts parts);
 /// Relays: a saturation in their place that reaches the same level at twice `swing`, the amplitude of the relay's

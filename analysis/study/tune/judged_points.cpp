@@ -22,14 +22,14 @@ bool JudgedPoints::refuted_within(double distance, std::span<const double> value
       points_, [&](const Judged& one) { return !one.feasible && distance_between(one.place, place) < distance; });
 }
 
-std::vector<LoopState> JudgedPoints::hunting_near(std::span<const double> values) const {
+std::vector<MotionState> JudgedPoints::hunting_near(std::span<const double> values) const {
   constexpr std::size_t most = 3;
   const auto place = space_.place(values);
-  std::vector<std::pair<double, const LoopState*>> near;
+  std::vector<std::pair<double, const MotionState*>> near;
   for (const Judged& one : points_)
     if (one.hunting) near.emplace_back(distance_between(one.place, place), &*one.hunting);
-  std::ranges::stable_sort(near, {}, &std::pair<double, const LoopState*>::first);
-  std::vector<LoopState> motions;
+  std::ranges::stable_sort(near, {}, &std::pair<double, const MotionState*>::first);
+  std::vector<MotionState> motions;
   for (std::size_t i = 0; i < std::min(most, near.size()); ++i) motions.push_back(*near[i].second);
   return motions;
 }

@@ -18,13 +18,13 @@ class JudgedPoints {
   /// True if a point within this distance is not feasible.
   bool refuted_within(double distance, std::span<const double> values) const;
   /// The hunting motions that are nearest, at most three.
-  std::vector<LoopState> hunting_near(std::span<const double> values) const;
+  std::vector<MotionState> hunting_near(std::span<const double> values) const;
 
  private:
   struct Judged {
     std::vector<double> place;
     bool feasible;
-    std::optional<LoopState> hunting;
+    std::optional<MotionState> hunting;
   };
   const TuneSpace& space_;
   std::vector<Judged> points_;

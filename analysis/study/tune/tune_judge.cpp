@@ -50,27 +50,27 @@ SettleOptions settings_of(const Loop& time, const TuneQuestion& question) {
 }
 
 /// The outcome of a run that is none of a feasible point.
-void conclude_by(TunePoint& point, const Settled& run, const std::string& from = "from the step: ") {
+void conclude_by(TunePoint& point, const Settled& run, const Loop& loop, const std::string& from = "from the step: ") {
   const Hunts shown = hunts_of(run);
   if (shown == Hunts::no) return;
   conclude(point, outcome_of(shown), from + run.why);
-  if (shown == Hunts::yes && run.shot) point.hunting = run.shot->cycle.start;
+  if (shown == Hunts::yes && run.shot) point.hunting = motion_state(run.shot->cycle, loop);
 }
 
 /// hunts(), and the motions of points nearby.
 void judge_in_full(TunePoint& point, const Loop& loop, const TuneQuestion& question,
-                   std::span<const LoopState> nearby) {
+                   std::span<const MotionState> nearby) {
   HuntsAnswer answer = hunts(loop, question.judging);
   if (answer.hunts == Hunts::undecided && is_stopped(question)) return;
   for (const Cycle& one : answer.found.cycles)
-    if (one.stable == true) point.hunting = one.start;
+    if (one.stable == true) point.hunting = motion_state(one, loop);
   if (answer.hunts != Hunts::no) return conclude(point, outcome_of(answer.hunts), std::move(answer.why));
   const PredictOptions& options = question.judging.predict;
-  for (const LoopState& motion : nearby) {
+  for (const MotionState& motion : nearby) {
     const auto run = settled_from(loop, motion, *options.search, options, steps_of_a_motion);
     if (is_stopped(question)) return;
     if (!run || hunts_of(*run) == Hunts::no) continue;
-    return conclude_by(point, *run, "from the hunting motion of a point nearby: ");
+    return conclude_by(point, *run, loop, "from the hunting motion of a point nearby: ");
   }
   conclude(point, TuneOutcome::feasible, std::move(answer.why));
 }
@@ -97,14 +97,15 @@ bool is_above_limit(TunePoint& point, const TuneQuestion& question) {
 }
 
 /// A point by itself.
-void judge_alone(TunePoint& point, const TuneQuestion& question, std::span<const LoopState> nearby) try {
+void judge_alone(TunePoint& point, const TuneQuestion& question, std::span<const MotionState> nearby) try {
   const auto parts = question.loop_with(point.values);
   if (!parts) return conclude(point, TuneOutcome::invalid, "these values break a rule of the loop");
   if (!question.wants(TuneCost::settling)) {
     const Settled run = run_from_step(*parts, question);
     if (is_stopped(question)) return;
     const Hunts shown = hunts_of(run);
-    if (shown != Hunts::no && shown != Hunts::diverges) return conclude_by(point, run);  // this may be allowed
+    if (shown != Hunts::no && shown != Hunts::diverges)
+      return conclude_by(point, run, build_loop(*parts));  // this may be allowed
   }
   judge_in_full(point, build_loop(*parts), question, nearby);
 } catch (const std::invalid_argument& refused) {
@@ -169,7 +170,7 @@ void look_at(TunePoint& point, const TuneQuestion& question) try {
   if (is_above_limit(point, question) || !question.wants(TuneCost::settling)) return;
   const Settled run = run_from_step(*parts, question, few_steps);
   if (is_stopped(question)) return;
-  conclude_by(point, run);
+  conclude_by(point, run, build_loop(*parts));
   if (point.outcome != TuneOutcome::not_judged || run.trace.y.empty()) return;
   const double off = std::abs(parts->reference - run.trace.y_origin - run.trace.y.back());
   if (off > still_settled * question.step)  // friction that holds the body at the start settles nothing
@@ -199,7 +200,7 @@ std::optional<SquaredError> squared_error_of(const LoopParts& parts, const TuneQ
   return squared_error(run, parts.reference, question.horizon);
 }
 
-void judge(TunePoint& point, const TuneQuestion& question, std::span<const LoopState> nearby) {
+void judge(TunePoint& point, const TuneQuestion& question, std::span<const MotionState> nearby) {
   judge_alone(point, question, nearby);
   if (point.outcome != TuneOutcome::feasible || !question.margin) return;
   for (const auto& values : question.margin(point.values)) {

@@ -47,9 +47,9 @@ struct TunePoint {
   Part part = Part::design;
   std::size_t search = 0;  ///< number of the local search
   TuneOutcome outcome = TuneOutcome::not_judged;
-  TuneCosts costs{};                   ///< those that were wanted and known
-  std::string why{};                   ///< one clause; may be empty
-  std::optional<LoopState> hunting{};  ///< a state on its hunting motion, if it has a cycle
+  TuneCosts costs{};                     ///< those that were wanted and known
+  std::string why{};                     ///< one clause; may be empty
+  std::optional<MotionState> hunting{};  ///< a state on its hunting motion, if it has a cycle
 };
 std::string_view to_string(TunePoint::Part part);
 
@@ -90,6 +90,6 @@ std::optional<SquaredError> squared_error_of(const LoopParts& parts, const TuneQ
 /// (one that does not come to rest in 60 000 steps was not decided), then hunts() from all starts, then runs from the
 /// hunting motions of points nearby, whose cycle may reach as far as here without a start that leads to it; then the
 /// same for the margin. The outcome stays not_judged if it was interrupted.
-void judge(TunePoint& point, const TuneQuestion& question, std::span<const LoopState> nearby);
+void judge(TunePoint& point, const TuneQuestion& question, std::span<const MotionState> nearby);
 
 }  // namespace limcycle

@@ -73,6 +73,7 @@ std::string structured(std::string_view key) {
                                                           {"velocity", "[0, 1]"},
                                                           {"velocities", "[1]"},
                                                           {"forces", "[1]"},
+                                                          {"velocities_minus", "[1]"},
                                                           {"forces_minus", "[1]"},
                                                           {"coefficients", "[2, 2, 2, 2]"},
                                                           {"inputs", "[1, 2]"},

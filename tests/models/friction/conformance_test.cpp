@@ -57,7 +57,10 @@ Law reflected(Law law) {
   if constexpr (requires { law.Fs_minus; }) {
     std::swap(law.Fs, law.Fs_minus);
     if constexpr (requires { law.Fc; }) std::swap(law.Fc, law.Fc_minus);
-    if constexpr (requires { law.forces; }) std::swap(law.forces, law.forces_minus);
+    if constexpr (requires { law.forces; }) {
+      std::swap(law.velocities, law.velocities_minus);
+      std::swap(law.forces, law.forces_minus);
+    }
   }
   return law;
 }

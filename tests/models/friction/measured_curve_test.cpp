@@ -15,7 +15,7 @@ namespace {
 
 MeasuredCurve<double> through(double Fs, std::vector<double> velocities, std::vector<double> forces) {
   MeasuredCurve<double> curve;
-  curve.velocities = std::move(velocities);
+  curve.velocities = curve.velocities_minus = std::move(velocities);
   curve.forces = curve.forces_minus = std::move(forces);
   curve.Fs = curve.Fs_minus = Fs;
   REQUIRE_FALSE(curve.validate_curve());
@@ -83,7 +83,7 @@ TEST_CASE("measured curve: of a smooth monotone function its error falls with th
 
 TEST_CASE("measured curve: derivatives with respect to its points are those of differences") {
   StribeckTable<double> law;
-  law.velocities = {0.001, 0.003, 0.01};
+  law.velocities = law.velocities_minus = {0.001, 0.003, 0.01};
   law.forces = law.forces_minus = {31.0, 27.5, 21.0};
   law.Fs = law.Fs_minus = 35.0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -95,6 +95,25 @@ TEST_CASE("measured curve: derivatives with respect to its points are those of d
     down.forces[i] -= 1e-5;
     CHECK(exact == Approx((up.level(0.0045, true) - down.level(0.0045, true)) / 2e-5).margin(1e-8));
   }
+}
+
+TEST_CASE("measured curve: each direction has its own points") {
+  MeasuredCurve<double> both = through(35.0, {0.001, 0.003, 0.01}, {31.0, 27.5, 21.0});
+  const auto forward = through(35.0, both.velocities, both.forces);
+  const auto backward = through(33.0, {0.002, 0.004}, {30.0, 20.0});
+  both.velocities_minus = backward.velocities;
+  both.forces_minus = backward.forces;
+  both.Fs_minus = backward.Fs;
+  REQUIRE_FALSE(both.validate_curve());
+  CHECK_FALSE(both.symmetric());
+  for (const double v : {0.0005, 0.0017, 0.0035, 0.2}) {
+    CHECK(both.level(v) == forward.level(v));
+    CHECK(both.level(-v) == backward.level(v));
+  }
+  CHECK(both.knots() == std::vector<double>{0.001, 0.002, 0.003, 0.004, 0.01});
+  CHECK(both.velocity_scale() == 0.001);
+  both.forces_minus.pop_back();
+  CHECK(both.validate_curve()->key == "forces_minus");
 }
 
 TEST_CASE("lugre-table: with many points of a Stribeck curve it is lugre") {
@@ -112,6 +131,7 @@ TEST_CASE("lugre-table: with many points of a Stribeck curve it is lugre") {
     table.velocities.push_back(2e-5 * i);
     table.forces.push_back(formula.level(table.velocities.back()));
   }
+  table.velocities_minus = table.velocities;
   table.forces_minus = table.forces;
   const double z[] = {4e-6};
   for (const double v : {3.3e-5, -7.1e-4, 2.2e-3}) {

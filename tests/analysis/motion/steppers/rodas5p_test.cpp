@@ -206,6 +206,38 @@ TEST_CASE("RODAS5P gives the same answer for a system solved at fixed size and a
   }
 }
 
+TEST_CASE("RODAS5P gives the same answer with states beside that depend on nothing", "[rodas5p]") {
+  // A stiff pair driven by w, w' = cos t; the others stand, or move with time alone. Size 3 runs at fixed size, 12 with
+  // a system for the pair only.
+  const auto system = std::make_pair(
+      [](const State& x, State& dxdt, double t) {
+        std::fill(dxdt.begin(), dxdt.end(), 0.0);
+        dxdt[0] = x[1];
+        dxdt[1] = -1e4 * (x[1] - x[2]) - x[0] * x[0] * x[0];
+        dxdt[2] = std::cos(t);
+        if (x.size() > 3) dxdt[7] = t * t;
+      },
+      [](const State& x, Eigen::MatrixXd& J, double t, State& dfdt) {
+        J(0, 1) = 1.0;
+        J(1, 0) = -3.0 * x[0] * x[0];
+        J(1, 1) = -1e4;
+        J(1, 2) = 1e4;
+        dfdt[2] = -std::sin(t);
+        if (x.size() > 3) dfdt[7] = 2.0 * t;
+      });
+  Rodas5p alone, among;
+  State small{1.0, 0.5, 0.0}, large{1.0, 0.5, 0.0, 3.0, 0.0, -2.0, 0.0, 0.0, 0.0, 7.0, 0.0, 0.0};
+  for (int i = 0; i < 20; ++i) {
+    alone.do_step(system, small, 0.1 * i, 0.1);
+    among.do_step(system, large, 0.1 * i, 0.1);
+  }
+  for (std::size_t i = 0; i < 3; ++i) CHECK(large[i] == Approx(small[i]).epsilon(1e-11));
+  CHECK(large[3] == 3.0);
+  CHECK(large[5] == -2.0);
+  CHECK(large[7] == Approx(8.0 / 3.0).epsilon(1e-12));
+  CHECK(large[9] == 7.0);
+}
+
 TEST_CASE("RODAS5P's overloads agree and repeat_step evaluates the start only once", "[rodas5p]") {
   int rhs_calls = 0;
   int jacobian_calls = 0;

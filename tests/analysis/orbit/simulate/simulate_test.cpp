@@ -87,3 +87,68 @@ TEST_CASE("what cannot be simulated is refused with the reason") {
   options.stepper = "euler";
   CHECK_THROWS_AS(simulate(loop, options), std::invalid_argument);
 }
+
+namespace {
+
+/// y' = r - y(t - delay) behind an integrator with a dead time, or its sign with a relay.
+LoopParts late_integrator(Element element) {
+  LoopParts parts;
+  parts.plant = TransferFunction{{1.0}, {1.0, 0.0}, 0.5};
+  parts.element = std::move(element);
+  return parts;
+}
+
+/// The largest distance of y from a function of time.
+double distance_from(const Simulation& run, const std::function<double(double)>& y) {
+  const auto column = static_cast<std::size_t>(std::ranges::find(run.columns, std::string("y")) - run.columns.begin());
+  double largest = 0.0;
+  for (const auto& row : run.rows) largest = std::max(largest, std::abs(row[column] - y(row[0])));
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("simulate: a dead time is that of the method of steps, the more exactly the wider the band") {
+  const Loop loop = build_loop(late_integrator(saturation(10.0)));
+  SimulateOptions options;
+  options.duration = 2.0;
+  options.rtol = 1e-10;
+  options.initial["x1"] = 1.0;
+  // y is a polynomial of one degree more in every interval of 0.5 s.
+  const auto exact = [](double t) {
+    double sum = 1.0, factorial = 1.0;
+    for (int k = 1; t - 0.5 * (k - 1) > 0.0; ++k) {
+      factorial *= -k;
+      sum += std::pow(t - 0.5 * (k - 1), k) / factorial;
+    }
+    return sum;
+  };
+  double wide = 0.0;
+  for (const double band : {5.0, 20.0, 60.0}) {
+    options.delay_band = band;
+    const Simulation run = simulate(loop, options);
+    REQUIRE(run.status == Status::converged);
+    CHECK(std::ranges::none_of(run.columns, [](const std::string& name) { return name.find("delay") < name.size(); }));
+    const double error = distance_from(run, exact);
+    INFO(band << ": " << error);
+    if (wide > 0.0) CHECK(error < 0.5 * wide);
+    wide = error;
+  }
+  CHECK(wide < 2e-5);
+}
+
+TEST_CASE("simulate: a relay with dead time overshoots by the way of that time, exactly") {
+  const Loop loop = build_loop(late_integrator(relay(1.0, 0.1)));
+  SimulateOptions options;
+  options.duration = 6.0;
+  options.initial["x1"] = 0.4;
+  // Down from 0.4 by 1 m/s; the relay sees -0.1 at 0.5 s, and acts at 1 s; then swings of 0.6 in 2.4 s.
+  const auto exact = [](double t) {
+    if (t < 1.0) return 0.4 - t;
+    const double phase = std::fmod(t - 1.0, 2.4);
+    return phase < 1.2 ? -0.6 + phase : 0.6 - (phase - 1.2);
+  };
+  const Simulation run = simulate(loop, options);
+  REQUIRE(run.status == Status::converged);
+  CHECK(distance_from(run, exact) < 1e-9);
+}

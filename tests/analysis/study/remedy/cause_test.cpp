@@ -5,6 +5,7 @@
 
 #include "limcycle/analysis/study/remedy/without.hpp"
 #include "limcycle/models/element/clamped_pi.hpp"
+#include "limcycle/models/friction/dry/stribeck_table.hpp"
 #include "limcycle/tests/analysis/study/remedy/over_compensated.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -39,6 +40,25 @@ TEST_CASE("cause: integral action against stiction, for two laws and in other un
   REQUIRE(cause.tests.size() == 2);
   CHECK(cause.tests[0].hunts == Hunts::no);
   CHECK(cause.tests[1].hunts == Hunts::no);
+}
+
+TEST_CASE("cause: a measured curve that falls, with other points in each direction") {
+  StribeckTable<double> law;
+  law.velocities = {0.0005, 0.0015, 0.003};
+  law.forces = {1.39, 1.05, 1.0};
+  law.velocities_minus = {0.0005, 0.005};
+  law.forces_minus = {1.3, 0.9};
+  law.Fs = law.Fs_minus = 1.5;
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  parts.friction = law;
+  const Cause cause = cause_in(parts);
+  CHECK(cause.kind == CauseKind::integral_action_and_stiction);
+  CHECK_THAT(cause.why, Catch::Matchers::Contains("level at its least force"));
+  const auto level = without_falling_friction(parts);
+  REQUIRE(level);
+  CHECK(level->friction->number("Fs") == 1.0);
+  CHECK(level->friction->number("Fs_minus") == 0.9);
+  CHECK_FALSE(without_falling_friction(*level));
 }
 
 TEST_CASE("cause: the falling friction curve on a belt, with the speed up to which it falls") {

@@ -1,0 +1,37 @@
+#include "limcycle/cases/loader/data_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include "limcycle/cases/loader/case.hpp"
+
+namespace limcycle::case_file {
+namespace {
+
+constexpr std::uintmax_t largest_data_file = std::uintmax_t{1} << 26;
+
+std::string bytes_of(const CsvReader& csv) {
+  std::error_code failed;
+  if (std::filesystem::file_size(csv.file(), failed) > largest_data_file && !failed)
+    throw csv.error("is larger than 64 MiB, the limit for measured data");
+  std::ifstream in(csv.file(), std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Where the file is. It is read, and then its digest is made.
+std::string path_of(const Section& section, const std::string& name) {
+  if (name.empty()) throw section.error("file", "must be the name of a file");
+  std::string path = section.document().beside(name);
+  std::error_code failed;
+  if (!std::filesystem::exists(path, failed)) throw section.error("file", "no such file: " + path);
+  if (!std::filesystem::is_directory(path, failed) && !std::filesystem::is_regular_file(path, failed))
+    throw section.error("file", "must be a file that can be read twice, not a device or a pipe");
+  return path;
+}
+
+}  // namespace
+
+DataFile::DataFile(const Section& section, const std::string& name)
+    : csv(path_of(section, name)), sha256(limcycle::sha256(bytes_of(csv))) {}
+
+}  // namespace limcycle::case_file

@@ -1,0 +1,114 @@
+#include <cmath>
+#include <map>
+
+#include "limcycle/cases/loader/data_file.hpp"
+#include "limcycle/cases/loader/parameters.hpp"
+#include "limcycle/cases/loader/sections.hpp"
+
+namespace limcycle::case_file {
+namespace {
+
+constexpr std::string_view columns_of_curve[] = {"velocity", "force"};
+constexpr const char* points_of_curve[] = {"velocities", "forces", "velocities_minus", "forces_minus"};
+
+using Points = std::map<double, double>;  ///< friction at a speed, both > 0
+
+/// Columns by these names, or the first two of a file without a header.
+std::vector<CsvColumn> chosen_columns(const Section& section, const CsvReader& csv) {
+  std::vector<CsvColumn> chosen;
+  for (std::size_t k = 0; k < std::size(columns_of_curve); ++k) {
+    const auto key = section.find(columns_of_curve[k]);
+    chosen.push_back(key                    ? read_column(*key)
+                     : csv.header().empty() ? CsvColumn(k + 1)
+                                            : CsvColumn(std::string(columns_of_curve[k])));
+  }
+  return chosen;
+}
+
+double scale_of(const std::optional<Section>& scale, std::string_view quantity) {
+  const auto factor = scale ? scale->find(quantity) : std::nullopt;
+  if (!factor) return 1.0;
+  const double value = read_number(*factor);
+  if (value == 0.0) throw factor->error("must not be 0");
+  return value;
+}
+
+void add(Points& points, const CsvReader& csv, double speed, double force) {
+  if (!(speed > 0.0) || !std::isfinite(speed))
+    throw csv.error("is at rest: the break-away force is Fs of the case; leave the row out");
+  if (!(force > 0.0) || !std::isfinite(force))
+    throw csv.error(
+        "must have a force with the sign of the velocity, as friction has; scale = {force = -1.0} turns it");
+  if (points.size() == longest_list)
+    throw csv.error("is one of more than " + std::to_string(longest_list) + " points: average those near each other");
+  if (!points.emplace(speed, force).second)
+    throw csv.error("has a velocity that was met before: average the forces measured at it");
+}
+
+/// The lists of a direction in the place of the file, with its line for messages.
+void put(Value::Table& table, const Value& file, const char* speed_key, const char* force_key, const Points& points) {
+  Value speeds{Value::List{}, file.line, file.override}, forces = speeds;
+  for (const auto& [speed, force] : points) {
+    std::get<Value::List>(speeds.data).push_back({speed, file.line, file.override});
+    std::get<Value::List>(forces.data).push_back({force, file.line, file.override});
+  }
+  table.push_back({speed_key, std::move(speeds)});
+  table.push_back({force_key, std::move(forces)});
+}
+
+CurveFile read_curve(const Document& document, Value& law, const std::string& path) {
+  const Section section(document, law, path);
+  for (const char* key : points_of_curve)
+    if (const auto place = section.find(key))
+      throw place->error("stands beside `file`, which holds the points: leave one of them out");
+  const Value file_value = section.at("file", "").value;
+  const std::string file = read_string(section.at("file", ""));
+  DataFile opened(section, file);
+  CsvReader& csv = opened.csv;
+  const auto scale = section.section("scale");
+  if (scale) scale->allow({"velocity", "force"});
+  const double per_velocity = scale_of(scale, "velocity"), per_force = scale_of(scale, "force");
+  csv.choose(chosen_columns(section, csv));
+  Points forward, backward;
+  for (std::vector<double> row; csv.next(row);) {
+    const double v = per_velocity * row[0], force = per_force * row[1];
+    add(v < 0.0 ? backward : forward, csv, std::abs(v), v < 0.0 ? -force : force);
+  }
+  if (forward.empty()) throw csv.error("is the last line, and no row with a velocity above 0 was met");
+  auto& table = std::get<Value::Table>(law.data);
+  std::erase_if(table, [](const Value::Entry& entry) {
+    return entry.key == "file" || entry.key == "velocity" || entry.key == "force" || entry.key == "scale";
+  });
+  put(table, file_value, "velocities", "forces", forward);
+  if (!backward.empty()) put(table, file_value, "velocities_minus", "forces_minus", backward);
+  return {path, file, opened.sha256, forward.size() + backward.size()};
+}
+
+/// True for a law over measured points that stand in a file.
+bool is_in_file(const Value& law) {
+  const auto text = [&](std::string_view key) {
+    const Value* value = law.find(key);
+    const auto* written = value != nullptr ? value->as<std::string>() : nullptr;
+    return written != nullptr ? *written : std::string();
+  };
+  return law.find("file") != nullptr && (text("curve") == "table" || text("kind").ends_with("-table"));
+}
+
+}  // namespace
+
+std::vector<CurveFile> read_curves(Document& document) {
+  std::vector<CurveFile> files;
+  const auto tables = [](Value& within) { return std::get_if<Value::Table>(&within.data); };
+  auto* top = tables(document.root);
+  if (top == nullptr) return files;
+  for (auto& [section, value] : *top) {
+    if (section != "loop" && section != "diagram") continue;
+    auto* parts = tables(value);
+    if (parts == nullptr) continue;
+    for (auto& [name, part] : *parts)
+      if (is_in_file(part)) files.push_back(read_curve(document, part, section + "." + name));
+  }
+  return files;
+}
+
+}  // namespace limcycle::case_file
