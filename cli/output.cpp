@@ -174,6 +174,16 @@ Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), 
   check_file("--csv", flags.csv);
 }
 
+void Output::check_case_file(const std::string& path, const Case& from) {
+  check_file("-o", path);
+  const bool has_data = !from.curves.empty() || (from.loop && !measured_plants(*from.loop).empty());
+  if (path.empty() || !has_data) return;
+  const std::filesystem::path folder = full_name(from.file).parent_path();
+  if (full_name(path).parent_path() != folder)
+    throw refusal("-o " + path, "the case names files of data, which are found from its own folder",
+                  "write it to " + folder.string());
+}
+
 void Output::keep_data(const Case& from) {
   const auto folder = std::filesystem::path(from.file).parent_path();
   for (const CurveFile& curve : from.curves) keep("the data of " + curve.path, (folder / curve.file).string());

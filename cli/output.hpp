@@ -54,6 +54,8 @@ class Output {
   /// file().
   void check_file(const std::string& flag, const std::string& path);
   void file(const std::string& path, std::string_view document) { write(path, document); }
+  /// The same for a changed case (-o), which finds the files of data that it names only from their folder.
+  void check_case_file(const std::string& path, const Case& from);
 
   /// Throws OutputError naming the first document that could not be written completely.
   void finish();

@@ -69,7 +69,7 @@ int run(RemedyFlags flags) {
   }
   Output output(flags, &from);
   output.check_file("--html", flags.html);
-  output.check_file("-o", fixed);
+  output.check_case_file(fixed, from);
 
   RemedyReport report;
   {

@@ -77,7 +77,7 @@ int run(TuneFlags flags) {
   Output output(flags, &from);
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.picture);
-  output.check_file("-o", tuned);
+  output.check_case_file(tuned, from);
 
   TuneReport report;
   {

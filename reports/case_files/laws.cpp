@@ -112,7 +112,7 @@ std::string range_text(const ParameterEntry& parameter) {
   const std::string of = parameter.type == "number" ? "" : parameter.type == "complex list" ? "list" : parameter.type;
   const std::string limits = below && above ? low + " and " + high : below ? low : above ? high : "";
   if (limits.empty()) return of.empty() ? "any" : of;
-  return of.empty() ? limits : of + " of numbers " + limits;
+  return of.empty() ? limits : of + ", each " + limits;
 }
 
 std::string laws_text(const std::vector<CatalogueEntry>& entries) {

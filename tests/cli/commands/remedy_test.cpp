@@ -60,6 +60,7 @@ TEST_CASE("remedy: a loop that rests, and one without a controller") {
 }
 
 TEST_CASE("remedy: bad input ends with 2, before anything is computed") {
+  const Scratch scratch;
   const std::string servo = shipped("pid-lugre.toml");
   const auto refused = [&](const std::vector<std::string>& flags, const std::string& why) {
     std::vector<std::string> command{"remedy", servo};
@@ -77,6 +78,10 @@ TEST_CASE("remedy: bad input ends with 2, before anything is computed") {
   refused({"--weight", "noise_gain"}, "must be COST=WEIGHT");
   refused({"--samples", "-1"}, "--samples");
   CHECK(run({"remedy", shipped("df-lugre.toml")}).code == 2);
+  const auto elsewhere =
+      run({"remedy", shipped("measured-axis.toml"), "--apply", "gain-ki", "-o", scratch.file("m.toml")});
+  CHECK(elsewhere.code == 2);
+  CHECK_THAT(squeezed(elsewhere.err), Contains("names files of data, which are found from its own folder"));
 }
 
 TEST_CASE("a page's command has the flags that were given, but those that say where results go") {

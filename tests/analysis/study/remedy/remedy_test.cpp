@@ -213,19 +213,19 @@ TEST_CASE("a reset of the integral ends hunting, from a share on to a change of 
   }
 }
 
-TEST_CASE("remedy: a cycle that shrinks to nothing has its edge between values that predict decides") {
+TEST_CASE("remedy: a cycle that shrinks to nothing is followed to its edge, farther than starts find it") {
   LoopParts parts = servo_parts(coulomb(1.05, 1.0));
   const auto candidate = of_controller(parts, &Pid::integral_reset, Measure::own, RemedyCandidate::Way::up);
   const Remedy remedy = remedies(parts, {candidate}, quick()).remedies.front();
   INFO(remedy.why);
   REQUIRE(remedy.ends == true);
-  CHECK(remedy.why.find("does not decide all values between") != std::string::npos);
   const double ratio = remedy.value / remedy.beyond.at(0);
   CHECK(ratio > 1.0);
   CHECK(ratio < 1.2);
   const Judging judging = judging_of_variants(quick().predict, hunts(build_loop(parts), {}).found);
   CHECK(hunts(build_loop(*candidate.parts(remedy.value)), judging).hunts == Hunts::no);
-  CHECK(hunts(build_loop(*candidate.parts(remedy.beyond[0])), judging).hunts == Hunts::yes);
+  // Nearest to the edge no start falls into the cycle, which is followed up to there: predict finds it a tenth before.
+  CHECK(hunts(build_loop(*candidate.parts(0.9 * remedy.beyond[0])), judging).hunts == Hunts::yes);
   REQUIRE(remedy.costs.steady_state_error);  // at rest the error is zero, as with a linear integral
   CHECK(remedy.costs.steady_state_error->high == Approx(0.0).margin(1e-9));
   CHECK(remedy.costs.steady_state_error->low == Approx(0.0).margin(1e-9));
