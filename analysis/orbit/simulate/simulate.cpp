@@ -98,13 +98,18 @@ struct Beginning {
   double lead = 0.0;               ///< by which the controller runs ahead of the plant, s
 };
 
-/// Where the states of these names are among those of a loop that has them all, and perhaps others.
-std::vector<std::size_t> places_of(const std::vector<std::string>& names, const Loop& in) {
-  const auto all = state_names(in);
+/// Where the states of a loop are in `in`, the same loop with further linear states or elements that keep more.
+std::vector<std::size_t> own_places(const Loop& loop, const Loop& in) {
   std::vector<std::size_t> places;
-  for (const auto& name : names)
-    if (const auto at = std::ranges::find(all, name); at != all.end())
-      places.push_back(static_cast<std::size_t>(at - all.begin()));
+  const auto add = [&](std::size_t from, int count) {
+    for (int k = 0; k < count; ++k) places.push_back(from + static_cast<std::size_t>(k));
+  };
+  add(0, static_cast<int>(loop.states()));
+  auto at = static_cast<std::size_t>(in.states());
+  for (std::size_t i = 0; i < loop.elements.size(); ++i) {
+    add(at, loop.elements[i].states());
+    at += static_cast<std::size_t>(in.elements[i].states());
+  }
   return places;
 }
 
@@ -254,11 +259,9 @@ Simulation simulate_with_delay(const Loop& loop, const SimulateOptions& options)
   const State own = initial_state(loop, options.initial);
   const auto n = static_cast<std::ptrdiff_t>(loop.states());
   const Eigen::VectorXd X = with_constant_history(made, Eigen::Map<const Eigen::VectorXd>(own.data(), n));
-  const auto names = state_names(loop);
-  Beginning begins{State(state_names(made.loop).size(), 0.0), places_of(names, made.loop),
+  Beginning begins{State(state_names(made.loop).size(), 0.0), own_places(loop, made.loop),
                    made.pade_order == 0 ? loop.delay : 0.0};
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (const auto at = places_of({names[i]}, made.loop); !at.empty()) begins.state[at.front()] = own[i];
+  for (std::size_t i = 0; i < own.size(); ++i) begins.state[begins.shown[i]] = own[i];
   std::ranges::copy(X, begins.state.begin());
   Simulation run = Running(made.loop, options, std::move(begins))();
   run.notes.push_back(note_of_delay(made, loop.delay, up_to));
@@ -297,7 +300,7 @@ Simulation simulate(const Loop& loop, const SimulateOptions& options) {
   check(options);
   if (loop.sampled) return simulate(*loop.sampled, options);
   if (loop.delay > 0.0) return simulate_with_delay(loop, options);
-  return Running(loop, options, {initial_state(loop, options.initial), places_of(state_names(loop), loop)})();
+  return Running(loop, options, {initial_state(loop, options.initial), own_places(loop, loop)})();
 }
 
 }  // namespace limcycle

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "limcycle/models/element/rate_limit.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -151,4 +152,31 @@ TEST_CASE("simulate: a relay with dead time overshoots by the way of that time, 
   const Simulation run = simulate(loop, options);
   REQUIRE(run.status == Status::converged);
   CHECK(distance_from(run, exact) < 1e-9);
+}
+
+TEST_CASE("simulate: states of two elements that share a name are shown in their own columns") {
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  Pid controller = pid(3.0, 4.0, 6.0);
+  controller.integral_reset = 0.3;
+  parts.controller = controller;
+  RateLimit<double> actuator;
+  actuator.limit = 50.0;
+  actuator.tau = 0.01;
+  parts.element = actuator;
+  SimulateOptions options;
+  options.duration = 2.0;
+  options.initial["y"] = 1.0;
+  const Simulation run = simulate(build_loop(parts), options);
+  REQUIRE(run.status == Status::converged);
+  const auto integral = column(run, "loop.controller.integral_reset.output");
+  int same = 0, shared = 0;
+  for (std::size_t i = 0; i < run.columns.size(); ++i) {
+    if (run.columns[i] != "state.z_element") continue;
+    ++shared;
+    bool equal = true;
+    for (std::size_t k = 0; k < run.rows.size(); ++k) equal = equal && run.rows[k][i] == integral[k];
+    if (equal) ++same;
+  }
+  CHECK(shared == 2);
+  CHECK(same == 1);
 }
