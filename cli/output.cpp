@@ -15,7 +15,6 @@
 #include "limcycle/cases/loader/printable.hpp"
 #include "limcycle/cli/colour.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
-#include "limcycle/models/measured/plants_of_loop.hpp"
 #include "limcycle/questions/words.hpp"
 
 namespace limcycle {
@@ -176,8 +175,7 @@ Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), 
 
 void Output::check_case_file(const std::string& path, const Case& from) {
   check_file("-o", path);
-  const bool has_data = !from.curves.empty() || (from.loop && !measured_plants(*from.loop).empty());
-  if (path.empty() || !has_data) return;
+  if (path.empty() || data_of(from).empty()) return;
   const std::filesystem::path folder = full_name(from.file).parent_path();
   if (full_name(path).parent_path() != folder)
     throw refusal("-o " + path, "the case names files of data, which are found from its own folder",
@@ -186,10 +184,7 @@ void Output::check_case_file(const std::string& path, const Case& from) {
 
 void Output::keep_data(const Case& from) {
   const auto folder = std::filesystem::path(from.file).parent_path();
-  for (const CurveFile& curve : from.curves) keep("the data of " + curve.path, (folder / curve.file).string());
-  if (!from.loop) return;
-  for (const MeasuredPlantAt& plant : measured_plants(*from.loop))
-    keep("the data of " + plant.path, (folder / plant.response->data().file).string());
+  for (const CaseData& data : data_of(from)) keep("the data of " + data.path, (folder / data.file).string());
 }
 
 void Output::keep(const std::string& what, const std::string& path) {

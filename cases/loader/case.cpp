@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "limcycle/cases/loader/sections.hpp"
+#include "limcycle/models/measured/plants_of_loop.hpp"
 
 namespace limcycle {
 namespace {
@@ -87,6 +88,15 @@ Case read_again(const Case& from, const std::vector<std::string>& overrides) {
 
 Case load_case(const std::string& file, const std::vector<std::string>& overrides) {
   return read_case(case_file::read_text(file), file, overrides);
+}
+
+std::vector<CaseData> data_of(const Case& from) {
+  std::vector<CaseData> files;
+  if (from.loop)
+    for (const MeasuredPlantAt& plant : measured_plants(*from.loop))
+      files.push_back({plant.path, plant.response->data().file, plant.response->data().sha256});
+  for (const CurveFile& curve : from.curves) files.push_back({curve.path, curve.file, curve.sha256});
+  return files;
 }
 
 const LoopParts& need_loop(const Case& from) {

@@ -58,6 +58,13 @@ struct IdentifySection {
   FreeChoice choice;
 };
 
+/// A file of measurements on which the loop of a case rests.
+struct CaseData {
+  std::string path;    ///< of the plant or law that it belongs to, such as loop.plant
+  std::string file;    ///< as the case names it, from the folder of the case
+  std::string sha256;  ///< of its bytes
+};
+
 /// A case file, read and validated.
 struct Case {
   std::string title;                   ///< default: name of the file without folder and extension
@@ -108,6 +115,9 @@ const SimulateOptions& need_simulate(const Case& from);
 /// The element whose describing function `df` computes: the lone element, else the friction, else the forward element,
 /// else the one on the error.
 const Element& df_element(const Case& from);
+
+/// Files of measured plants, then of measured friction curves, of the loop.
+std::vector<CaseData> data_of(const Case& from);
 
 /// The laws and records of [identify], the files read now. Throws InputError for a missing section or a bad file.
 IdentifyRequest identify_request(const Case& from);

@@ -21,9 +21,8 @@ SweepIdentity identity_of(const SweepTask& task, const std::vector<std::string>&
   identity.title = from.title;
   identity.case_file = from.file;
   identity.case_sha256 = from.sha256;
-  std::string data;  // of measured plants and curves, on which the results depend as they do on the case
-  for (const MeasuredPlantAt& plant : made.measured) data += plant.response->data().sha256;
-  for (const CurveFile& curve : made.curves) data += curve.sha256;
+  std::string data;  // on which the results depend as they do on the case
+  for (const CaseData& one : data_of(from)) data += one.sha256;
   if (!data.empty()) identity.case_sha256 = sha256(from.sha256 + data);
   identity.overrides = from.overrides;
   identity.design = design;

@@ -92,9 +92,11 @@ void Rodas5p::begin(const State& x, double t) {
   t0_ = t;
 }
 
-/// A law with memory keeps many numbers that stand still for most of the time, such as return points.
+/// A law with memory keeps many numbers that stand still for most of the time, such as return points. One of 2
+/// to 6 states is solved whole: see run().
 void Rodas5p::find_moving() {
   const auto n = jacobian_.rows();
+  if (n >= 2 && n <= 6) return;
   moving_.clear();
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
@@ -140,9 +142,7 @@ void Rodas5p::solve(double* solution) {
     std::copy_n(sum, n, solution);
   } else {
     const std::size_t n = moving_.size();
-    reduced_.resize(n);
     solved_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) reduced_[i] = right_[moving_[i]];
     for (std::size_t j = 0, next = 0; j < x0_.size(); ++j) {
       if (next < n && moving_[next] == j) {
         ++next;
@@ -150,9 +150,9 @@ void Rodas5p::solve(double* solution) {
       }
       solution[j] = rodas5p::gamma * h_ * right_[j];
       if (solution[j] == 0.0) continue;
-      for (std::size_t i = 0; i < n; ++i) reduced_[i] += jacobian_.data()[j * x0_.size() + moving_[i]] * solution[j];
+      for (const std::size_t i : moving_) right_[i] += jacobian_.data()[j * x0_.size() + i] * solution[j];
     }
-    for (std::size_t i = 0; i < n; ++i) solved_[i] = reduced_[order_[i]];
+    for (std::size_t i = 0; i < n; ++i) solved_[i] = right_[moving_[order_[i]]];
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t i = j + 1; i < n; ++i) solved_[i] -= a[j * n + i] * solved_[j];
     for (std::size_t j = n; j-- > 0;) {
@@ -204,7 +204,6 @@ void Rodas5p::run(const RightSide& f, double h) {
     case 6:
       return run_sized<6>(f, h);
     default:
-      find_moving();
       return run_sized<0>(f, h);
   }
 }

@@ -117,6 +117,7 @@ class Rodas5p {
     jacobian_.setZero();
     dfdt_.assign(x0_.size(), 0.0);
     unwrap(unwrap(system).second)(std::as_const(x0_), jacobian_, t0_, dfdt_);
+    find_moving();
   }
 
   template <class System>
@@ -150,7 +151,7 @@ class Rodas5p {
   std::vector<std::size_t> order_;
   /// Of a large system: the states whose row of the Jacobian is not zero. Only they have a system to solve.
   std::vector<std::size_t> moving_;
-  State reduced_, solved_;  ///< its right side and its solution
+  State solved_;  ///< its solution
   double t0_ = 0;
   double h_ = 0;
 };
