@@ -14,6 +14,9 @@ std::size_t size_of(std::size_t n) {
   return N > 0 ? static_cast<std::size_t>(N) : n;
 }
 
+/// True for the sizes of which run() has code of its own, which solves for all states, standing or not.
+constexpr bool is_unrolled(std::size_t n) { return n >= 2 && n <= 6; }
+
 /// sum_{j < s} weight[j] k_j, component i, of a stage whose number is known at compile time.
 template <std::size_t s>
 double sum_stages(const rodas5p::Row& weight, const double* k, std::size_t n, std::size_t i) {
@@ -92,11 +95,10 @@ void Rodas5p::begin(const State& x, double t) {
   t0_ = t;
 }
 
-/// A law with memory keeps many numbers that stand still for most of the time, such as return points. One of 2
-/// to 6 states is solved whole: see run().
+/// A law with memory keeps many numbers that stand still for most of the time, such as return points.
 void Rodas5p::find_moving() {
   const auto n = jacobian_.rows();
-  if (n >= 2 && n <= 6) return;
+  if (is_unrolled(x0_.size())) return;
   moving_.clear();
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
@@ -192,6 +194,7 @@ void Rodas5p::run_sized(const RightSide& f, double h) {
 }
 
 void Rodas5p::run(const RightSide& f, double h) {
+  if (!is_unrolled(x0_.size())) return run_sized<0>(f, h);
   switch (x0_.size()) {
     case 2:
       return run_sized<2>(f, h);
@@ -201,10 +204,8 @@ void Rodas5p::run(const RightSide& f, double h) {
       return run_sized<4>(f, h);
     case 5:
       return run_sized<5>(f, h);
-    case 6:
-      return run_sized<6>(f, h);
     default:
-      return run_sized<0>(f, h);
+      return run_sized<6>(f, h);
   }
 }
 
