@@ -312,6 +312,7 @@ class Settling {
     ShootingOptions shooting = options_.shooting;
     shooting.max_maps = std::min(shooting.max_maps, 40);
     shooting.max_steps = periods_of_a_try * (std::ssize(period.t) + samples_in(period.t.back() - period.t.front()));
+    shooting.max_steps_per_map = std::min(shooting.max_steps_per_map, std::max(2000L, 5 * shooting.max_steps));
     shooting.longest_map = 10.0 * (period.t.back() - period.t.front());
     const Section section = choose_section(loop_, period);
     const int returns = returns_of(section, period);
