@@ -17,9 +17,8 @@ find_package(Python 3.9 REQUIRED COMPONENTS Interpreter Development.Module)
 find_package(pybind11 2.10 REQUIRED CONFIG)
 file(GLOB_RECURSE python_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/core/*.cpp)
 pybind11_add_module(limcycle_python MODULE NO_EXTRAS ${python_sources})
-target_link_libraries(limcycle_python PRIVATE limcycle_options limcycle_questions)
-# Its own sources only pass calls on: optimising them takes longer than it saves.
-target_compile_options(limcycle_python PRIVATE $<$<CONFIG:Release>:-O1>)
+target_link_libraries(limcycle_python PRIVATE limcycle_options limcycle_questions fmt::fmt)
+limcycle_text(limcycle_python)
 set(python_package ${PROJECT_BINARY_DIR}/python/limcycle)
 set_target_properties(limcycle_python PROPERTIES OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${python_package})
 # Names of the libraries inside are not for others who load them too.

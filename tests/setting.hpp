@@ -1,15 +1,17 @@
 #pragma once
-#include <cstdlib>
+#include <filesystem>
 #include <string>
 
-/// What a test reads of its environment, so that tests compiled once serve the plain and the sanitized program.
+extern "C" [[gnu::weak]] void __asan_init();
+
+/// What a test finds out where it runs, so that tests compiled once serve the plain and the sanitized build.
 namespace limcycle::test {
 
-/// The program of a sanitizer run, or null: set by tests/CMakeLists.txt.
-inline const char* const sanitized_program =
-    std::getenv("LIMCYCLE_SANITIZED_PROGRAM");  // NOLINT(concurrency-mt-unsafe)
+/// True where the test program is linked with AddressSanitizer.
+inline const bool sanitized = &__asan_init != nullptr;
 
-/// The program under test.
-inline const std::string tested_program = sanitized_program != nullptr ? sanitized_program : LIMCYCLE_PROGRAM;
+/// The program under test: the one in the build folder that the test program stands in.
+inline const std::string tested_program =
+    (std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "limcycle").string();
 
 }  // namespace limcycle::test

@@ -8,7 +8,7 @@
 /// hardly more than the first: one in six is done there, and all of them elsewhere. No test is left out.
 namespace limcycle::test {
 
-inline const int one_in = sanitized_program != nullptr ? 6 : 1;
+inline const int one_in = sanitized ? 6 : 1;
 
 /// This many of `all` random samples, at least one.
 inline int samples(int all) { return std::max(1, all / one_in); }

@@ -22,13 +22,13 @@ struct ShownValue {
   std::string key, shown, exact, unit;
 };
 
-std::string cut_to(const std::string& text, std::size_t columns) {
-  if (display_width(text) <= columns) return text;
+std::string cut_to(const std::string& text, std::size_t width) {
+  if (display_width(text) <= width) return text;
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t next = i + 1;
     while (next < text.size() && (static_cast<unsigned char>(text[next]) & 0xC0u) == 0x80u) ++next;
-    if (display_width(out) + 1 >= columns) break;
+    if (display_width(out) + 1 >= width) break;
     out += text.substr(i, next - i);
     i = next;
   }

@@ -83,11 +83,11 @@ std::string panel_of(const MapReport& report, double left, double top, const std
   out += cells(report.map, left, top, colour);
   out += fmt::format("<rect class=\"frame\" x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.1f}\" height=\"{2:.1f}\"/>\n", left,
                      top, map_side);
-  const double below = top + map_side + 13.0;
-  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left, below, with_digits(x.from, 3));
-  out += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}{}</text>\n", left + 0.5 * map_side, below,
+  const double labels = top + map_side + 13.0;
+  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left, labels, with_digits(x.from, 3));
+  out += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}{}</text>\n", left + 0.5 * map_side, labels,
                      html_escaped(last(x.path)), x.logarithmic ? " (log)" : "");
-  out += fmt::format("<text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left + map_side, below,
+  out += fmt::format("<text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left + map_side, labels,
                      with_digits(x.to, 3));
   const double side = left - 5.0;
   const auto along = [&](double at, const char* kind, const std::string& words) {
@@ -97,7 +97,7 @@ std::string panel_of(const MapReport& report, double left, double top, const std
   out += along(top + map_side, "", with_digits(y.from, 3)) +
          along(top + 0.5 * map_side, "middle", last(y.path) + (y.logarithmic ? " (log)" : "")) +
          along(top, "end", with_digits(y.to, 3));
-  double at = left, line = below + 9.0;
+  double at = left, line = labels + 9.0;
   for (const auto& [fill, words] : legend) {
     const double wide = 18.0 + 5.6 * static_cast<double>(words.size());
     if (at > left && at + wide > left + map_side + 20.0) {

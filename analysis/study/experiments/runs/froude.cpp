@@ -99,10 +99,10 @@ void compare(FroudeComparison& with, const FroudeComparison& without, const Frou
   with.fast_frequency = fast.frequency;
 }
 
-FroudeOptions options_for(double duration, const std::function<bool()>& stop) {
+FroudeOptions options_for(double seconds, const std::function<bool()>& stop) {
   FroudeOptions options;
   options.stop = stop;
-  options.duration = duration;
+  options.duration = seconds;
   options.rtol = 1e-6;
   return options;
 }

@@ -89,7 +89,7 @@ TEST_CASE("sampled relay: every stable cycle is that of the recursion, a whole n
     const auto [period, amplitude] = SampledRelay{h}.settled(start);
     INFO("start " << start << ", " << period << " samples");
     const auto found = std::ranges::find_if(
-        report.cycles, [&](const Cycle& cycle) { return std::lround(cycle.period / h) == period; });
+        report.cycles, [&, period = period](const Cycle& cycle) { return std::lround(cycle.period / h) == period; });
     REQUIRE(found != report.cycles.end());
     CHECK(found->amplitude == Approx(amplitude).epsilon(1e-3));
     CHECK(periods.contains(period));
