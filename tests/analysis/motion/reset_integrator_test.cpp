@@ -83,3 +83,38 @@ TEST_CASE("reset integrator: sizes of its states do not depend on the units") {
   CHECK(same == Approx(force).epsilon(1e-9));
   CHECK(scaled == Approx(1e-3 * clock).epsilon(1e-12));
 }
+
+// The rates of a body that creeps are differences of forces that all but cancel: their rounding is no fault of the
+// step.
+TEST_CASE("reset integrator: the derivative of a body that creeps takes steps about as long as the motion itself") {
+  for (const double share : {1.02, 1.3}) {
+    auto parts = test::servo_parts(test::lugre());
+    auto controller = test::pid(3.0, 4.0, 6.0);
+    controller.integral_reset = share;
+    parts.controller = controller;
+    const Loop loop = build_loop(parts);
+    LoopField field(loop);
+    const auto steps_of = [&](State& x, double duration, double rtol, bool derivative) {
+      March march(field, StepperKind::rodas5p, loop_weights(loop, rtol));
+      march.track(derivative);
+      march.begin(x, 0.0);
+      while (march.t() < duration && march.steps() < 10'000) REQUIRE(march.step(duration) == Status::converged);
+      CHECK(march.t() == duration);
+      x = march.x();
+      return march.steps();
+    };
+    State x(field.size(), 0.0);
+    x[0] = 1.0;
+    field.start(x, 0.0);
+    steps_of(x, 1e6, 1e-9, false);
+    const std::vector<Mode> modes = field.modes();
+    for (const double rtol : {1e-6, 1e-8}) {
+      CAPTURE(share, rtol);
+      State plain = x, followed = x;
+      field.modes() = modes;
+      const long alone = steps_of(plain, 3e5, rtol, false);
+      field.modes() = modes;
+      CHECK(steps_of(followed, 3e5, rtol, true) < 200 + 5 * alone);
+    }
+  }
+}
