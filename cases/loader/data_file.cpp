@@ -34,4 +34,12 @@ std::string path_of(const Section& section, const std::string& name) {
 DataFile::DataFile(const Section& section, const std::string& name)
     : csv(path_of(section, name)), sha256(limcycle::sha256(bytes_of(csv))) {}
 
+double read_scale(const std::optional<Section>& scale, std::string_view column) {
+  const auto factor = scale ? scale->find(column) : std::nullopt;
+  if (!factor) return 1.0;
+  const double value = read_number(*factor);
+  if (value == 0.0) throw factor->error("must not be 0");
+  return value;
+}
+
 }  // namespace limcycle::case_file

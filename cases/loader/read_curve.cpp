@@ -25,14 +25,6 @@ std::vector<CsvColumn> chosen_columns(const Section& section, const CsvReader& c
   return chosen;
 }
 
-double scale_of(const std::optional<Section>& scale, std::string_view quantity) {
-  const auto factor = scale ? scale->find(quantity) : std::nullopt;
-  if (!factor) return 1.0;
-  const double value = read_number(*factor);
-  if (value == 0.0) throw factor->error("must not be 0");
-  return value;
-}
-
 void add(Points& points, const CsvReader& csv, double speed, double force) {
   if (!(speed > 0.0) || !std::isfinite(speed))
     throw csv.error("is at rest: the break-away force is Fs of the case; leave the row out");
@@ -61,13 +53,14 @@ CurveFile read_curve(const Document& document, Value& law, const std::string& pa
   for (const char* key : points_of_curve)
     if (const auto place = section.find(key))
       throw place->error("stands beside `file`, which holds the points: leave one of them out");
-  const Value file_value = section.at("file", "").value;
-  const std::string file = read_string(section.at("file", ""));
+  const Place file_key = section.at("file", "");
+  const Value file_value = file_key.value;
+  const std::string file = read_string(file_key);
   DataFile opened(section, file);
   CsvReader& csv = opened.csv;
   const auto scale = section.section("scale");
   if (scale) scale->allow({"velocity", "force"});
-  const double per_velocity = scale_of(scale, "velocity"), per_force = scale_of(scale, "force");
+  const double per_velocity = read_scale(scale, "velocity"), per_force = read_scale(scale, "force");
   csv.choose(chosen_columns(section, csv));
   Points forward, backward;
   for (std::vector<double> row; csv.next(row);) {

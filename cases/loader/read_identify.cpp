@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "limcycle/analysis/study/identify/friction_response.hpp"
-#include "limcycle/cases/loader/csv_reader.hpp"
+#include "limcycle/cases/loader/data_file.hpp"
 #include "limcycle/cases/loader/sections.hpp"
 #include "limcycle/models/catalogue.hpp"
 
@@ -54,12 +54,8 @@ RecordFile read_record(const Section& section) {
     if (const auto key = section.find(quantities[k])) record.columns[k] = read_column(*key);
   if (const auto scale = section.section("scale")) {
     scale->allow({"time", "position", "velocity", "force"});
-    for (std::size_t k = 0; k < std::size(quantities); ++k)
-      if (const auto factor = scale->find(quantities[k])) {
-        record.scale[k] = read_number(*factor);
-        if (record.scale[k] == 0.0 || (k == 0 && record.scale[k] < 0.0))
-          throw factor->error("must not be 0, and > 0 for time");
-      }
+    for (std::size_t k = 0; k < std::size(quantities); ++k) record.scale[k] = read_scale(scale, quantities[k]);
+    if (record.scale[0] < 0.0) throw scale->at("time", "").error("must be > 0");
   }
   if (const auto skip = section.find("skip")) record.skip = read_number(*skip, not_negative, "s");
   if (const auto limit = section.find("force_limit")) {

@@ -7,6 +7,7 @@
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
+#include "limcycle/reports/words.hpp"
 
 namespace limcycle {
 namespace {
@@ -43,13 +44,6 @@ std::string linear_text(const IdentifiedNumber& one) {
   return interval_text(linear);
 }
 
-std::string names_text(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
-}
-
 std::vector<std::string> not_determined(const IdentifiedLaw& law) {
   std::vector<std::string> names;
   for (const auto& one : law.numbers)
@@ -77,7 +71,7 @@ std::string answer_text(const IdentifyReport& report) {
     text = fmt::format("{} fits these records; its error on rows that it was not fitted to is {} of {}.", kind,
                        as_percent(law->held_out), largest_measured(report));
   if (const auto names = not_determined(*law); !names.empty())
-    text += fmt::format(" The records do not determine {}.", names_text(names));
+    text += fmt::format(" The records do not determine {}.", listed_in_words(names));
   const auto coloured = std::ranges::count_if(
       law->records, [](const RecordFit& one) { return one.whiteness.probability < surely_not_white; });
   if (coloured > 0)
@@ -142,7 +136,7 @@ std::string direction_text(const Undetermined& one) {
     product += (product.empty() ? "" : " ") + (single ? name : fmt::format("{}^{:.2f}", name, weight));
     names.push_back(name);
   }
-  std::string text = single || one.powers ? product : "a combination of " + names_text(names);
+  std::string text = single || one.powers ? product : "a combination of " + listed_in_words(names);
   if (!std::isfinite(one.deviation)) return text + (single ? " (no row depends on it)" : " (no row depends on this)");
   if (!one.powers) return text;
   return text +

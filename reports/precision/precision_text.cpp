@@ -34,12 +34,6 @@ const WorkPoint* cheapest_of(const WorkChart& chart, const std::string& method, 
   return best;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
-
 /// "1 wrong, 2 too slow"; "-" if all settings are right.
 std::string failures(const WorkChart& chart, const std::string& method) {
   std::map<Quality, int> count;
@@ -48,7 +42,7 @@ std::string failures(const WorkChart& chart, const std::string& method) {
   std::vector<std::string> words;
   words.reserve(count.size());
   for (const auto& [quality, times] : count) words.push_back(fmt::format("{} {}", times, to_string(quality)));
-  return words.empty() ? "-" : joined(words);
+  return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
 }
 
 /// Reasons why settings of a method are not right, each once.
@@ -104,7 +98,7 @@ std::string front_in_words(const WorkChart& chart) {
   }
   if (out.empty()) return chart.points.empty() ? "" : "No method comes within 1 % of the reference.";
   out += ".";
-  if (!chart.never_best.empty()) out += " Never the best choice: " + joined(chart.never_best) + ".";
+  if (!chart.never_best.empty()) out += fmt::format(" Never the best choice: {}.", fmt::join(chart.never_best, ", "));
   return out;
 }
 

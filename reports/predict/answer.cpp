@@ -8,6 +8,7 @@
 #include "limcycle/analysis/study/predict/interest.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
 #include "limcycle/reports/number.hpp"
+#include "limcycle/reports/words.hpp"
 
 namespace limcycle {
 namespace {
@@ -119,10 +120,9 @@ std::string with_cycles(const PredictReport& report, const Units& units) {
   if (stable.size() == 1) {
     out += "settles into a limit cycle of " + size_of(*stable[0], units) + ".";
   } else {
-    out += fmt::format("has {} stable limit cycles, of", stable.size());
-    for (std::size_t i = 0; i < stable.size(); ++i)
-      out += (i == 0 ? " " : i + 1 < stable.size() ? ", " : " and ") + size_of(*stable[i], units);
-    out += ".";
+    std::vector<std::string> sizes;
+    for (const Cycle* one : stable) sizes.push_back(size_of(*one, units));
+    out += fmt::format("has {} stable limit cycles, of {}.", stable.size(), listed_in_words(sizes));
   }
   const bool decided = std::all_of(others.begin(), others.end(), [](auto* c) { return c->stable.has_value(); });
   if (!others.empty())

@@ -7,16 +7,10 @@
 #include "limcycle/reports/number.hpp"
 #include "limcycle/reports/remedy/costs.hpp"
 #include "limcycle/reports/tune/tune.hpp"
+#include "limcycle/reports/words.hpp"
 
 namespace limcycle {
 namespace {
-
-std::string joined_in_words(const std::vector<std::string>& parts, const std::string& last) {
-  std::string out;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    out += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " " + last + " ") + parts[i];
-  return out;
-}
 
 std::string aside_in_words(const TuneReport& report) { return with_digits(100.0 * report.aside, 1) + " %"; }
 
@@ -27,7 +21,7 @@ std::string point_in_words(const TuneReport& report, const TunePoint& point) {
     const std::string& unit = report.numbers[i].unit;
     parts.push_back(names[i] + " = " + Units::attach(shortest(point.values[i]), unit == "1" ? "" : unit));
   }
-  return joined_in_words(parts, "and");
+  return listed_in_words(parts);
 }
 
 /// What stops the result from being better: edges next to it, and bounds on which it lies.
@@ -50,7 +44,7 @@ std::string edges_in_words(const TuneReport& report) {
   const auto say = [&](TuneOutcome outcome, const std::string& lies, const std::string& consequence) {
     const auto found = changes.find(outcome);
     if (found != changes.end())
-      out += fmt::format(" It lies {}: with {} {}.", lies, joined_in_words(found->second, "or"), consequence);
+      out += fmt::format(" It lies {}: with {} {}.", lies, listed_in_words(found->second, "or"), consequence);
   };
   say(TuneOutcome::hunts, "at the edge of hunting",
       "the loop hunts; `limcycle margin` shows how far each number may change");
@@ -63,7 +57,7 @@ std::string edges_in_words(const TuneReport& report) {
   say(TuneOutcome::undecided, "beside points that were not decided", "it is not known whether the loop hunts");
   say(TuneOutcome::invalid, "at a rule of the loop", "the numbers are not valid");
   if (!bounds.empty())
-    out += fmt::format(" It has {}: beyond {} there may be better points.", joined_in_words(bounds, "and"),
+    out += fmt::format(" It has {}: beyond {} there may be better points.", listed_in_words(bounds),
                        bounds.size() == 1 ? "it" : "them");
   return out;
 }
@@ -95,7 +89,7 @@ std::string agreement_in_words(const TuneReport& report, const Units& units) {
       break;
     case TuneAgreement::local_optima:
       out = fmt::format(" {} local searches converged, to {}: there are local optima, and a better point may exist.",
-                        costs.size(), joined_in_words(costs, "and"));
+                        costs.size(), listed_in_words(costs));
   }
   if (cut > 0 && report.status != Status::interrupted)
     out += fmt::format(" {} reached {} limit of judgements and did not converge.",
