@@ -1,5 +1,6 @@
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,7 @@
 
 #include "limcycle/cases/loader/case.hpp"
 #include "limcycle/reports/page/case_in_page.hpp"
+#include "limcycle/tests/cli/columns.hpp"
 #include "limcycle/tests/cli/started.hpp"
 #include "limcycle/tests/reports/markup.hpp"
 #include "limcycle/tests/setting.hpp"
@@ -76,7 +78,8 @@ TEST_CASE("report: one page with all parts, and the answer on stdout") {
              Contains("<h2>What would end it</h2>") && Contains("<h3>Friction</h3>") && Contains("1.00940 (-32.7 %)"));
 }
 
-TEST_CASE("report: each case gives a page of less than 3 MB, complete and self-contained") {
+TEST_CASE(
+    "report: each case gives its answer in 80 columns, and a page of less than 3 MB, complete and self-contained") {
   const Scratch scratch;
   int loops = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(LIMCYCLE_SOURCE_DIR) + "/cases")) {
@@ -86,6 +89,8 @@ TEST_CASE("report: each case gives a page of less than 3 MB, complete and self-c
     const auto ran = run({"report", entry.path().string(), "--quick", "-o", scratch.file("r.html"), "--quiet"});
     REQUIRE(ran.code == 0);
     CHECK(ran.err.empty());
+    CHECK(std::ranges::count(ran.out, '\n') > 5);
+    limcycle::test::check_columns(ran.out);
     const std::string page = scratch.get("r.html");
     CHECK(page.size() < largest_report);
     const std::string markup = without_scripts(page);
