@@ -131,8 +131,8 @@ TEST_CASE("claims B8 to B10: wrong formulas are refused") {
     const auto off = [](const RelayFeedback& relay, double h) { return switching_output(relay, h) + 1e-3; };
     refuses(test_friction_cycles(few(), off));
     refuses(test_friction_cycles(few(), switching_output, 0.99));
+    refuses(test_switch_and_bristles(few(), [](double, double Fc) -> Element { return lugre(Fc, Fc, 0.0); }));
   }
-  refuses(test_switch_and_bristles(few(), [](double, double Fc) -> Element { return lugre(Fc, Fc, 0.0); }));
   refuses(test_sliding(few(), [](const LuGre<double>& law, double v, double) {
     return std::complex<double>(quasi_static_damping(law.Fs, law.Fc, law.vs, law.sigma2, v));
   }));
