@@ -121,6 +121,7 @@ std::string with_cycles(const PredictReport& report, const Units& units) {
     out += "settles into a limit cycle of " + size_of(*stable[0], units) + ".";
   } else {
     std::vector<std::string> sizes;
+    sizes.reserve(stable.size());
     for (const Cycle* one : stable) sizes.push_back(size_of(*one, units));
     out += fmt::format("has {} stable limit cycles, of {}.", stable.size(), listed_in_words(sizes));
   }

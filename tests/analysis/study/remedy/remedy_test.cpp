@@ -85,9 +85,9 @@ TEST_CASE("remedy: the leak of a servo, its edge confirmed by predict on both si
 
 TEST_CASE("remedy: too strong a compensation is cured at the level of the friction, and weights decide the order") {
   const LoopParts parts = over_compensated();
-  const auto candidates =
-      some_of(std::vector{of_controller(parts, &Pid::friction_compensation, Measure::force, RemedyCandidate::Way::both),
-                          of_controller(parts, &Pid::kp, Measure::stiffness, RemedyCandidate::Way::down)});
+  const auto candidates = some_of(
+      std::vector{of_controller(parts, &Pid::kp, Measure::stiffness, RemedyCandidate::Way::down),
+                  of_controller(parts, &Pid::friction_compensation, Measure::force, RemedyCandidate::Way::both)});
   RemedyReport report = remedies(parts, candidates, quick(2));
   REQUIRE(report.remedies.size() == candidates.size());
   for (const Remedy& one : report.remedies) {
