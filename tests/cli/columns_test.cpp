@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "limcycle/cases/loader/case.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/tests/cli/columns.hpp"
 #include "limcycle/tests/cli/program.hpp"
@@ -43,8 +44,10 @@ TEST_CASE("columns: what is told of cases, laws, experiments and claims") {
   check_page({"claims", "A8", "--verbose"});
 }
 
-// The answer on every case: with the pages of `report`.
-TEST_CASE("columns: predict with the work done") {
+// The answer on every case with a loop: with the pages of `report`.
+TEST_CASE("columns: predict with the work done, and on cases without a loop") {
+  for (const auto& name : cases())
+    if (!limcycle::load_case(shipped(name)).loop) check_page({"predict", shipped(name)});
   for (const auto& name :
        some_of(Names{"pid-lugre.toml", "relay-delay.toml", "two-mass-drive.toml", "belt-coulomb.toml"}))
     check_page({"predict", shipped(name), "--set", "predict.starts=2", "--verbose"});
