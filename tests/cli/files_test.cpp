@@ -147,7 +147,7 @@ TEST_CASE("files: a title that a spreadsheet would compute is kept a text in CSV
 
 TEST_CASE("memory: what does not fit is refused with the number, before anything is computed") {
   // As on a machine with 2 GB of memory, of which AddressSanitizer itself takes more.
-  if (limcycle::test::sanitized) return;
+  if (limcycle::test::sanitized()) return;
   const auto refused = [](std::vector<std::string> words, const std::string& part) {
     std::string line = "ulimit -v 2000000; exec";
     for (const auto& word : words) line += " " + limcycle::test::quoted(word);

@@ -50,7 +50,7 @@ TEST_CASE("report: one page with all parts, and the answer on stdout") {
   const Scratch scratch;
   const std::string file = scratch.file("r.html");
   std::vector<std::string> command{"report", shipped("pid-lugre.toml"), "-o", file};
-  const bool whole = limcycle::test::one_in == 1;  // where everything is watched, without the parts of other commands
+  const bool whole = limcycle::test::one_in() == 1;  // where everything is watched, without the parts of other commands
   if (!whole) command.emplace_back("--quick");
   if (whole) command.emplace_back("--benchmarks");
   const auto ran = run(command);

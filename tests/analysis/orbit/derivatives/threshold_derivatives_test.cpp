@@ -121,7 +121,7 @@ TEST_CASE("derivatives of a fold: where hunting of the LuGre servo ends obeys it
   CHECK(found.by[8].value == Approx(-1.0).epsilon(1e-6));
   CHECK(std::abs(found.by[1].value * 3.0) > 0.1 * p);
 
-  if (one_in > 1) return;  // four folds more
+  if (one_in() > 1) return;  // four folds more
   const auto fold = [&](double kp) {
     auto there = parts;
     there.controller = pid(kp, 4.0, 33.0);

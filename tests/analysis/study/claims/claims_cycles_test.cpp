@@ -127,7 +127,7 @@ TEST_CASE("claim B7: no construction where there is no drop from break-away to s
 }
 
 TEST_CASE("claims B8 to B10: wrong formulas are refused") {
-  if (one_in == 1) {
+  if (one_in() == 1) {
     const auto off = [](const RelayFeedback& relay, double h) { return switching_output(relay, h) + 1e-3; };
     refuses(test_friction_cycles(few(), off));
     refuses(test_friction_cycles(few(), switching_output, 0.99));
@@ -136,7 +136,7 @@ TEST_CASE("claims B8 to B10: wrong formulas are refused") {
   refuses(test_sliding(few(), [](const LuGre<double>& law, double v, double) {
     return std::complex<double>(quasi_static_damping(law.Fs, law.Fc, law.vs, law.sigma2, v));
   }));
-  if (one_in > 1) return;
+  if (one_in() > 1) return;
   refuses(test_sliding(few(), dynamic_damping, [](double Fs, double Fc, double vs, double sigma2, double v) {
     return 1.01 * quasi_static_damping(Fs, Fc, vs, sigma2, v);
   }));
