@@ -156,6 +156,14 @@ bool is_even_state(const E& element, int i) {
   return false;
 }
 
+/// True if state i stands in this mode and neither the element's equations nor its guards depend on it: a place for a
+/// return point that is not there. An element that has such states offers `unused(mode, i)`.
+template <class E>
+bool is_unused(const E& element, Mode mode, int i) {
+  if constexpr (requires { element.unused(mode, i); }) return element.unused(mode, i);
+  return false;
+}
+
 /// Optional: an element with a clock of its own: `due(mode, z)` is the time, s, until the switch that comes next by
 /// that clock. All its guards are such times.
 template <class E>

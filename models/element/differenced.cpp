@@ -100,7 +100,6 @@ S Differenced<S>::storage(Mode mode, std::span<const S> z) const {
 }
 
 template class Differenced<Dual<1>>;
-template class Differenced<Dual<2>>;
 template class Differenced<Dual<4>>;
 
 }  // namespace limcycle

@@ -29,7 +29,6 @@ class Differenced final : public Equations<S> {
 };
 
 extern template class Differenced<Dual<1>>;
-extern template class Differenced<Dual<2>>;
 extern template class Differenced<Dual<4>>;
 
 }  // namespace limcycle

@@ -62,6 +62,7 @@ struct ElementFace : Equations<double> {
   virtual Scales scales() const = 0;
   virtual double state_scale(int i) const = 0;
   virtual bool even_state(int i) const = 0;
+  virtual bool unused(Mode mode, int i) const = 0;
   virtual Held held(Mode mode) const = 0;
   virtual double selection(Mode mode, double output) const = 0;
   virtual bool drive_is_of_rate() const = 0;
@@ -91,7 +92,6 @@ struct ElementFace : Equations<double> {
   virtual const std::type_info& type() const = 0;
   virtual void* law() = 0;
   virtual std::shared_ptr<const Equations<Dual<1>>> on_dual_1() const = 0;
-  virtual std::shared_ptr<const Equations<Dual<2>>> on_dual_2() const = 0;
   virtual std::shared_ptr<const Equations<Dual<4>>> on_dual_4() const = 0;
 };
 
@@ -107,7 +107,6 @@ class ElementOn {
  public:
   explicit ElementOn(std::shared_ptr<ElementFace> face) : face_(std::move(face)) {
     if constexpr (std::same_as<S, Dual<1>>) own_ = face_->on_dual_1();
-    if constexpr (std::same_as<S, Dual<2>>) own_ = face_->on_dual_2();
     if constexpr (std::same_as<S, Dual<4>>) own_ = face_->on_dual_4();
   }
   template <class Law>
@@ -115,7 +114,7 @@ class ElementOn {
       ElementOn(const Law& law)  // NOLINT(google-explicit-constructor): any law is an element
       : ElementOn(face_of(law)) {}
 
-  /// The same element on another scalar: double, Dual<1>, Dual<2> or Dual<4>.
+  /// The same element on another scalar: double, Dual<1> or Dual<4>.
   template <class To>
   ElementOn<To> on() const {
     return ElementOn<To>(face_);
@@ -153,6 +152,8 @@ class ElementOn {
   double state_scale(int i) const { return face_->state_scale(i); }
   /// True if reflecting the motion leaves state i unchanged (a lagged level, a time) instead of changing its sign.
   bool even_state(int i) const { return face_->even_state(i); }
+  /// True if state i stands in this mode and nothing depends on it; see is_unused.
+  bool unused(Mode mode, int i) const { return face_->unused(mode, i); }
   /// Signal that the element keeps at zero in this mode.
   Held held(Mode mode) const { return face_->held(mode); }
   /// True if it has a mode in which it holds its body at rest, as set-valued friction has.

@@ -143,6 +143,7 @@ class FaceOf final : public EquationsOf<Law, double, ElementFace> {
     return law_.scales().displacement;
   }
   bool even_state(int i) const override { return is_even_state(law_, i); }
+  bool unused(Mode mode, int i) const override { return is_unused(law_, mode, i); }
   Held held(Mode mode) const override {
     if constexpr (CanHold<Law>) return law_.held(mode);
     return Held::nothing;
@@ -235,7 +236,6 @@ class FaceOf final : public EquationsOf<Law, double, ElementFace> {
   const std::type_info& type() const override { return typeid(Law); }
   void* law() override { return &law_; }
   std::shared_ptr<const Equations<Dual<1>>> on_dual_1() const override { return on<Dual<1>>(); }
-  std::shared_ptr<const Equations<Dual<2>>> on_dual_2() const override { return on<Dual<2>>(); }
   std::shared_ptr<const Equations<Dual<4>>> on_dual_4() const override { return on<Dual<4>>(); }
 
  private:

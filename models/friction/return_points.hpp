@@ -146,6 +146,9 @@ struct ReturnPoints {
     return {0, in.v < 0.0 || (in.v == 0.0 && in.drive < 0.0) ? -1 : 1, false};
   }
 
+  /// The places of return points beyond the depth, which are 0.
+  static bool unused(Mode mode, int i) { return i > ReturnMode::of(mode).depth && i <= capacity; }
+
   static Mode mirror(Mode mode) {
     ReturnMode at = ReturnMode::of(mode);
     at.direction = -at.direction;

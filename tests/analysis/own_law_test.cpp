@@ -178,7 +178,7 @@ TEST_CASE("derivatives of an own law by several variables at a time, against exa
 }
 
 TEST_CASE("derivatives of guards and of the state after a switch of an own law") {
-  using D = Dual<2>;
+  using D = Dual<4>;
   const auto law = own_law(OwnJenkins{}).on<D>();
   std::vector<D> z{D::variable(0.5e-4, 1)}, g(2);
   const Input<D> in{D(0.0), D::variable(0.1, 0), D(0.0)};
@@ -251,7 +251,7 @@ TEST_CASE("an own law holds its body at rest: the servo hunts as with the librar
 }
 
 TEST_CASE("derivatives of an own law that is templated on its scalar are exact, and no note says otherwise") {
-  using D = Dual<2>;
+  using D = Dual<4>;
   const auto law = own_law(TemplatedDahl<double>{});
   for (const Element& one : {law, own_law(RemadeDahl<double>{})}) {
     CHECK_FALSE(one.facts().by_differences);

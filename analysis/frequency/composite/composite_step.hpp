@@ -33,6 +33,7 @@ class CompositeStep {
     for (auto& k : k_) resize(k);
     dual_z_.resize(d_ - 1);
     dual_dz_.resize(d_ - 1);
+    seeds_.reserve(d_ + 1);
     jacobian_.resize(d_ * d_);
     lu_.resize(d_ * d_);
   }
@@ -42,7 +43,8 @@ class CompositeStep {
   long steps() const { return steps_; }
 
  protected:
-  using DualS = Dual<2>;
+  static constexpr std::size_t width = 4;
+  using DualS = Dual<4>;
 
   void prepare(const CompositeForce& force, const CompositeTolerance& tolerance, int orders) {
     force_ = force;
@@ -77,29 +79,41 @@ class CompositeStep {
     for (auto& rate : dy) rate /= force_.frequency;
   }
 
-  /// d(dy/dphase)/dy by dual numbers, two seeds at a time; also dF/dy, and dF/du if the law may need the force.
+  /// The unknowns that something depends on in this mode, and behind them (as number d_) the force if the law needs it.
+  void find_seeds(Mode mode, bool stuck) {
+    seeds_.assign(1, 0);
+    for (std::size_t k = 1; k < d_; ++k)
+      if (!law_.unused(mode, static_cast<int>(k) - 1)) seeds_.push_back(k);
+    if (!stuck && drive_is_of_rate(law_)) seeds_.push_back(d_);
+  }
+
+  /// d(dy/dphase)/dy by dual numbers, several seeds at a time; also dF/dy, and dF/du if the law may need the force.
   void differentiate(const Vector& y, Mode mode, double sine) {
     const double u = force_.bias + force_.amplitude * sine;
     const bool stuck = held(mode);
+    find_seeds(mode, stuck);
     friction_gradient_.assign(d_, 0.0);
     friction_by_force_ = stuck ? 1.0 : 0.0;
-    const std::size_t seeds = d_ + (!stuck && drive_is_of_rate(law_) ? 1 : 0);
-    for (std::size_t first = 0; first < seeds; first += 2) {
-      const auto seeded_as = [&](double value, std::size_t k) {
-        return k >= first && k < first + 2 ? DualS::variable(value, static_cast<int>(k - first)) : DualS(value);
-      };
-      const auto seeded = [&](std::size_t k) { return seeded_as(y[k], k); };
-      const Input<DualS> in{DualS(0.0), seeded(0), stuck ? DualS(u) : seeded_as(u, d_)};
-      for (std::size_t k = 1; k < d_; ++k) dual_z_[k - 1] = seeded(k);
+    std::fill(jacobian_.begin(), jacobian_.end(), 0.0);
+    for (std::size_t k = 1; k < d_; ++k) dual_z_[k - 1] = DualS(y[k]);
+    for (std::size_t first = 0; first < seeds_.size(); first += width) {
+      const std::size_t count = std::min(seeds_.size() - first, width);
+      Input<DualS> in{DualS(0.0), DualS(y[0]), DualS(u)};
+      const auto seeded = [&](std::size_t k) -> DualS& { return k == 0 ? in.v : k == d_ ? in.drive : dual_z_[k - 1]; };
+      for (std::size_t i = 0; i < count; ++i) seeded(seeds_[first + i]).d[i] = 1.0;
       const DualS out = stuck ? DualS(u) : dual_.output(in, mode, dual_z_);
       if (d_ > 1) dual_.rate(in, mode, dual_z_, dual_dz_);
-      for (std::size_t column = first; column < std::min(first + 2, d_); ++column) {
-        friction_gradient_[column] = out.d[column - first];
-        jacobian_[column] = stuck ? 0.0 : -out.d[column - first] / (mass_ * force_.frequency);
-        for (std::size_t k = 1; k < d_; ++k)
-          jacobian_[k * d_ + column] = dual_dz_[k - 1].d[column - first] / force_.frequency;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t column = seeds_[first + i];
+        seeded(column).d[i] = 0.0;
+        if (column == d_) {
+          friction_by_force_ = out.d[i];
+          continue;
+        }
+        friction_gradient_[column] = out.d[i];
+        jacobian_[column] = stuck ? 0.0 : -out.d[i] / (mass_ * force_.frequency);
+        for (std::size_t k = 1; k < d_; ++k) jacobian_[k * d_ + column] = dual_dz_[k - 1].d[i] / force_.frequency;
       }
-      if (!stuck && d_ >= first && d_ < first + 2) friction_by_force_ = out.d[d_ - first];
     }
   }
 
@@ -284,6 +298,7 @@ class CompositeStep {
   std::array<double, 2 + 2 * 64> g_{};
   std::vector<double> kq_, q_error_, friction_gradient_, jacobian_, lu_, system_;
   std::vector<DualS> dual_z_, dual_dz_;
+  std::vector<std::size_t> seeds_;
 };
 
 }  // namespace limcycle

@@ -26,7 +26,8 @@ struct ElementState {
 /// Radau IIA collocation of one element on one panel of prescribed motion, in one mode: Newton with the exact Jacobian
 /// (one iteration if the law is linear in its state) and, from the same elimination, the derivative of the final state
 /// by the initial state of the march. Cost of a panel: (s m)^3/3 multiplications for the m states that move, m s^3/3
-/// where their dependence has no cycle, s^3/3 where they have the same rate, and about 3 s evaluations per state.
+/// where their dependence has no cycle, s^3/3 where they have the same rate, and about 3 s evaluations per state that
+/// is not Element::unused.
 template <Motion M = PrescribedMotion>
 class CollocationPanel {
  public:
@@ -84,16 +85,18 @@ class CollocationPanel {
     place_nodes(anchor, from, to);
     if (n_ == 0) return true;
     sensitivities_ = state.sensitivity;
+    find_used(state.mode);
     const double step = (to - from) / motion_.frequency();
     for (std::size_t i = 0; i < s_; ++i)
       for (std::size_t p = 0; p < n_; ++p) z_[i * n_ + p] = state.z[p];
+    // The derivatives of many states cost more than a second elimination: they are found when Newton has converged.
+    const bool at_once = n_ <= 2;
     double before = infinite;
     for (int iteration = 0; iteration < 12; ++iteration) {
-      double stiffness = 0.0;
       for (std::size_t i = 0; i < s_; ++i) linearise(i, state.mode);
-      for (const double slope : jacobians_) stiffness = std::max(stiffness, std::abs(step * slope));
       find_moving();
-      if (!correct(step, state)) return false;
+      const double stiffness = step * steepest();
+      if (!correct(step, state, {.states = true, .derivatives = at_once})) return false;
       evaluate_rates(state.mode);
       double worst = 0.0;
       for (const std::size_t p : moving_) {
@@ -107,7 +110,8 @@ class CollocationPanel {
         size += 0.01 * stiffness / (1.0 + stiffness) * element_.state_scale(static_cast<int>(p));
         worst = std::max(worst, defect / size);
       }
-      if (worst <= 2e-14 * (1.0 + stiffness)) return true;
+      if (worst <= 2e-14 * (1.0 + stiffness))
+        return at_once || correct(step, state, {.states = false, .derivatives = true});
       if (!(worst < before) || iteration > 6) return false;
       before = worst;
     }
@@ -145,10 +149,35 @@ class CollocationPanel {
   }
 
  private:
+  /// What one elimination is to correct.
+  struct Wanted {
+    bool states, derivatives;
+  };
+
   void place_nodes(int anchor, double from, double to) {
     direction_ = motion_.at(anchor, 0.5 * (from + to)).in.v < 0.0 ? -1.0 : 1.0;
     for (std::size_t i = 0; i < s_; ++i)
       nodes_[i] = node_at(anchor, i + 1 == s_ ? to : from + table_.c[i] * (to - from));
+  }
+
+  /// The states that something depends on in this mode; the derivatives by all others are 0.
+  void find_used(Mode mode) {
+    if (!used_.empty() && mode == used_in_) return;
+    used_in_ = mode;
+    used_.clear();
+    used_.reserve(n_);
+    for (std::size_t p = 0; p < n_; ++p)
+      if (!element_.unused(mode, static_cast<int>(p))) used_.push_back(p);
+    std::fill(jacobians_.begin(), jacobians_.end(), 0.0);
+  }
+
+  /// The largest derivative of a rate.
+  double steepest() const {
+    double most = 0.0;
+    for (std::size_t i = 0; i < s_; ++i)
+      for (const std::size_t p : moving_)
+        for (const std::size_t q : used_) most = std::max(most, std::abs(jacobians_[(i * n_ + p) * n_ + q]));
+    return most;
   }
 
   /// Rates and their derivatives with respect to the state at stage i, several states at a time where there are many.
@@ -165,14 +194,15 @@ class CollocationPanel {
     auto& [z, rate] = std::get<Scratch<Columns>>(scratch_);
     z.assign(&z_[i * n_], &z_[i * n_] + n_);
     rate.resize(n_);
-    for (std::size_t from = 0; from < n_; from += Columns) {
-      const std::size_t to = std::min(n_, from + Columns);
-      for (std::size_t column = from; column < to; ++column) z[column].d[column - from] = 1.0;
+    for (std::size_t from = 0; from < used_.size(); from += Columns) {
+      const std::size_t count = std::min<std::size_t>(used_.size() - from, Columns);
+      for (std::size_t k = 0; k < count; ++k) z[used_[from + k]].d[k] = 1.0;
       element.rate(input, mode, z, rate);
       ++evaluations_;
-      for (std::size_t column = from; column < to; ++column) {
-        z[column].d[column - from] = 0.0;
-        for (std::size_t p = 0; p < n_; ++p) jacobians_[(i * n_ + p) * n_ + column] = rate[p].d[column - from];
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t column = used_[from + k];
+        z[column].d[k] = 0.0;
+        for (const std::size_t p : used_) jacobians_[(i * n_ + p) * n_ + column] = rate[p].d[k];
       }
     }
     for (std::size_t p = 0; p < n_; ++p) rates_[i * n_ + p] = rate[p].value;
@@ -200,13 +230,13 @@ class CollocationPanel {
   /// rate of zero whatever the state is.
   void find_moving() {
     moving_.clear();
-    for (std::size_t p = 0; p < n_; ++p)
+    for (const std::size_t p : used_)
       if (moves(p)) moving_.push_back(p);
   }
   bool moves(std::size_t p) const {
     for (std::size_t i = 0; i < s_; ++i) {
       if (rates_[i * n_ + p] != 0.0) return true;
-      for (std::size_t q = 0; q < n_; ++q)
+      for (const std::size_t q : used_)
         if (jacobians_[(i * n_ + p) * n_ + q] != 0.0) return true;
     }
     return false;
@@ -221,13 +251,13 @@ class CollocationPanel {
     placed_.assign(n_, 1);
     for (const std::size_t p : moving_) {
       placed_[p] = 0;
-      for (std::size_t q = 0; q < n_; ++q) depends_[p * n_ + q] = p != q && coupled(p, q) ? 1 : 0;
+      for (const std::size_t q : used_) depends_[p * n_ + q] = p != q && coupled(p, q) ? 1 : 0;
     }
     for (bool more = true; more && order_.size() < moving_.size();) {
       more = false;
       for (const std::size_t p : moving_) {
         bool ready = placed_[p] == 0;
-        for (std::size_t q = 0; ready && q < n_; ++q) ready = depends_[p * n_ + q] == 0 || placed_[q] != 0;
+        for (const std::size_t q : used_) ready = ready && (depends_[p * n_ + q] == 0 || placed_[q] != 0);
         if (!ready) continue;
         placed_[p] = 1;
         more = true;
@@ -257,25 +287,26 @@ class CollocationPanel {
     return moving_.size() > 1 && std::ranges::all_of(moving_, same);
   }
 
-  bool correct(double step, const ElementState& state) {
-    if (moves_as_one()) return correct_as_one(step, state);
-    return find_order() ? correct_in_order(step, state) : correct_together(step, state);
+  bool correct(double step, const ElementState& state, Wanted wanted) {
+    columns_ = wanted.derivatives ? 1 + n_ : 1;
+    if (moves_as_one()) return correct_as_one(step, state, wanted);
+    return find_order() ? correct_in_order(step, state, wanted) : correct_together(step, state, wanted);
   }
 
   /// One step of Newton of states that move as one: one system of the size of the stages, for their common way and its
   /// derivatives by the initial state.
-  bool correct_as_one(double step, const ElementState& state) {
-    const std::size_t first = moving_.front(), columns = 1 + n_, length = s_ + columns;
+  bool correct_as_one(double step, const ElementState& state, Wanted wanted) {
+    const std::size_t first = moving_.front(), length = s_ + columns_;
     system_.assign(s_ * length, 0.0);
     for (std::size_t j = 0; j < s_; ++j) {
       const double* slope = &jacobians_[(j * n_ + first) * n_];
       double own = 0.0;
       for (const std::size_t q : moving_) own += slope[q];
       for (std::size_t i = 0; i < s_; ++i) system_[i * length + j] = -step * table_.a[i * s_ + j] * own;
-      for (std::size_t q = 0; q < n_; ++q) {
+      for (const std::size_t q : used_) {
         if (slope[q] == 0.0) continue;
         for (std::size_t i = 0; i < s_; ++i)
-          for (std::size_t c = 0; c < n_; ++c)
+          for (std::size_t c = 0; c + 1 < columns_; ++c)
             system_[i * length + s_ + 1 + c] += step * table_.a[i * s_ + j] * slope[q] * state.sensitivity[q * n_ + c];
       }
     }
@@ -283,20 +314,21 @@ class CollocationPanel {
       system_[i * length + i] += 1.0;
       system_[i * length + s_] = -residual(step, state, i, smallest_of_moving(i, state));
     }
-    if (!eliminate(system_, s_, columns)) return false;
+    if (!eliminate(system_, s_, columns_)) return false;
     const double* end = &system_[(s_ - 1) * length + s_ + 1];
     for (const std::size_t p : moving_) {
-      for (std::size_t i = 0; i < s_; ++i) z_[i * n_ + p] += system_[i * length + s_];
-      for (std::size_t c = 0; c < n_; ++c) sensitivities_[p * n_ + c] = state.sensitivity[p * n_ + c] + end[c];
+      for (std::size_t i = 0; wanted.states && i < s_; ++i) z_[i * n_ + p] += system_[i * length + s_];
+      for (std::size_t c = 0; c + 1 < columns_; ++c)
+        sensitivities_[p * n_ + c] = state.sensitivity[p * n_ + c] + end[c];
     }
     return true;
   }
 
   /// One step of Newton, state by state in that order: n systems of the size of the stages instead of one of n times
   /// that size.
-  bool correct_in_order(double step, const ElementState& state) {
-    const std::size_t length = s_ + 1 + n_, columns = 1 + n_;
-    corrections_.resize(s_ * n_ * columns);
+  bool correct_in_order(double step, const ElementState& state, Wanted wanted) {
+    const std::size_t length = s_ + columns_;
+    corrections_.resize(s_ * n_ * columns_);
     for (const std::size_t p : order_) {
       system_.assign(s_ * length, 0.0);
       for (std::size_t i = 0; i < s_; ++i) {
@@ -304,17 +336,17 @@ class CollocationPanel {
         for (std::size_t j = 0; j < s_; ++j) row[j] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + p];
         row[i] += 1.0;
         row[s_] = -residual(step, state, i, p);
-        for (std::size_t q = 0; q < n_; ++q) row[s_ + 1 + q] = state.sensitivity[p * n_ + q];
-        for (std::size_t q = 0; q < n_; ++q)
+        std::copy_n(&state.sensitivity[p * n_], columns_ - 1, row + s_ + 1);
+        for (const std::size_t q : used_)
           if (depends_[p * n_ + q] != 0) add_coupling(step, i, p, q, state, row + s_);
       }
-      if (!eliminate(system_, s_, columns)) return false;
+      if (!eliminate(system_, s_, columns_)) return false;
       for (std::size_t i = 0; i < s_; ++i)
-        std::copy_n(&system_[i * length + s_], columns, &corrections_[(i * n_ + p) * columns]);
+        std::copy_n(&system_[i * length + s_], columns_, &corrections_[(i * n_ + p) * columns_]);
     }
     for (const std::size_t p : order_) {
-      for (std::size_t i = 0; i < s_; ++i) z_[i * n_ + p] += corrections_[(i * n_ + p) * columns];
-      std::copy_n(&corrections_[((s_ - 1) * n_ + p) * columns + 1], n_, &sensitivities_[p * n_]);
+      for (std::size_t i = 0; wanted.states && i < s_; ++i) z_[i * n_ + p] += corrections_[(i * n_ + p) * columns_];
+      std::copy_n(&corrections_[((s_ - 1) * n_ + p) * columns_ + 1], columns_ - 1, &sensitivities_[p * n_]);
     }
     return true;
   }
@@ -323,22 +355,21 @@ class CollocationPanel {
   /// or of its derivatives alone if it stands.
   void add_coupling(double step, std::size_t i, std::size_t p, std::size_t q, const ElementState& state,
                     double* right) const {
-    const std::size_t columns = 1 + n_;
     const bool stands = std::ranges::find(moving_, q) == moving_.end();
     for (std::size_t j = 0; j < s_; ++j) {
       const double factor = step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
       if (stands) {
-        for (std::size_t c = 0; c < n_; ++c) right[1 + c] += factor * state.sensitivity[q * n_ + c];
+        for (std::size_t c = 0; c + 1 < columns_; ++c) right[1 + c] += factor * state.sensitivity[q * n_ + c];
         continue;
       }
-      for (std::size_t c = 0; c < columns; ++c) right[c] += factor * corrections_[(j * n_ + q) * columns + c];
+      for (std::size_t c = 0; c < columns_; ++c) right[c] += factor * corrections_[(j * n_ + q) * columns_ + c];
     }
   }
 
   /// One step of Newton, all states together: the first column is the step of the stages, the further ones are their
   /// derivatives by the initial state.
-  bool correct_together(double step, const ElementState& state) {
-    const std::size_t m = s_ * n_, length = m + 1 + n_;
+  bool correct_together(double step, const ElementState& state, Wanted wanted) {
+    const std::size_t m = s_ * n_, length = m + columns_;
     system_.assign(m * length, 0.0);
     for (std::size_t i = 0; i < s_; ++i) {
       for (std::size_t p = 0; p < n_; ++p) {
@@ -348,13 +379,13 @@ class CollocationPanel {
             row[j * n_ + q] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
         row[i * n_ + p] += 1.0;
         row[m] = -residual(step, state, i, p);
-        for (std::size_t q = 0; q < n_; ++q) row[m + 1 + q] = state.sensitivity[p * n_ + q];
+        std::copy_n(&state.sensitivity[p * n_], columns_ - 1, row + m + 1);
       }
     }
-    if (!eliminate(system_, m, 1 + n_)) return false;
-    for (std::size_t r = 0; r < m; ++r) z_[r] += system_[r * length + m];
+    if (!eliminate(system_, m, columns_)) return false;
+    for (std::size_t r = 0; wanted.states && r < m; ++r) z_[r] += system_[r * length + m];
     for (std::size_t p = 0; p < n_; ++p)
-      std::copy_n(&system_[((s_ - 1) * n_ + p) * length + m + 1], n_, &sensitivities_[p * n_]);
+      std::copy_n(&system_[((s_ - 1) * n_ + p) * length + m + 1], columns_ - 1, &sensitivities_[p * n_]);
     return true;
   }
 
@@ -368,7 +399,9 @@ class CollocationPanel {
   long evaluations_ = 0;
   std::vector<MotionNode> nodes_;
   std::vector<double> z_, rates_, sensitivities_, jacobians_, system_, corrections_, trial_, trial_rate_;
-  std::vector<std::size_t> moving_, order_;
+  Mode used_in_;
+  std::vector<std::size_t> used_, moving_, order_;
+  std::size_t columns_ = 1;  ///< right-hand sides: the step of the states, and the derivatives where they are wanted
   std::vector<char> depends_, placed_;
   static constexpr int width = 4;
   std::optional<ElementOn<Dual<width>>> wide_;

@@ -136,6 +136,7 @@ struct NonDrift : StribeckCurve<S> {
   bool odd() const { return this->symmetric(); }
   Mode mirror(Mode mode) const { return with_cap(Stack::mirror(mode), -cap_of(mode)); }
   bool even_state(int) const { return true; }
+  static bool unused(Mode mode, int i) { return Stack::unused(mode, i); }
   Scales scales() const { return {.displacement = value_of(Zb), .velocity = slowest(), .output = value_of(this->Fs)}; }
   double state_scale(int i) const {
     return i == static_cast<int>(share) ? 1.0 : Stack::state_scale(i, value_of(Zb), value_of(this->Fs));

@@ -102,6 +102,7 @@ struct TwoState : StribeckCurve<S> {
   bool odd() const { return this->symmetric(); }
   Mode mirror(Mode mode) const { return Stack::mirror(mode); }
   bool even_state(int) const { return true; }
+  static bool unused(Mode mode, int i) { return Stack::unused(mode, i); }
   Scales scales() const {
     return {.displacement = value_of(s), .velocity = value_of(this->vs), .output = value_of(this->Fs)};
   }

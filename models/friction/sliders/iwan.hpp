@@ -111,6 +111,7 @@ struct Iwan {
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return Stack::mirror(mode); }
   bool even_state(int) const { return true; }
+  static bool unused(Mode mode, int i) { return Stack::unused(mode, i); }
   Scales scales() const { return {.displacement = shortest(), .output = value_of(Fs)}; }
   double state_scale(int i) const { return Stack::state_scale(i, value_of(Zb), value_of(Fs)); }
 
