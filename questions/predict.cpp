@@ -18,8 +18,9 @@ bool hunts_in_box(const PredictReport& report) {
 
 }  // namespace
 
-PredictReport ask_predict(const Case& from, const Asking& asking) {
+PredictReport ask_predict(const Case& from, const Asking& asking, bool curves) {
   PredictOptions options = from.predict;
+  options.nyquist = curves;
   options.stop = asking.stop;
   options.progress = asking.progress;
   const LoopParts& parts = need_loop(from);

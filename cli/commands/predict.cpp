@@ -63,7 +63,8 @@ int run(PredictFlags flags) {
   PredictReport report;
   {
     Progress progress(flags.quiet, flags.verbose);
-    report = answer_of([&] { return ask_predict(from, asking_of(flags, progress)); });
+    const bool drawn = !flags.html.empty() || !flags.pictures.empty();
+    report = answer_of([&] { return ask_predict(from, asking_of(flags, progress), drawn); });
   }
   const auto made = provenance(flags, &from);
   const PredictReport shown = in_units(report, units);

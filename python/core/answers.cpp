@@ -168,7 +168,7 @@ std::map<std::string, Array> map_arrays(const HuntingMap& map) {
 }  // namespace
 
 Answer predict_answer(const Question& question) {
-  const auto report = computed([&] { return ask_predict(*question.from, question.asking); });
+  const auto report = computed([&] { return ask_predict(*question.from, question.asking, true); });
   Sheet sheet = sheet_of(question, report->status);
   sheet.last.clear();  // the notes say it
   Answer answer = documents(sheet, report, predict_json, predict_csv, predict_text);

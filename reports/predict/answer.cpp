@@ -230,8 +230,8 @@ CycleAnswer answer(const PredictReport& report, const Units& units) {
   const auto add = [&](const std::string& method) {
     if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
   };
-  // A describing function without roots still has its curves; without curves it was not applicable (see the notes).
-  if (!report.nyquist.frequency.empty()) add("describing-function");
+  // It is judged without roots too; where it does not exist the notes say so.
+  if (report.describing_function) add("describing-function");
   for (const auto& one : report.predictions) add(one.method);
   for (const auto& one : report.missed) add(one.method);
   for (const auto& method : report.unfinished) {

@@ -57,6 +57,7 @@ inline PredictReport hunting() {
     report.nyquist.frequency.push_back(w);
     report.nyquist.G.push_back(1.0 / std::complex<double>(1.0, w));
   }
+  report.describing_function = true;
   report.nyquist.family_amplitude = {0.1, 1.0};
   report.nyquist.family_frequency = {1.0};
   report.nyquist.minus_inverse_N = {{{0.0, 0.1}, {0.0, 1.0}}};

@@ -116,7 +116,7 @@ TEST_CASE("predict: what is said without a cycle") {
 
 TEST_CASE("predict: a method that was not applicable is not said to predict nothing") {
   auto report = quiet({Outcome::rest});
-  report.nyquist = {};
+  report.describing_function = false;
   CHECK(answer(report, {}).worth.empty());
 }
 

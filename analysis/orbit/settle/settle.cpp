@@ -108,7 +108,7 @@ class Settling {
     if (decided_ || !march_.last().switched) return;
     if (march_.last().crept && stillness_.within_rounding(dx_)) return decide(Outcome::rest, "came to rest");
     if (march_.last().by_clock) return read();
-    if (auto still = stillness_.switched(march_.t(), dx_)) return come_to(*still);
+    if (auto still = stillness_.switched(march_.t(), march_.x(), dx_)) return come_to(*still);
     if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
   }
 

@@ -67,19 +67,34 @@ std::optional<Stillness> StillnessWatch::read(double t, const State& x, const Lo
   return steady ? std::nullopt : std::optional(Stillness{Outcome::rest, "came to rest"});
 }
 
-std::optional<Stillness> StillnessWatch::switched(double t, const State& dx) {
+std::optional<Stillness> StillnessWatch::switched(double t, const State& x, const State& dx) {
   constexpr int many = 50;
   restart(t);
-  const auto still = within_rounding(dx);
-  idle_ = still ? idle_ + 1 : 0;
-  return idle_ >= many ? still : std::nullopt;
+  idle_ = rest_.rate(dx) <= rest_.noise() ? idle_ + 1 : 0;
+  return idle_ >= many || trembles(t, x) ? std::optional(but_for_switching()) : std::nullopt;
+}
+
+bool StillnessWatch::trembles(double t, const State& x) {
+  constexpr int many = 200;
+  constexpr double slowest_times = 3.0;
+  bool stays = about_.size() == x.size();
+  for (std::size_t i = 0; stays && i < x.size(); ++i)
+    stays = std::abs(x[i] - about_[i]) <= rest_.noise() * scale_.sizes[i];
+  if (!stays) {
+    about_ = x;
+    about_since_ = t;
+    about_times_ = 0;
+  }
+  return ++about_times_ >= many && t - about_since_ >= slowest_times * scale_.slow;
 }
 
 std::optional<Stillness> StillnessWatch::within_rounding(const State& dx) const {
-  if (!(rest_.rate(dx) <= rest_.noise())) return std::nullopt;
-  if (slides_at_rest(loop_))
-    return Stillness{Outcome::sliding, "slides at constant speed, but for switching within rounding"};
-  return Stillness{Outcome::rest, "came to rest, but for switching within rounding"};
+  return rest_.rate(dx) <= rest_.noise() ? std::optional(but_for_switching()) : std::nullopt;
+}
+
+Stillness StillnessWatch::but_for_switching() const {
+  if (slides_at_rest(loop_)) return {Outcome::sliding, "slides at constant speed, but for switching within rounding"};
+  return {Outcome::rest, "came to rest, but for switching within rounding"};
 }
 
 std::optional<Stillness> StillnessWatch::at_rest(LoopField& field, const State& x, const State& dx) const {

@@ -34,14 +34,17 @@ class StillnessWatch {
   std::optional<Stillness> read(double t, const State& x, const LoopField& field);
   /// After a switch: see RestWatch::switched.
   void restart(double t) { rest_.switched(t); }
-  /// The same, with a look at it: the time of a switch and the rates after it. A body that creeps to rest at the edge
-  /// of stiction finally sticks and breaks away by rounding: it rests once the rates vanish after many switches in a
-  /// row.
-  std::optional<Stillness> switched(double t, const State& dx);
+  /// The same, with a look at it: the time of a switch, and the state and the rates after it. A body that creeps to
+  /// rest at the edge of stiction finally sticks and breaks away by rounding: it rests once the rates vanish after many
+  /// switches in a row. A body that trembles for ever within the tolerances, in loops too small for the return points
+  /// that a law can keep, rests once many switches in a row leave the state where it is.
+  std::optional<Stillness> switched(double t, const State& x, const State& dx);
   /// The same if the march itself stopped because its switches accumulate.
   std::optional<Stillness> within_rounding(const State& dx) const;
 
  private:
+  Stillness but_for_switching() const;
+  bool trembles(double t, const State& x);
   std::optional<Stillness> at_rest(LoopField& field, const State& x, const State& dx) const;
 
   const Loop& loop_;
@@ -51,6 +54,9 @@ class StillnessWatch {
   double next_algebra_ = 0.0;
   State read_;  ///< the state at the last reading, and its time
   double read_at_ = 0.0;
+  State about_;  ///< the state at the first of the last switches that left it there, its time, and their number
+  double about_since_ = 0.0;
+  int about_times_ = 0;
 };
 
 }  // namespace limcycle

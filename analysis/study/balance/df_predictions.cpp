@@ -39,7 +39,8 @@ void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& ba
   }
   if (options.stop && options.stop()) return;
   if (result.predictions.empty()) result.absence = absence(loop, box);
-  if (!options.nyquist || found.status == Status::not_finite) return;  // no curve to draw
+  result.exists = found.status != Status::not_finite;
+  if (!options.nyquist || !result.exists) return;
   std::vector<SearchPoint> roots;
   for (const Root& root : found.roots) roots.push_back({root.amplitude, root.frequency});
   SearchBox drawn = box;  // where there are data, if a plant is measured

@@ -15,6 +15,7 @@ struct DfPredictions {
   std::vector<Prediction> predictions;  ///< with an assessment of their assumptions
   std::vector<std::string> notes;       ///< regions in which roots may be missing
   std::optional<Absence> absence;       ///< proof of absence, if nothing is predicted
+  bool exists = false;                  ///< the describing function, in the box; false too after a stop
   NyquistPicture nyquist;
   Status status = Status::converged;
 };

@@ -41,6 +41,10 @@ class PredictionStudy {
     if (!exact_in_time(loop_)) predict_by_df(work_share(0));
     enter_time();
     run_starts();
+    if (has_enough()) {
+      finish();
+      return std::move(report_);
+    }
     const WorkShare share = work_share(hunt_->steps());
     begin_composite(share);
     if (exact_in_time(loop_)) predict_by_df(share);
@@ -57,6 +61,7 @@ class PredictionStudy {
 
  private:
   bool stopped() const { return options_.stop && options_.stop(); }
+  bool has_enough() const { return options_.enough && std::ranges::any_of(hunt_->outcomes(), options_.enough); }
   void tell(double fraction, std::string_view what) const {
     if (options_.progress) options_.progress(fraction, what);
   }
@@ -79,14 +84,14 @@ class PredictionStudy {
   void run_starts() {
     settle_from(start_displacements(output_per_input(time_), box_, options_.starts));
     if (!options_.search && all_diverge() && !stopped()) look_further_down();
-    if (!options_.load_step || stopped()) return;
+    if (!options_.load_step || stopped() || has_enough()) return;
     if (const auto step = load_step(time_)) hunt_->settle_from(step->start, "load step of " + short_number(step->load));
   }
 
   void settle_from(const std::vector<double>& displacements) {
     double done = 0.0;
     for (const double displacement : displacements) {
-      if (stopped()) return;
+      if (stopped() || has_enough()) return;
       tell(0.4 * done++ / static_cast<double>(displacements.size()), "simulation");
       starts_.push_back({displacement, hunt_->outcomes().size()});
       hunt_->settle_from(displaced(time_, displacement), start_name(displacement));
@@ -164,6 +169,7 @@ class PredictionStudy {
       report_.incomplete.emplace_back(df_name);
     report_.predictions = std::move(found.predictions);
     report_.absence = std::move(found.absence);
+    report_.describing_function = found.exists;
     report_.nyquist = std::move(found.nyquist);
     report_.efforts.push_back({std::string(df_name), 0, {}});
     (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(df_name);

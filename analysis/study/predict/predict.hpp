@@ -28,6 +28,8 @@ struct Methods {
   bool harmonic_balance = true;  ///< from each root of the others, and from cycles that they miss
 };
 
+struct OutcomeOfStart;
+
 /// Options of predict().
 struct PredictOptions {
   Methods methods;
@@ -35,8 +37,9 @@ struct PredictOptions {
   int starts = 4;                   ///< simulations from different displacements of y
   bool load_step = true;            ///< and one from the release of a load: see load_step()
   double accuracy = 1e-8;           ///< wanted relative error of period and amplitude of a cycle
-  bool nyquist = true;              ///< also the curves for the figure
-  std::function<bool()> stop;       ///< called often, by several threads; true ends the work and keeps the results
+  bool nyquist = true;              ///< also the curves for the figure: up to 2,300 describing functions
+  std::function<bool(const OutcomeOfStart&)> enough{};  ///< true of an outcome: nothing more is simulated or predicted
+  std::function<bool()> stop;  ///< called often, by several threads; true ends the work and keeps the results
   std::function<void(double, std::string_view)> progress;  ///< fraction done (0..1), current activity
 };
 
@@ -116,7 +119,8 @@ struct PredictReport {
   std::vector<OutcomeOfStart> outcomes;
   std::vector<std::string> unfinished{};  ///< methods whose search was interrupted: they may predict more
   std::vector<std::string> incomplete{};  ///< methods whose search left something undecided (see the notes): likewise
-  NyquistPicture nyquist;
+  bool describing_function = false;       ///< that of the main element exists in the box, and its roots were looked for
+  NyquistPicture nyquist;                 ///< with PredictOptions::nyquist
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: proof of absence, if any
   std::vector<std::string> notes;    ///< notes for the user: methods that do not apply, incomplete searches
   Status status = Status::converged;

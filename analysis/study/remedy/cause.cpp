@@ -38,7 +38,11 @@ std::optional<double> falls_up_to(const Element& law) {
 class CauseStudy {
  public:
   CauseStudy(const LoopParts& parts, const Judging& judging, const std::vector<Cycle>& cycles)
-      : parts_(parts), judging_(judging), cycles_(cycles) {}
+      : parts_(parts), judging_(judging), cycles_(cycles) {
+    judging_.predict.enough = [](const OutcomeOfStart& one) {
+      return one.outcome == Outcome::cycle || one.outcome == Outcome::irregular || one.outcome == Outcome::undecided;
+    };
+  }
 
   Cause run() {
     if (ends("without friction compensation", without_compensation(parts_)))
@@ -46,7 +50,7 @@ class CauseStudy {
                      "The friction compensation is too strong: without it the loop does not hunt.");
     if (ends("without dead time and sampling", without_delay(parts_)))
       return decided(CauseKind::delay, "The loop reacts too late: without dead time and sampling it does not hunt.");
-    const bool integral = ends("without integral action", without_integral_action(parts_));
+    const bool integral = ends(no_integral, without_integral_action(parts_));
     const std::string level = friction_is_measured(parts_) ? "with a friction curve that is level at its least force"
                                                            : "with Fs lowered to Fc";
     const bool falling = ends(level, without_falling_friction(parts_));
@@ -55,6 +59,8 @@ class CauseStudy {
                      "The integral action pushes until the body breaks away from stiction, and it then slides too "
                      "far: without integral action, or " +
                          level + ", the loop does not hunt.");
+    // Falling friction alone would be the cause only if the loop hunted without integral action too.
+    if (falling && is_open(no_integral)) return decided(CauseKind::undecided, no_single_cause());
     if (falling)
       return decided(CauseKind::negative_slope, "Friction falls as the speed rises" + falling_range() +
                                                     ", which feeds the oscillation: " + level +
@@ -74,6 +80,8 @@ class CauseStudy {
   }
 
  private:
+  static constexpr const char* no_integral = "without integral action";
+
   Cause decided(CauseKind kind, std::string why) {
     cause_.kind = kind;
     cause_.why = std::move(why);
@@ -85,6 +93,12 @@ class CauseStudy {
     const Hunts answer = hunts(build_loop(*parts), judging_).hunts;
     cause_.tests.push_back({without, answer});
     return answer == Hunts::no || answer == Hunts::neutral;  // nothing feeds a centre
+  }
+
+  bool is_open(const std::string& without) const {
+    return std::ranges::any_of(cause_.tests, [&](const Counterfactual& test) {
+      return test.without == without && test.hunts == Hunts::undecided;
+    });
   }
 
   /// From the tests, as they came out.
@@ -121,7 +135,7 @@ class CauseStudy {
   }
 
   const LoopParts& parts_;
-  const Judging& judging_;
+  Judging judging_;  ///< that ends with the first start that does not come to rest
   const std::vector<Cycle>& cycles_;
   Cause cause_;
 };

@@ -49,7 +49,7 @@ TEST_CASE("what an incomplete search did find is told with its doubt") {
 TEST_CASE("where nothing oscillates, an incomplete search that found nothing does not agree") {
   PredictReport report;
   report.outcomes.push_back({"y(0) = 1", Outcome::rest, "", {}, {}});
-  report.nyquist.frequency.push_back(1.0);
+  report.describing_function = true;
   CHECK_THAT(worth(report), Contains("predicts none either"));
   report.incomplete.emplace_back("describing-function");
   CHECK_THAT(worth(report), Contains("found no limit cycle, but its search was incomplete."));

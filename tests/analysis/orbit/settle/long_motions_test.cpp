@@ -5,6 +5,7 @@
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
+#include "limcycle/models/friction/bristle/two_state.hpp"
 #include "limcycle/models/friction/dry/stribeck.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -121,5 +122,25 @@ TEST_CASE(
       CHECK(settled.outcome == Outcome::rest);
       CHECK(std::abs(settled.trace.y.back()) == Approx(0.3 * unit / kp).epsilon(1e-6));
     }
+  }
+}
+
+TEST_CASE("settle: a body that trembles in loops too small for its return points has come to rest, in two units") {
+  for (const double unit : {1.0, 1e3}) {  // of length: m, mm
+    TwoState<double> law;
+    law.Fc = law.Fc_minus = 1.0;
+    law.Fs = law.Fs_minus = 1.5;
+    law.vs = 1e-3 * unit;
+    law.s = 1e-3 * unit;
+    law.tau = 2e-3;
+    law.sigma2 = 0.4 / unit;
+    const Loop loop = loop_of(Mass{1.0 / unit, 0.0, 0.0}, pid(3.0 / unit, 0.0, 6.0 / unit), law);
+    const double start = 1.5e-3 * unit;
+    const Settled settled = from(loop, start, 1e-9 * unit);
+    CAPTURE(unit, settled.why);
+    CHECK(settled.outcome == Outcome::rest);
+    CHECK(settled.trace.t.size() < 30'000);  // the step limit is 240,000
+    // Friction holds it where the spring of the controller, 3 N/m, meets pre-sliding.
+    CHECK(settled.trace.y.back() == Approx(start).epsilon(1e-3));
   }
 }
