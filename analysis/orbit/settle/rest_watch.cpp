@@ -33,7 +33,7 @@ double RestWatch::rate(const State& dx) const {
 
 bool RestWatch::rates_fade(double t, const State& dx) {
   const double largest = rate(dx), drift = largest * (t + slow_) / slow_;
-  const bool fades = largest <= noise_ || (drift < 0.6 * last_ && drift < 1e-6);
+  const bool fades = largest <= noise() || (drift < 0.6 * last_ && drift < 1e-6);
   last_ = drift;
   return fades;
 }
@@ -44,7 +44,7 @@ bool RestWatch::stays(double t, const State& x) {
     rate = std::max(rate, std::abs(x[i] - before_[i]) / (t - looked_) * slow_ / sizes_[i]);
   before_ = x;
   looked_ = t;
-  return rate <= noise_;
+  return rate <= noise();
 }
 
 double rubbing_speed(const Loop& loop) {

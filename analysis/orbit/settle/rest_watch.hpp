@@ -19,7 +19,7 @@ namespace limcycle {
 class RestWatch {
  public:
   /// `sizes`: of the states, see typical_sizes(); `slow`: slowest time constant of the linear part, s.
-  RestWatch(State sizes, double slow, double rtol) : sizes_(std::move(sizes)), slow_(slow), noise_(0.01 * rtol) {}
+  RestWatch(State sizes, double slow, double rtol) : sizes_(std::move(sizes)), slow_(slow), rtol_(rtol) {}
 
   enum class Verdict { moving, steady, at_rest };
 
@@ -36,11 +36,12 @@ class RestWatch {
   }
   /// The largest of the rates, in sizes per slowest time constant.
   double rate(const State& dx) const;
-  double noise() const { return noise_; }  ///< rates as small as that count as none
+  double rtol() const { return rtol_; }          ///< of the simulation
+  double noise() const { return 0.01 * rtol_; }  ///< rates as small as that count as none
 
  private:
   State sizes_;
-  double slow_, noise_, since_ = 0.0, next_ = 0.0, last_ = infinite;
+  double slow_, rtol_, since_ = 0.0, next_ = 0.0, last_ = infinite;
   bool rates_constant(const State& dx);
   bool rates_fade(double t, const State& dx);
   bool stays(double t, const State& x);

@@ -37,7 +37,7 @@ class StillnessWatch {
   /// The same, with a look at it: the time of a switch, and the state and the rates after it. A body that creeps to
   /// rest at the edge of stiction finally sticks and breaks away by rounding: it rests once the rates vanish after many
   /// switches in a row. A body that trembles for ever within the tolerances, in loops too small for the return points
-  /// that a law can keep, rests once many switches in a row leave the state where it is.
+  /// that a law can keep, rests once many switches in a row leave plant and controller where they are.
   std::optional<Stillness> switched(double t, const State& x, const State& dx);
   /// The same if the march itself stopped because its switches accumulate.
   std::optional<Stillness> within_rounding(const State& dx) const;
