@@ -242,6 +242,20 @@ TEST_CASE("new: predict answers on new cases") {
   answers({"--error", "quantizer", "--friction", "coulomb"});
 }
 
+TEST_CASE("new: predict answers on a new case with every friction law") {
+  const Scratch scratch;
+  const std::string file = scratch.file("case.toml");
+  for (const auto& friction : some_of(kinds_in("friction"))) {
+    CAPTURE(friction);
+    REQUIRE(run({"new", "--friction", friction, "--quiet", "--force", "-o", file}).code == 0);
+    const auto ran =
+        run({"predict", file, "--set", "predict.starts=1", "--set", "predict.methods=['harmonic-balance']"});
+    CHECK(ran.code == 0);
+    CHECK(ran.out.find("This loop ") != std::string::npos);
+    CHECK(ran.out.find("ndecided") == std::string::npos);
+  }
+}
+
 TEST_CASE("new: the describing function of elements that begin to slip is searched to its end, across its jumps") {
   const Scratch scratch;
   const std::string file = scratch.file("case.toml");
