@@ -315,7 +315,7 @@ class CollocationPanel {
       system_[i * length + s_] = -residual(step, state, i, smallest_of_moving(i, state));
     }
     if (!eliminate(system_, s_, columns_)) return false;
-    const double* end = &system_[(s_ - 1) * length + s_ + 1];
+    const double* end = system_.data() + (s_ - 1) * length + s_ + 1;
     for (const std::size_t p : moving_) {
       for (std::size_t i = 0; wanted.states && i < s_; ++i) z_[i * n_ + p] += system_[i * length + s_];
       for (std::size_t c = 0; c + 1 < columns_; ++c)
@@ -346,7 +346,7 @@ class CollocationPanel {
     }
     for (const std::size_t p : order_) {
       for (std::size_t i = 0; wanted.states && i < s_; ++i) z_[i * n_ + p] += corrections_[(i * n_ + p) * columns_];
-      std::copy_n(&corrections_[((s_ - 1) * n_ + p) * columns_ + 1], columns_ - 1, &sensitivities_[p * n_]);
+      std::copy_n(corrections_.data() + ((s_ - 1) * n_ + p) * columns_ + 1, columns_ - 1, &sensitivities_[p * n_]);
     }
     return true;
   }
@@ -385,7 +385,7 @@ class CollocationPanel {
     if (!eliminate(system_, m, columns_)) return false;
     for (std::size_t r = 0; wanted.states && r < m; ++r) z_[r] += system_[r * length + m];
     for (std::size_t p = 0; p < n_; ++p)
-      std::copy_n(&system_[((s_ - 1) * n_ + p) * length + m + 1], columns_ - 1, &sensitivities_[p * n_]);
+      std::copy_n(system_.data() + ((s_ - 1) * n_ + p) * length + m + 1, columns_ - 1, &sensitivities_[p * n_]);
     return true;
   }
 
