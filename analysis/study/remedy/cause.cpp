@@ -37,8 +37,8 @@ std::optional<double> falls_up_to(const Element& law) {
 
 class CauseStudy {
  public:
-  CauseStudy(const LoopParts& parts, const Judging& judging, const std::vector<Cycle>& cycles)
-      : parts_(parts), judging_(judging), cycles_(cycles) {
+  CauseStudy(const LoopParts& parts, Judging judging, const std::vector<Cycle>& cycles)
+      : parts_(parts), judging_(std::move(judging)), cycles_(cycles) {
     judging_.predict.enough = [](const OutcomeOfStart& one) {
       return one.outcome == Outcome::cycle || one.outcome == Outcome::irregular || one.outcome == Outcome::undecided;
     };
