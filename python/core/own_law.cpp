@@ -32,29 +32,28 @@ SharedObject shared(py::object object) {
           }};
 }
 
-/// The lock of the interpreter, for a call of the law. What Python keeps of a thread stays until the thread ends: to
-/// make and to free it with every call takes twenty times as long as the call.
+/// The lock of the interpreter, for a call of the law. What Python keeps of a thread that is not its own stays until
+/// the thread ends: to make and to free it with every call takes twenty times as long as the call.
 class LawLock {
  public:
   LawLock() {
-    thread_local Kept kept;
-    if (kept.yes) return;
+    if (!unknown_) return;
+    thread_local const Kept kept;
     lock_.inc_ref();
-    kept.yes = true;
   }
 
  private:
   struct Kept {
-    bool yes = false;
     Kept() = default;
     Kept(const Kept&) = delete;
     Kept& operator=(const Kept&) = delete;
     ~Kept() {
-      if (!yes || Py_IsInitialized() == 0) return;
+      if (Py_IsInitialized() == 0) return;
       py::gil_scoped_acquire last;
       last.dec_ref();
     }
   };
+  bool unknown_ = PyGILState_GetThisThreadState() == nullptr;  ///< to Python, before the lock
   py::gil_scoped_acquire lock_;
 };
 

@@ -5,6 +5,7 @@ import math
 import pickle
 import subprocess
 import tempfile
+import threading
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
@@ -156,6 +157,14 @@ class OwnLaws(unittest.TestCase):
             limcycle.simulate(servo(friction=Forgetful()), 10.0, initial={"y": 0.1})
         with self.assertRaisesRegex(limcycle.CaseError, r"rate\(v, z\) must return a number, found a str"):
             servo(friction=Wordy())
+
+    def test_on_threads_of_python_that_end(self):
+        statuses = []
+        for _ in range(3):
+            thread = threading.Thread(target=lambda: statuses.append(limcycle.simulate(servo(friction=Dahl()), 1.0, initial={"y": 0.1}).to_dict()["status"]))
+            thread.start()
+            thread.join()
+        self.assertEqual(statuses, ["converged"] * 3)
 
     def test_every_question_keeps_it(self):
         # remedies, as thresholds, read the case again
