@@ -15,7 +15,7 @@ constexpr std::string_view identify_style =
     ".dot{fill:#8b949e;fill-opacity:.55}.law{fill:none;stroke:#d9661f;stroke-width:2;stroke-linejoin:round}"
     ".zero{stroke:#8b949e;stroke-opacity:.4;stroke-dasharray:3 3}.right{text-anchor:end}"
     ".title{font-size:14px;font-weight:600}";
-constexpr double record_width = 350.0, record_height = 190.0, gap = 20.0, head_height = 60.0, below = 56.0;
+constexpr double record_width = 350.0, record_height = 190.0, gap = 20.0, head_height = 60.0, foot_height = 56.0;
 constexpr std::size_t most_points = 700;
 
 /// What a panel shows: the force over something.
@@ -129,12 +129,13 @@ std::string identify_picture(const IdentifyReport& report) {
   for (std::size_t r = 0; r < law->records.size(); ++r) {
     const std::size_t row = r / 2, column = r % 2;
     body += panel(report.records[r], law->records[r], 10.0 + static_cast<double>(column) * (record_width + gap),
-                  head_height + static_cast<double>(row) * (record_height + below));
+                  head_height + static_cast<double>(row) * (record_height + foot_height));
   }
   const std::string title = fmt::format("{}: error on rows that it was not fitted to, {} of {}", law->law.kind(),
                                         as_percent(law->held_out), largest_measured(report));
-  return svg_picture(20.0 + 2.0 * record_width + gap, head_height + static_cast<double>(rows) * (record_height + below),
-                     title, identify_style, title, body);
+  return svg_picture(20.0 + 2.0 * record_width + gap,
+                     head_height + static_cast<double>(rows) * (record_height + foot_height), title, identify_style,
+                     title, body);
 }
 
 }  // namespace limcycle

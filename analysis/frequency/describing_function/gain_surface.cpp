@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t nodes = 8;
 constexpr double width = 2.0 * std::numbers::ln2;  ///< of the largest cell, in ln A and ln(A w)
-constexpr double margin = 0.3;                     ///< of the wanted accuracy, for the polynomial
+constexpr double polynomial_share = 0.3;           ///< of the wanted accuracy, for the polynomial
 
 /// Chebyshev points of the first kind, and the weights of barycentric interpolation on them.
 struct ChebyshevRow {
@@ -105,7 +105,8 @@ GainSurface::Cell GainSurface::made(const Name& name) {
   for (std::size_t i = 0; i < count; ++i) cell.push_back(smooth(results[i].gain, points[i].frequency));
   for (std::size_t i = count; i < places.size(); ++i) {
     const Complex expected = smooth(results[i].gain, points[i].frequency);
-    if (!(std::abs(interpolated(cell, places[i]) - expected) <= margin * accuracy_ * std::abs(expected))) return {};
+    if (!(std::abs(interpolated(cell, places[i]) - expected) <= polynomial_share * accuracy_ * std::abs(expected)))
+      return {};
   }
   return cell;
 }

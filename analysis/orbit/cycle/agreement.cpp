@@ -11,7 +11,7 @@
 namespace limcycle {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// y at a time within the run: the cubic through values and rates.
 class Curve {
@@ -161,7 +161,7 @@ Agreement agreement(const Loop& loop, SimulateOptions options, const Simulation&
   found.steps = second.steps;
   found.status = second.status;
   found.outcome = second.outcome;
-  found.period_difference = found.amplitude_difference = found.parted = none;
+  found.period_difference = found.amplitude_difference = found.parted = missing;
   if (run.outcome == Outcome::cycle && second.outcome == Outcome::cycle) {
     found.period_difference = std::abs(second.period / run.period - 1.0);
     found.amplitude_difference = std::abs(second.amplitude / run.amplitude - 1.0);

@@ -8,7 +8,7 @@
 namespace limcycle {
 namespace {
 
-constexpr Eigen::Index parts = 5, blocks_a_part = 4;
+constexpr Eigen::Index folds = 5, blocks_a_fold = 4;
 
 /// Weight 1 for the entries of one part. Each record is cut into 20 blocks, dealt out in turn.
 Eigen::VectorXd part_of(const Misfit& misfit, Eigen::Index part) {
@@ -16,7 +16,7 @@ Eigen::VectorXd part_of(const Misfit& misfit, Eigen::Index part) {
   for (std::size_t r = 0; r < misfit.records().size(); ++r) {
     const Eigen::Index rows = std::ssize(misfit.records()[r].compared);
     for (Eigen::Index i = 0; i < rows; ++i)
-      if (i * parts * blocks_a_part / rows % parts == part) chosen(misfit.first_of(r) + i) = 1.0;
+      if (i * folds * blocks_a_fold / rows % folds == part) chosen(misfit.first_of(r) + i) = 1.0;
   }
   return chosen;
 }
@@ -45,7 +45,7 @@ double held_out_error(const Misfit& misfit, const Fit& best) {
   Eigen::VectorXd u = best.u;
   const Groups groups = groups_on(misfit.space(), best.held, felt_coordinates(misfit, u), u);
   double sum = 0.0, rows = 0.0;
-  for (Eigen::Index part = 0; part < parts; ++part) {
+  for (Eigen::Index part = 0; part < folds; ++part) {
     const Eigen::VectorXd out = part_of(misfit, part), in = Eigen::VectorXd::Ones(out.size()) - out;
     if (misfit.start_states() > 0 && !misfit.at(best.u, entries, &slopes, 1.0, &in)) return NAN;
     Eigen::VectorXd step = step_to_fit(groups, in, entries, slopes);

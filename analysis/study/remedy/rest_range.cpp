@@ -67,7 +67,7 @@ struct RestProgramme {
   }
 };
 
-constexpr double boundless = 1e7, slack = 1e-9, rounding = 1e-12;
+constexpr double boundless = 1e7, slack = 1e-9, rounding_share = 1e-12;
 
 /// Least and largest of `of` z over g z <= h, |z_i| <= boundless, by its corners; empty if there is no such z.
 std::optional<Extent> over_corners(MatrixXd g, VectorXd h, const VectorXd& of) {
@@ -93,7 +93,7 @@ std::optional<Extent> over_corners(MatrixXd g, VectorXd h, const VectorXd& of) {
     }
     if (rank(corner) < d) continue;
     const VectorXd z = solve(corner, at);
-    if (!((g * z - h).array() <= slack + rounding * z.norm()).all()) continue;
+    if (!((g * z - h).array() <= slack + rounding_share * z.norm()).all()) continue;
     const double value = of.dot(z);
     found.low = std::min(found.low, value);
     found.high = std::max(found.high, value);

@@ -13,7 +13,7 @@ using std::numbers::pi;
 
 namespace {
 
-StribeckTable<double> measured() {
+StribeckTable<double> measured_law() {
   StribeckTable<double> law;
   law.velocities = {5e-4, 1e-3, 2e-3, 5e-3, 0.02};
   law.forces = {1.35, 1.2, 1.05, 1.0, 1.04};
@@ -52,7 +52,7 @@ double in_phase_with_rate(const StribeckTable<double>& law, double peak, double 
 }  // namespace
 
 TEST_CASE("measured curve: describing functions are accurate across its points, where it is not smooth") {
-  const StribeckTable<double> law = measured();
+  const StribeckTable<double> law = measured_law();
   constexpr double accuracy = 1e-9;
   for (const double drift : {0.0, 1.8e-3, -3e-3})
     for (const double peak : {1.2e-3, 4.5e-3, 0.05}) {

@@ -42,7 +42,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text.replace(at, what.size(), with);
 }
 
-const std::string relay = shipped("relay-third-order.toml");
+const std::string third_order = shipped("relay-third-order.toml");
 
 }  // namespace
 
@@ -105,18 +105,18 @@ TEST_CASE("report: the page alone makes the same answer again") {
   const Scratch scratch;
   const std::string file = scratch.file("r.html");
   const std::vector<std::string> how{"--set", "loop.element.dead_zone=0.05", "--quick"};
-  REQUIRE(run({"report", relay, how[0], how[1], how[2], "-o", file}).code == 0);
-  const auto direct = run({"predict", relay, how[0], how[1]});
+  REQUIRE(run({"report", third_order, how[0], how[1], how[2], "-o", file}).code == 0);
+  const auto direct = run({"predict", third_order, how[0], how[1]});
   const auto again = run({"predict", "--from", file});
   CHECK(again.code == 0);
   CHECK(again.out == direct.out);
   CHECK(again.err.empty());
-  const auto documents = std::pair(run({"predict", relay, how[0], how[1], "--json", "-"}).out,
+  const auto documents = std::pair(run({"predict", third_order, how[0], how[1], "--json", "-"}).out,
                                    run({"predict", "--from", file, "--json", "-"}).out);
   CHECK(documents.first == documents.second);
   // A further change is added to those in the page.
   const auto changed = run({"predict", "--from", file, "--set", "loop.element.level=2.0"});
-  CHECK(changed.out == run({"predict", relay, how[0], how[1], "--set", "loop.element.level=2.0"}).out);
+  CHECK(changed.out == run({"predict", third_order, how[0], how[1], "--set", "loop.element.level=2.0"}).out);
   CHECK(changed.out != direct.out);
   // A report made from the page reproduces it, with its flags.
   REQUIRE(run({"report", "--from", file, "-o", scratch.file("r2.html")}).code == 0);
@@ -126,13 +126,13 @@ TEST_CASE("report: the page alone makes the same answer again") {
 TEST_CASE("report: the short page of predict holds its case too") {
   const Scratch scratch;
   const std::string file = scratch.file("p.html");
-  REQUIRE(run({"predict", relay, "-o", file}).code == 0);
-  CHECK(run({"predict", "--from", file}).out == run({"predict", relay}).out);
+  REQUIRE(run({"predict", third_order, "-o", file}).code == 0);
+  CHECK(run({"predict", "--from", file}).out == run({"predict", third_order}).out);
 }
 
 TEST_CASE("report: every byte of a case survives the page") {
   const Scratch scratch;
-  std::ifstream in(relay, std::ios::binary);
+  std::ifstream in(third_order, std::ios::binary);
   const std::string original(std::istreambuf_iterator<char>(in), {});
   int n = 0;
   for (const std::string& end : {std::string("# < & </script> <!-- \" ' \\"), std::string("# ω ≤ 日本\r\n# CRLF\r\n"),
@@ -152,7 +152,7 @@ TEST_CASE("report: every byte of a case survives the page") {
 
 TEST_CASE("report: a page that was altered, is none, or is from a newer program is refused") {
   const Scratch scratch;
-  REQUIRE(run({"predict", relay, "-o", scratch.file("p.html")}).code == 0);
+  REQUIRE(run({"predict", third_order, "-o", scratch.file("p.html")}).code == 0);
   const std::string page = scratch.get("p.html");
   const auto refused = [&](const std::string& text, const std::string& why) {
     const std::string file = scratch.put("bad.html", text);
@@ -179,14 +179,14 @@ TEST_CASE("report: one case, from one place") {
   const auto none = run({"predict"});
   CHECK(none.code == 2);
   CHECK_THAT(none.err, Contains("a case is needed: CASE, or --from"));
-  const auto both = run({"report", relay, "--from", "p.html"});
+  const auto both = run({"report", third_order, "--from", "p.html"});
   CHECK(both.code == 2);
   CHECK_THAT(both.err, Contains("takes the place of CASE"));
 }
 
 TEST_CASE("report: a page from another version is told so, and an answer that it does not state") {
   const Scratch scratch;
-  REQUIRE(run({"predict", relay, "-o", scratch.file("p.html")}).code == 0);
+  REQUIRE(run({"predict", third_order, "-o", scratch.file("p.html")}).code == 0);
   std::string page = scratch.get("p.html");
   const auto at = page.find("\"version\":\"", page.find("id=\"case\">"));
   page.replace(at, std::string("\"version\":\"").size(), "\"version\":\"0.0.0-");
@@ -203,7 +203,7 @@ TEST_CASE("report: a page from another version is told so, and an answer that it
 
 TEST_CASE("report: with a map, which the page draws and makes again") {
   const Scratch scratch;
-  const auto ran = run({"report", relay, "--quick", "--x", "loop.element.level=1:2:3", "--y",
+  const auto ran = run({"report", third_order, "--quick", "--x", "loop.element.level=1:2:3", "--y",
                         "loop.element.dead_zone=0:0.2:4", "-o", scratch.file("m.html"), "--quiet"});
   REQUIRE(ran.code == 0);
   const std::string page = scratch.get("m.html");
@@ -217,7 +217,7 @@ TEST_CASE("report: with a map, which the page draws and makes again") {
            {"--x", "loop.element.level=1:2:3"},
            {"--x", "loop.element.level=1:2:3", "--y", "loop.element.level=1:2:3"},
            {"--x", "loop.element.nothing=1:2:3", "--y", "loop.element.level=1:2:3"}}) {
-    std::vector<std::string> arguments{"report", relay, "-o", scratch.file("x.html")};
+    std::vector<std::string> arguments{"report", third_order, "-o", scratch.file("x.html")};
     arguments.insert(arguments.end(), wrong.begin(), wrong.end());
     CHECK(run(arguments).code == 2);
     CHECK_FALSE(std::filesystem::exists(scratch.file("x.html")));
@@ -226,7 +226,7 @@ TEST_CASE("report: with a map, which the page draws and makes again") {
 
 TEST_CASE("report: where the page goes") {
   const Scratch scratch;
-  const auto piped = run({"report", relay, "--quick", "-o", "-"});
+  const auto piped = run({"report", third_order, "--quick", "-o", "-"});
   CHECK(piped.code == 0);
   CHECK_THAT(piped.out, StartsWith("<!DOCTYPE html>"));
   CHECK(piped.out.ends_with("</html>\n"));

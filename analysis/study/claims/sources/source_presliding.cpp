@@ -23,7 +23,7 @@ struct Drift {
   Status status = Status::converged;
 };
 
-constexpr int cycles = 40, averaged = 4;
+constexpr int periods = 40, averaged = 4;
 constexpr double period = 2.0;  // s
 
 Drift drift_under(const LawSetting& setting, const ZigZag& force, const std::function<bool()>& stop) {
@@ -37,7 +37,7 @@ Drift drift_under(const LawSetting& setting, const ZigZag& force, const std::fun
     to(2.1, 0.5);
   }
   const double first = t.back() + 0.5;
-  for (int k = 0; k <= 2 * cycles; ++k) to(first + 0.5 * period * k, k % 2 == 0 ? force.high : force.low);
+  for (int k = 0; k <= 2 * periods; ++k) to(first + 0.5 * period * k, k % 2 == 0 ? force.high : force.low);
   ForcedOptions how;
   how.duration = t.back();
   how.rtol = 1e-9;
