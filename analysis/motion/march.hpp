@@ -120,7 +120,8 @@ class March {
   bool leaves_at_once(std::size_t guard, double fraction);
   bool negative_within(const std::vector<double>& at_start, double& from, double& to, std::size_t& guard);
   double event_value(std::size_t guard, const State& x, double t);
-  std::pair<double, double> crossing(std::size_t guard, double from, double to);
+  double value_between(std::size_t guard, double fraction);
+  double crossing(std::size_t guard, double from, double to);
   std::size_t first_of_candidates(const std::vector<double>& at_start, double from, double to);
   double locate(std::size_t guard, double from, double to);
   double just_beyond(std::size_t guard, double at, double last);

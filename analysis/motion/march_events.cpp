@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/steppers/step_to_zero.hpp"
 
 /// @file
 /// Location of events within a step: switches of elements and crossings of the section.
@@ -57,15 +58,19 @@ bool March::negative_within(const std::vector<double>& at_start, double& from, d
   return false;
 }
 
-/// Fraction of the step at which the interpolant has the event, up to 1e-9 of the bracket: just before and just after.
-std::pair<double, double> March::crossing(std::size_t guard, double from, double to) {
-  const double h = step_.t1 - step_.t0;
+/// The guard on the interpolant, at a fraction of the step.
+double March::value_between(std::size_t guard, double fraction) {
+  step_.interpolate(fraction, work_);
+  return event_value(guard, work_, step_.t0 + fraction * (step_.t1 - step_.t0));
+}
+
+/// Fraction of the step just after which the interpolant has the event, up to 1e-9 of the bracket.
+double March::crossing(std::size_t guard, double from, double to) {
   for (int i = 0; i < 30; ++i) {
     const double mid = 0.5 * (from + to);
-    step_.interpolate(mid, work_);
-    (event_value(guard, work_, step_.t0 + mid * h) >= 0.0 ? from : to) = mid;
+    (value_between(guard, mid) >= 0.0 ? from : to) = mid;
   }
-  return {from, to};
+  return to;
 }
 
 /// The event that comes first on the interpolant, of several in one bracket.
@@ -75,7 +80,7 @@ std::size_t March::first_of_candidates(const std::vector<double>& at_start, doub
   double earliest = infinite;
   for (const std::size_t k : candidates_) {
     const bool at_once = from == 0.0 && k != section_guard && at_start[k] <= 0.0;
-    const double when = at_once ? 0.0 : crossing(k, from, to).second;
+    const double when = at_once ? 0.0 : crossing(k, from, to);
     if (when >= earliest) continue;
     earliest = when;
     first = k;
@@ -83,41 +88,28 @@ std::size_t March::first_of_candidates(const std::vector<double>& at_start, doub
   return first;
 }
 
-/// Length of the step at whose end the guard is zero: bisection and secant on whole steps.
+/// Length of the step at whose end the guard is zero; work_ is then the state there.
 double March::locate(std::size_t guard, double from, double to) {
   const double h = step_.t1 - step_.t0;
   if (from == 0.0 && guard != section_guard && guards_start_[guard] <= 0.0) return 0.0;
-  // A rough bracket from the interpolant costs no steps.
-  const auto [a, b] = crossing(guard, from, to);
-  double low = from * h, high = to * h, at = 0.5 * (a + b) * h;
-  double previous = 0.0, previous_value = 0.0, best = at, best_value = infinite;
-  for (int i = 0; i < 60; ++i) {
-    repeat(at, work_);
-    const double value = event_value(guard, work_, step_.t0 + at);
-    if (std::abs(value) < best_value) {
-      best = at;
-      best_value = std::abs(value);
-    }
-    (value >= 0.0 ? low : high) = at;
-    double next =
-        i == 0 ? at * (1.0 + (value >= 0.0 ? 1e-6 : -1e-6)) : at - value * (at - previous) / (value - previous_value);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    previous = at;
-    previous_value = value;
-    if (value == 0.0 || std::abs(next - at) <= 2e-16 * std::max(h, std::abs(step_.t0)) || high - low < 1e-16 * h) break;
-    at = next;
-  }
-  return guard != section_guard && field_.holds(field_.owner(guard)) ? just_beyond(guard, best, to * h) : best;
+  const auto between = [&](double length) { return value_between(guard, length / h); };
+  const auto by_step = [&](double length) {
+    repeat(length, work_);
+    return event_value(guard, work_, step_.t0 + length);
+  };
+  const double rounding = 2e-16 * std::max(h, std::abs(step_.t0));
+  const auto expected = on_interpolant(between, from * h, to * h);
+  const double found = step_to_zero(by_step, from * h, to * h, expected, h, rounding);
+  return guard != section_guard && field_.holds(field_.owner(guard)) ? just_beyond(guard, found, to * h) : found;
 }
 
 /// A body that breaks away must be beyond its guard: if rounding left the force short of break-away, it would slide
-/// back, stick and break away again at the same instant.
+/// back, stick and break away again at the same instant. On entry work_ is the state at `at`, on return that beyond.
 double March::just_beyond(std::size_t guard, double at, double last) {
   double step = 2e-16 * std::max(last, std::abs(step_.t0));
-  for (int i = 0; i < 20; ++i, step *= 2.0) {
-    repeat(at, work_);
-    if (event_value(guard, work_, step_.t0 + at) < 0.0 || at + step > last) break;
+  for (int i = 0; i < 20 && event_value(guard, work_, step_.t0 + at) >= 0.0 && at + step <= last; ++i, step *= 2.0) {
     at += step;
+    repeat(at, work_);
   }
   return at;
 }
@@ -143,13 +135,9 @@ bool March::release(SwitchSlopes& first) {
   return false;
 }
 
-/// Ends the present step after the time h.
+/// Ends the present step after the time h, with the state work_ there if h is not zero.
 void March::end_at(double h) {
-  if (h > 0.0) {
-    repeat(h, step_.x1);
-  } else {
-    step_.x1 = step_.x0;
-  }
+  step_.x1 = h > 0.0 ? work_ : step_.x0;
   step_.t1 = step_.t0 + h;
   field_.rate(step_.x1, step_.dx1, step_.t1);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limcycle/analysis/frequency/composite/composite_step.hpp"
+#include "limcycle/analysis/motion/steppers/step_to_zero.hpp"
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/models/element/element.hpp"
 
@@ -100,7 +101,7 @@ class CompositeMarch : public CompositeStep<D> {
     int fired = -1;
     if (has_modes_) {
       double low = 0.0, high = h;
-      if (switches_within(s, h, low, high, fired)) h = locate(s, fired, low, high);
+      if (switches_within(s, h, low, high, fired)) h = locate(s, fired, h, low, high);
     }
     if (h > 0.0) add(s, h, sums);
     taken_.push_back(h);
@@ -149,16 +150,22 @@ class CompositeMarch : public CompositeStep<D> {
     law_.guard(input_at(y, phase), mode, states(y), g);
   }
 
+  /// Puts the cubic through the ends of the step of length h, at a share of it, into stage_.
+  void interpolate(const State& s, double h, double theta) {
+    const double left = 1.0 - theta;
+    for (std::size_t i = 0; i < d_; ++i) {
+      const double chord = y1_[i] - s.y[i];
+      stage_[i] = left * s.y[i] + theta * y1_[i] -
+                  theta * left * ((1.0 - 2.0 * theta) * chord + h * (theta * rate_[i] - left * rate0_[i]));
+    }
+  }
+
   /// Searches the quarters of the step for the first guard that has turned negative.
   bool switches_within(const State& s, double h, double& low, double& high, int& fired) {
     field(y1_, mode_, std::sin(phase_ + h), rate_);
     for (int quarter = 1; quarter <= 4; ++quarter) {
-      const double theta = 0.25 * quarter, left = 1.0 - theta;
-      for (std::size_t i = 0; i < d_; ++i) {
-        const double chord = y1_[i] - s.y[i];
-        stage_[i] = left * s.y[i] + theta * y1_[i] -
-                    theta * left * ((1.0 - 2.0 * theta) * chord + h * (theta * rate_[i] - left * rate0_[i]));
-      }
+      const double theta = 0.25 * quarter;
+      interpolate(s, h, theta);
       guards(quarter == 4 ? y1_ : stage_, s.mode, phase_ + theta * h, guards_);
       for (std::size_t k = 0; k < guards_.size(); ++k)
         if (guards_[k] < 0.0) {
@@ -171,41 +178,26 @@ class CompositeMarch : public CompositeStep<D> {
     return false;
   }
 
-  /// Step length at which the guard is zero, by repeated whole steps: regula falsi (Illinois).
-  double locate(const State& s, int fired, double low, double high) {
-    const auto value = [&](double h) {
-      if (h > 0.0) attempt(h);
-      guards(h > 0.0 ? y1_ : s.y, s.mode, phase_ + h, guards_);
+  /// Length at which the guard has just turned negative, of a step of length h; that step is then the last one taken.
+  double locate(const State& s, int fired, double h, double low, double high) {
+    const auto value = [&](const Vector& y, double length) {
+      guards(y, s.mode, phase_ + length, guards_);
       return guards_[static_cast<std::size_t>(fired)];
     };
-    double at_low = value(low);
-    if (at_low <= 0.0) {
-      if (low == 0.0) return 0.0;
-      at_low = value(low = 0.0);
-      if (at_low <= 0.0) return 0.0;
-    }
-    double at_high = value(high);
-    if (at_high >= 0.0) return high;  // the interpolant found a switch, the step does not
-    int side = 0;
-    for (int i = 0; i < 80 && high - low > 2e-16 * (1.0 + phase_); ++i) {
-      double next = low + (high - low) * at_low / (at_low - at_high);
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      const double now = value(next);
-      if (now == 0.0) return next;
-      if (now > 0.0) {
-        low = next;
-        at_low = now;
-        if (side == 1) at_high *= 0.5;
-        side = 1;
-      } else {
-        high = next;
-        at_high = now;
-        if (side == -1) at_low *= 0.5;
-        side = -1;
-      }
-    }
-    value(high);
-    return high;
+    if (low == 0.0 && value(s.y, 0.0) <= 0.0) return 0.0;
+    const auto between = [&](double length) {
+      interpolate(s, h, length / h);
+      return value(stage_, length);
+    };
+    const auto by_step = [&](double length) {
+      attempt(length);
+      return value(y1_, length);
+    };
+    const auto expected = on_interpolant(between, low, high);
+    double rounding = 2e-16 * (1.0 + phase_), found = step_to_zero(by_step, low, high, expected, h, rounding);
+    for (int i = 0; i < 20 && value(y1_, found) > 0.0 && found + rounding <= high; ++i, rounding *= 2.0)
+      by_step(found += rounding);
+    return found;
   }
 
   void fire(State& s, int fired) {

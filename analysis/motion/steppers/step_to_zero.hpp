@@ -1,0 +1,60 @@
+#pragma once
+#include <cmath>
+#include <limits>
+
+namespace limcycle {
+
+/// Where a guard falls through zero within a step, on the interpolant between two lengths of the step.
+struct GuardOnInterpolant {
+  double guess;  ///< length of the step at which it is zero
+  double slope;  ///< per length of the step
+};
+
+/// The interpolant's zero of a guard that is not negative at length `a` and negative at `b`: by halvings, then on the
+/// straight line. `value(h)`: the guard on the interpolant.
+GuardOnInterpolant on_interpolant(const auto& value, double a, double b) {
+  constexpr int halvings = 10;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (a + b);
+    (value(middle) >= 0.0 ? a : b) = middle;
+  }
+  const double at_a = value(a), slope = (value(b) - at_a) / (b - a);
+  return {a - at_a / slope, slope};
+}
+
+/// Length of a step, between `low` and `high`, at which a guard is zero, if its value takes a whole step of the method:
+/// Newton's method from the interpolant's zero with its slope, then secants within the bracket, to a `rounding` of the
+/// length. The error of a secant is the product of the two before, so that the last step is taken without another to
+/// check it: four steps as a rule. `value(h)`: takes the step of length h and returns the guard at its end; its last
+/// call is that with the length returned. `h`: the length of the step that found the event.
+double step_to_zero(const auto& value, double low, double high, GuardOnInterpolant expected, double h,
+                    double rounding) {
+  double at = expected.guess, slope = expected.slope, last_move = 1e-3 * h;
+  if (!(at > low && at < high)) at = 0.5 * (low + high);
+  double best = at, best_value = std::numeric_limits<double>::infinity(), previous = 0.0, previous_value = 0.0;
+  bool last = false;
+  for (int i = 0; i < 60; ++i) {
+    const double now = value(at);
+    if (i > 0) slope = (now - previous_value) / (at - previous);
+    previous = at;
+    previous_value = now;
+    if (std::abs(now) < best_value) {
+      best = at;
+      best_value = std::abs(now);
+    }
+    if (last || now == 0.0) break;
+    (now >= 0.0 ? low : high) = at;
+    double next = at - now / slope;
+    const bool aimed = next > low && next < high;
+    if (!aimed) next = 0.5 * (low + high);
+    const double move = std::abs(next - at);
+    if (move <= rounding || high - low < 1e-16 * h) break;
+    last = aimed && move * last_move <= 1e-17 * h * h;
+    last_move = move;
+    at = next;
+  }
+  if (previous != best) value(best);
+  return best;
+}
+
+}  // namespace limcycle
