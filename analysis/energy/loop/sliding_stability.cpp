@@ -153,7 +153,7 @@ std::optional<HopfPoint> bisect(const std::function<Loop(double)>& family, Scan 
     const double middle = 0.5 * (low.speed + high.speed);
     const auto value = rightmost(family, middle);
     if (!value) return std::nullopt;
-    ((value->real() > 0.0) == (low.growth > 0.0) ? low : high) = {middle, value->real()};
+    ((value->real() > 0.0) == (low.growth > 0.0) ? low : high) = Scan{middle, value->real()};
   }
   if (std::abs(high.growth - low.growth) > 1e-3 * jump) return std::nullopt;
   const double speed = 0.5 * (low.speed + high.speed);

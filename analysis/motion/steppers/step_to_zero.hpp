@@ -29,31 +29,36 @@ GuardOnInterpolant on_interpolant(const auto& value, double a, double b) {
 /// call is that with the length returned. `h`: the length of the step that found the event.
 double step_to_zero(const auto& value, double low, double high, GuardOnInterpolant expected, double h,
                     double rounding) {
-  double at = expected.guess, slope = expected.slope, last_move = 1e-3 * h;
+  double at = expected.guess, slope = expected.slope;
   if (!(at > low && at < high)) at = 0.5 * (low + high);
-  double best = at, best_value = std::numeric_limits<double>::infinity(), previous = 0.0, previous_value = 0.0;
+  double best = at, best_value = std::numeric_limits<double>::infinity(), taken = at, taken_value = 0.0;
   bool last = false;
   for (int i = 0; i < 60; ++i) {
-    const double now = value(at);
-    if (i > 0) slope = (now - previous_value) / (at - previous);
-    previous = at;
-    previous_value = now;
+    const double now = value(at), before = taken;
+    if (i > 0) slope = (now - taken_value) / (at - taken);
+    taken = at;
+    taken_value = now;
+    const bool as_expected = last && std::abs(now) <= 0.1 * best_value;  // not at a jump
     if (std::abs(now) < best_value) {
       best = at;
       best_value = std::abs(now);
     }
-    if (last || now == 0.0) break;
+    if (as_expected || now == 0.0) break;
     (now >= 0.0 ? low : high) = at;
     double next = at - now / slope;
     const bool aimed = next > low && next < high;
     if (!aimed) next = 0.5 * (low + high);
     const double move = std::abs(next - at);
-    if (move <= rounding || high - low < 1e-16 * h) break;
-    last = aimed && move * last_move <= 1e-17 * h * h;
-    last_move = move;
+    if (move <= rounding || high - low < 1e-16 * h) {
+      const bool jumps = best < low || best > high;
+      if (jumps) best = high - at <= 2.0 * rounding ? high : at;
+      break;
+    }
+    const double by_slope = i == 0 ? 1e-3 * h : std::abs(next - before);
+    last = aimed && move * by_slope <= 1e-17 * h * h;
     at = next;
   }
-  if (previous != best) value(best);
+  if (taken != best) value(best);
   return best;
 }
 

@@ -24,7 +24,7 @@ std::vector<MarginParameter> relay_parameters(double level, double dead_zone) {
            [=](double p) -> std::optional<Loop> { return relay_loop(level, p); }}};
 }
 
-const ParameterMargin& named(const MarginReport& report, const std::string& path) {
+const ParameterMargin& named(const MarginReport& report, std::string_view path) {
   const auto found =
       std::ranges::find_if(report.parameters, [&](const auto& one) { return one.parameter.path == path; });
   REQUIRE(found != report.parameters.end());
