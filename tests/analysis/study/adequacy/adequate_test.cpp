@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string_view>
 
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
@@ -17,13 +18,13 @@ using namespace limcycle::test;
 
 namespace {
 
-const LawRung& rung(const std::vector<LawRung>& ladder, const std::string& name) {
+const LawRung& rung(const std::vector<LawRung>& ladder, std::string_view name) {
   const auto found = std::ranges::find(ladder, name, &LawRung::name);
   REQUIRE(found != ladder.end());
   return *found;
 }
 
-const AdequatePoint& point(const AdequateReport& report, const std::string& law, const std::string& method) {
+const AdequatePoint& point(const AdequateReport& report, std::string_view law, std::string_view method) {
   const auto found = std::ranges::find_if(
       report.points, [&](const AdequatePoint& one) { return one.law == law && one.method == method; });
   REQUIRE(found != report.points.end());

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <numbers>
+#include <string_view>
 
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/loops.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -59,10 +60,10 @@ inline Element stribeck_rig() {
 }
 inline Element coulomb_rig() { return law_with("coulomb", {{"Fs", 1.5}, {"Fc", 1.0}, {"sigma2", 20.0}}); }
 
-inline const IdentifiedNumber& number_named(const IdentifiedLaw& law, const std::string& name) {
+inline const IdentifiedNumber& number_named(const IdentifiedLaw& law, std::string_view name) {
   for (const auto& one : law.numbers)
     if (one.name == name) return one;
-  throw std::invalid_argument(name);
+  throw std::invalid_argument(std::string(name));
 }
 
 /// Value of a number by its name, "Fs" or "k[0]".
@@ -74,7 +75,7 @@ inline double true_value(const Element& law, const std::string& name) {
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (rows[i].key == name.substr(0, bracket))
       return std::get<std::vector<double>>(values[i]).at(std::stoul(name.substr(bracket + 1)));
-  throw std::invalid_argument(name);
+  throw std::invalid_argument(std::string(name));
 }
 
 }  // namespace limcycle::test
