@@ -79,3 +79,15 @@ TEST_CASE("step to zero: from the cubic of a smooth step four steps are enough, 
     CHECK(steps <= (h > 0.2 ? 5 : 4));
   }
 }
+
+TEST_CASE("step to zero: a body that moves by the smallest number there is stops within rounding, not after no time") {
+  for (const double push : {1.0, 1e-6, 1e6}) {
+    const auto guard = [&](double h) { return 4.94e-324 - push * h; };
+    const auto expected = on_interpolant(guard, 0.0, 0.25);
+    const auto value = [&](double h) {
+      CHECK(h >= rounding);
+      return guard(h);
+    };
+    CHECK(step_to_zero(value, 0.0, 0.25, expected, 1.0, rounding) <= 4.0 * rounding);
+  }
+}
