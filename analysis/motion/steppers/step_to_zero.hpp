@@ -27,13 +27,14 @@ GuardOnInterpolant on_interpolant(const auto& value, double a, double b) {
 /// Newton's method from the interpolant's zero with its slope, then secants within the bracket, to a `rounding` of the
 /// length. The error of a secant is the product of the two before, so that the last step is taken without another to
 /// check it: four steps as a rule. `value(h)`: takes the step of length h and returns the guard at its end; its last
-/// call is that with the length returned. `h`: the length of the step that found the event. No step is shorter than a
-/// `rounding`: implicit methods divide by its length.
+/// call is that with the length returned. `h`: the length of the step that found the event. No step is shorter than
+/// 1e-16 h: implicit methods divide by its length.
 double step_to_zero(const auto& value, double low, double high, GuardOnInterpolant expected, double h,
                     double rounding) {
   double at = expected.guess, slope = expected.slope;
   if (!(at > low && at < high)) at = 0.5 * (low + high);
-  at = std::max(at, rounding);
+  const double shortest = 1e-16 * h;
+  at = std::max(at, shortest);
   double best = at, best_value = std::numeric_limits<double>::infinity(), taken = at, taken_value = 0.0;
   bool last = false;
   for (int i = 0; i < 60; ++i) {
@@ -51,9 +52,9 @@ double step_to_zero(const auto& value, double low, double high, GuardOnInterpola
     double next = at - now / slope;
     const bool aimed = next > low && next < high;
     if (!aimed) next = 0.5 * (low + high);
-    next = std::max(next, rounding);
+    next = std::max(next, shortest);
     const double move = std::abs(next - at);
-    if (move <= rounding || high - low < 1e-16 * h) {
+    if (move <= rounding || high - low < shortest) {
       const bool jumps = best < low || best > high;
       if (jumps) best = high - at <= 2.0 * rounding ? high : at;
       break;
