@@ -75,7 +75,7 @@ inline double true_value(const Element& law, const std::string& name) {
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (rows[i].key == name.substr(0, bracket))
       return std::get<std::vector<double>>(values[i]).at(std::stoul(name.substr(bracket + 1)));
-  throw std::invalid_argument(std::string(name));
+  throw std::invalid_argument(name);
 }
 
 }  // namespace limcycle::test
