@@ -23,12 +23,13 @@ GuardOnInterpolant on_interpolant(const auto& value, double a, double b) {
   return {a - at_a / slope, slope};
 }
 
-/// Length of a step, between `low` and `high`, at which a guard is zero, if its value takes a whole step of the method:
-/// Newton's method from the interpolant's zero with its slope, then secants within the bracket, to a `rounding` of the
-/// length. The error of a secant is the product of the two before, so that the last step is taken without another to
-/// check it: four steps as a rule. `value(h)`: takes the step of length h and returns the guard at its end; its last
-/// call is that with the length returned. `h`: the length of the step that found the event. No step is shorter than
-/// 1e-16 h: implicit methods divide by its length.
+/// Length of a step at which a guard is zero, if its value takes a whole step of the method: Newton's method from the
+/// interpolant's zero with its slope, then secants within the bracket, to a `rounding` of the length. The bracket is
+/// that of the interpolant, `low` to `high`; where whole steps put the zero before `low`, it reaches back to the start
+/// of the step, at which the guard must not be negative. The error of a secant is the product of the two before, so
+/// that the last step is taken without another to check it: four steps as a rule. `value(h)`: takes the step of length
+/// h and returns the guard at its end; its last call is that with the length returned. `h`: the length of the step that
+/// found the event. No step is shorter than 1e-16 h: implicit methods divide by its length.
 double step_to_zero(const auto& value, double low, double high, GuardOnInterpolant expected, double h,
                     double rounding) {
   double at = expected.guess, slope = expected.slope;
@@ -36,7 +37,7 @@ double step_to_zero(const auto& value, double low, double high, GuardOnInterpola
   const double shortest = 1e-16 * h;
   at = std::max(at, shortest);
   double best = at, best_value = std::numeric_limits<double>::infinity(), taken = at, taken_value = 0.0;
-  bool last = false;
+  bool last = false, low_is_taken = false;
   for (int i = 0; i < 60; ++i) {
     const double now = value(at), before = taken;
     if (i > 0) slope = (now - taken_value) / (at - taken);
@@ -49,7 +50,9 @@ double step_to_zero(const auto& value, double low, double high, GuardOnInterpola
     }
     if (as_expected || now == 0.0) break;
     (now >= 0.0 ? low : high) = at;
+    low_is_taken = low_is_taken || now >= 0.0;
     double next = at - now / slope;
+    if (!low_is_taken && !(next > low)) low = 0.0;
     const bool aimed = next > low && next < high;
     if (!aimed) next = 0.5 * (low + high);
     next = std::max(next, shortest);

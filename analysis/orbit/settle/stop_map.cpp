@@ -14,6 +14,7 @@ constexpr double between = 1.25;      ///< ratio of two displacements of a scan
 constexpr double nearly_grows = 0.6;  ///< least ratio of a maximum that is looked at more closely
 constexpr int refinements = 12;       ///< flights for one maximum
 constexpr long steps_of_a_flight = 3000;
+constexpr long switches_held = 100;
 constexpr double broken = 20.0;    ///< in lengths over which a bristle yields: a body that moved so far has broken away
 constexpr double for_ever = 1e15;  ///< s: a body that the controller does not push waits so long
 
@@ -96,7 +97,10 @@ std::optional<double> StopMap::ratio(double p) {
   march.begin(start.x, 0.0);
   flight_.reset();
   std::optional<double> found;
-  while (march.steps() < steps_of_a_flight && !found && !(stop_ && stop_())) {
+  // A body that does not break away trembles on its bristles, for thousands of switches.
+  const long most_held = switches_held + 2 * loop_->elements.back().states();
+  const auto trembles = [&] { return flight_ && !flight_->moved && march.events() > most_held; };
+  while (march.steps() < steps_of_a_flight && !found && !trembles() && !(stop_ && stop_())) {
     if (march.step(for_ever) != Status::converged || march.t() >= for_ever) break;
     if (stops(field, march.x())) found = std::abs(field.y(march.x()) - loop_->C_y.dot(rest_.transpose())) / p;
   }

@@ -55,6 +55,13 @@ TEST_CASE("step to zero: found to rounding from any guess, and the step returned
   }
 }
 
+TEST_CASE("step to zero: whole steps may put it before the bracket of the interpolant") {
+  for (const double zero : {0.1, 0.5 - 1e-3, 0.5 - 1e-9}) {
+    const auto guard = [&](double h) { return std::sin(zero - h); };
+    CHECK(std::abs(step_to_zero(guard, 0.5, 0.75, {0.5 + 1e-6, -1.0}, 1.0, rounding) - zero) <= 4e-16);
+  }
+}
+
 TEST_CASE("step to zero: from the cubic of a smooth step four steps are enough, of a long one five") {
   // The guard a motion really has, and the cubic through the ends of the step: as far apart as h^4.
   for (const double h : {0.4, 0.1, 0.02}) {

@@ -8,6 +8,7 @@
 #include "limcycle/models/element/dead_zone.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
+#include "limcycle/models/friction/bristle/non_drift.hpp"
 #include "limcycle/models/friction/dry/karnopp.hpp"
 #include "limcycle/models/friction/dry/stribeck.hpp"
 #include "limcycle/tests/loops.hpp"
@@ -160,4 +161,22 @@ TEST_CASE("map of stops: a flight that waits until no step can be told from none
   REQUIRE(map);
   for (double p = 27.0; p > 5.0; p /= 1.25) map->ratio(p);
   CHECK(map->steps() < 8 * 3000);
+}
+
+TEST_CASE("map of stops: a body that trembles on its bristles is given up after some hundred switches") {
+  auto law = with_levels<NonDrift<double>>(1.5, 1.0);
+  law.vs = 1e-3;
+  law.Zb = 1e-3;
+  law.sigma = 316.2;
+  law.tau = 0.002;
+  law.sigma2 = 0.4;
+  const Loop loop = servo(law);
+  auto map = StopMap::of(loop, 1e-7, {});
+  REQUIRE(map);
+  CHECK(map->ratio(0.1));
+  for (const double p : {1e-4, 1e-5}) {
+    const long before = map->steps();
+    CHECK_FALSE(map->ratio(p));
+    CHECK(map->steps() - before < 800);
+  }
 }

@@ -1,0 +1,49 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <variant>
+
+#include "limcycle/analysis/motion/error_weights.hpp"
+#include "limcycle/analysis/motion/field/affine_flow.hpp"
+#include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/steppers/controlled_rodas5p.hpp"
+#include "limcycle/analysis/motion/steppers/explicit_steppers.hpp"
+
+/// @file
+/// The steppers of one march; for the sources of March alone.
+
+namespace limcycle {
+
+/// Matrix exponentials instead of a stepper.
+struct ExactStepper {
+  AffineFlow flow;
+  State tolerance;         ///< permitted error of the cubic through the ends of a step
+  Eigen::MatrixXd last{};  ///< exponential of the last step, tried or repeated
+  State rate_at_end, middle;
+  int at_floor = 0;  ///< successive steps that were too long although the shortest possible
+};
+
+/// A controlled stepper of Odeint, and a plain one for repeated steps: the former may keep the rate of another point.
+template <class Controlled>
+struct ExplicitStepper {
+  Controlled controlled;
+  typename Controlled::stepper_type plain{};
+};
+
+using AnyStepper =
+    std::variant<ControlledRodas5p, ExplicitStepper<ControlledDopri5>, ExplicitStepper<ControlledFehlberg78>,
+                 ExplicitStepper<ControlledCashKarp54>, ExactStepper>;
+
+struct March::Stepper {
+  Stepper(StepperKind kind, const ErrorWeights& weights, LoopField& field);
+
+  AnyStepper moving;
+  std::optional<AnyStepper> waiting;  ///< see wait_patiently()
+  bool waits = false;
+
+  AnyStepper& any() { return waits ? *waiting : moving; }
+  /// Discards what the stepper in use keeps of earlier steps.
+  void restart();
+};
+
+}  // namespace limcycle
