@@ -43,4 +43,14 @@ Units units_of(const Case& from) {
   return units;
 }
 
+Units units_of(const Case& from, double swing) {
+  Units units = units_of(from);
+  const bool asked = from.y_unit && !from.y_unit->symbol.empty();
+  if (asked || units.y != "m" || !(swing > 0.0 && swing < 1e-2)) return units;
+  const bool tiny = swing < 1e-4;
+  units.y = tiny ? "um" : "mm";
+  units.y_per_si = tiny ? 1e6 : 1e3;
+  return units;
+}
+
 }  // namespace limcycle

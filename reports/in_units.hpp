@@ -3,15 +3,17 @@
 #include "limcycle/reports/continuation/continue.hpp"
 #include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/page/report.hpp"
+#include "limcycle/reports/remedy/remedy.hpp"
+#include "limcycle/reports/tune/tune.hpp"
 
 namespace limcycle {
+
+/// True if the name of a start ends with a displacement of y.
+bool names_displacement(const std::string& start);
 
 /// Results with y in the unit that the case wants to see, for texts, pages and pictures: everything that has the unit
 /// of y, or of y over another one, is multiplied by units.y_per_si. Documents (JSON, CSV) are made of the results
 /// themselves. What is in the unit of the element's input stays.
-/// True if the name of a start ends with a displacement of y.
-bool names_displacement(const std::string& start);
-
 PredictReport in_units(PredictReport report, const Units& units);
 Simulation in_units(Simulation run, const Units& units);
 ContinueReport in_units(ContinueReport report, const Units& units);
@@ -21,6 +23,20 @@ SensitivityReport in_units(SensitivityReport report, const Units& units);
 PrecisionReport in_units(PrecisionReport report, const Units& units);
 AdequateReport in_units(AdequateReport report, const Units& units);
 LoopReport in_units(LoopReport report, const Units& units);
+
+/// The largest swing of y that a report shows, in the unit of the case: of its cycles, or of its motions where it has
+/// none. 0: it shows none.
+double largest_swing(const PredictReport& report);
+double largest_swing(const Simulation& run);
+double largest_swing(const ContinueReport& report);
+double largest_swing(const MarginReport& report);
+double largest_swing(const MapReport& report);
+double largest_swing(const SensitivityReport& report);
+double largest_swing(const PrecisionReport& report);
+double largest_swing(const AdequateReport& report);
+double largest_swing(const LoopReport& report);
+double largest_swing(const RemedyReport& report);
+double largest_swing(const TuneReport& report);
 
 /// The factor the other way.
 Units in_si(const Units& units);

@@ -89,11 +89,11 @@ int run(AdequateFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   const LoopParts& parts = need_friction(from);
-  const Units units = units_of(from);
   Output output(flags, &from);
   output.check_file("--html", flags.html);
   const AdequateReport report = compute(from, parts, flags);
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   const AdequateReport shown = in_units(report, units);
   std::string text = adequate_text(from.title, shown, units);
   if (!flags.html.empty()) {

@@ -31,7 +31,6 @@ int run(ContinueFlags flags) {
   const ParameterRange range = parameter_range("--parameter", flags.parameter);
   const Case from = load_case(flags);
   need_loop(from);
-  const Units units = units_of(from);
   const CaseNumber number = number_at(from, "--parameter", range.path);
   Output output(flags, &from);
   output.check_file("--html", flags.html);
@@ -43,6 +42,7 @@ int run(ContinueFlags flags) {
     report.found = ask_continue(from, number, range.from, range.to, asking_of(flags, progress));
   }
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   const ContinueReport shown = in_units(report, units);
   std::string text = continue_text(from.title, shown, units);
   if (!flags.html.empty()) {

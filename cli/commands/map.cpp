@@ -41,7 +41,6 @@ int run(MapFlags flags) {
   if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   need_loop(from);
-  const Units units = units_of(from);
   const Methods methods = map_methods("--methods", flags.methods);
   MapReport report = map_of(from, flags.x, flags.y, methods);
   need_memory_for(report.map, {!flags.json.empty(), !flags.csv.empty()}, "--");
@@ -52,6 +51,7 @@ int run(MapFlags flags) {
 
   const Status ended = compute(from, report.map, flags, methods);
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   std::string text = map_text(from.title, report);
   if (!flags.html.empty()) {
     const std::string again = flags_of(report.map, !flags.methods.empty(), flags.starts);

@@ -50,7 +50,6 @@ int run(MarginFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   need_loop(from);
-  const Units units = units_of(from);
   const MarginWishes wishes{flags.parameters, directions(flags.toward), flags.factor, {"--parameter", "--toward"}};
   std::vector<std::string> notes;
   margin_parameters(from, wishes, notes);  // reports errors before anything is computed
@@ -63,6 +62,7 @@ int run(MarginFlags flags) {
     report = answer_of([&] { return ask_margin(from, wishes, asking_of(flags, progress)); });
   }
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   const MarginReport shown = in_units(report, units);
   std::string text = margin_text(from.title, shown, units);
   if (!flags.html.empty()) {

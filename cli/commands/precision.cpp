@@ -82,11 +82,11 @@ int run(PrecisionFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   if (flags.stability) return run_atlas(from, flags);
-  const Units units = units_of(from);
   Output output(flags, &from);
   output.check_file("--html", flags.html);
   const PrecisionReport report = compute(from, flags);
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   const PrecisionReport shown = in_units(report, units);
   std::string text = precision_text(from.title, shown, units);
   if (!flags.html.empty()) {

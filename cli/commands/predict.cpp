@@ -53,7 +53,6 @@ int run(PredictFlags flags) {
   const CaseWithPage loaded = load_case_or_page(flags, flags.from);
   const Case& from = loaded.from;
   need_loop(from);
-  const Units units = units_of(from);
   Output output(flags);
   output.keep_data(from);
   output.keep("the page to be made again", flags.from);
@@ -67,6 +66,7 @@ int run(PredictFlags flags) {
     report = answer_of([&] { return ask_predict(from, asking_of(flags, progress), drawn); });
   }
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   const PredictReport shown = in_units(report, units);
   std::string text = predict_text(from.title, shown, units);
   if (flags.verbose) text += predict_efforts(shown, from.predict.methods, units);

@@ -14,6 +14,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/questions/remedy.hpp"
 #include "limcycle/questions/units_of.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 
 namespace limcycle {
@@ -57,7 +58,6 @@ int run(RemedyFlags flags) {
   if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
   const Case from = load_case(flags);
   need_loop(from);
-  const Units units = units_of(from);
   RemedyWishes wishes{flags.only, weights_of(flags.weights), static_cast<std::size_t>(flags.samples)};
   chosen_remedies(from, "--only", flags.only);  // reports errors before anything is computed
   if (!flags.apply.empty()) {
@@ -77,6 +77,7 @@ int run(RemedyFlags flags) {
     report = answer_of([&] { return ask_remedy(from, wishes, asking_of(flags, progress)); });
   }
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   std::string text = remedy_text(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, remedy_page(report, made, from.text, units));

@@ -67,7 +67,6 @@ int run(ReportFlags flags) {
   const Case& from = loaded.from;
   if (loaded.page) take_over(flags, *loaded.page);
   need_loop(from);
-  const Units units = units_of(from);
   check_wishes(from, flags.wishes);
   const std::string page = page_file(flags, from);
   if (page == "-" && (flags.json == "-" || flags.csv == "-")) throw refusal("-o -", "stdout holds one document only");
@@ -83,6 +82,7 @@ int run(ReportFlags flags) {
     return report_parts(from, flags.wishes, flags, progress);
   }();
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   output.file(page, report_page(in_units(report, units), made, from.text, units, flags_text(flags)));
   output.text(first_line(flags, report.predict.status) +
               predict_text(from.title, in_units(report.predict, units), units) + page_line(page));

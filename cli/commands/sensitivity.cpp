@@ -48,7 +48,6 @@ int run(SensitivityFlags flags) {
   const Case from = load_case(flags);
   threshold_numbers(from, "--threshold", flags.wishes.thresholds);  // reports errors before anything is computed
   need_loop(from);
-  const Units units = units_of(from);
   Output output(flags, &from);
   output.keep("the store", flags.store);
   output.check_file("--html", flags.html);
@@ -56,6 +55,7 @@ int run(SensitivityFlags flags) {
   const SensitivityReport report = compute(from, flags, status);
   auto made = provenance(flags, &from);
   made.isa = to_string(instruction_set(flags));
+  const Units units = units_of(from, largest_swing(report));
   const SensitivityReport shown = in_units(report, units);
   std::string text = sensitivity_text(from.title, shown, units);
   if (!flags.html.empty()) {

@@ -32,7 +32,7 @@ int run(SimulateFlags flags) {
   need_memory_for(from, {!flags.json.empty(), !flags.csv.empty()});
   Output output(flags, &from);
   const auto [result, second, energy] = compute(from, flags);
-  const Units units = units_of(from);
+  const Units units = units_of(from, largest_swing(result));
   std::string text = simulate_text(from.title, in_units(result, units), second, energy, units);
   if (!output.wants_csv() && !output.wants_json()) text += "\nThe samples: --csv FILE, --csv - or -o FILE.\n";
   output.text(first_line(flags, result.status) + text);

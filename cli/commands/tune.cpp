@@ -13,6 +13,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/questions/tune.hpp"
 #include "limcycle/questions/units_of.hpp"
+#include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/tune/tune.hpp"
 
 namespace limcycle {
@@ -73,7 +74,6 @@ int run(TuneFlags flags) {
   const Case from = load_case(flags);
   const TuneWishes wishes = wishes_of(flags);
   tune_numbers(from, wishes);  // reports errors before anything is computed
-  const Units units = units_of(from);
   Output output(flags, &from);
   output.check_file("--html", flags.html);
   output.check_file("--svg", flags.picture);
@@ -85,6 +85,7 @@ int run(TuneFlags flags) {
     report = answer_of([&] { return ask_tune(from, wishes, asking_of(flags, progress)); });
   }
   const auto made = provenance(flags, &from);
+  const Units units = units_of(from, largest_swing(report));
   std::string text = tune_text(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, tune_page(report, made, from.text, units, flags_of(wishes, flags.seed)));

@@ -47,7 +47,6 @@ auto computed(const Compute& compute) {
 struct Sheet {
   std::shared_ptr<const Case> from;
   Provenance made;
-  Units units;
   std::string first, last;  ///< lines of the text
 
   /// The case of a page; with a law of Python the text only holds its place.
@@ -56,13 +55,19 @@ struct Sheet {
 
 Sheet sheet_of(const Question& question, Status ended) {
   Sheet sheet{question.from, provenance_of(question.asking.seed, question.asking.threads, question.from.get()),
-              units_of(*question.from), first_line(ended, cause_in_words(question.time_limit)),
-              basis_lines(*question.from)};
+              first_line(ended, cause_in_words(question.time_limit)), basis_lines(*question.from)};
   sheet.made.time_is_over = question.time_is_over && question.time_is_over();
   return sheet;
 }
 
-/// A report in the units that a person reads, if it has any.
+/// The units that a person reads a report in, and the report in them.
+template <class Report>
+Units units_of_sheet(const Sheet& sheet, const Report& report) {
+  if constexpr (requires { largest_swing(report); })
+    return units_of(*sheet.from, largest_swing(report));
+  else
+    return units_of(*sheet.from);
+}
 template <class Report>
 Report shown(const Report& report, const Units& units) {
   if constexpr (requires { in_units(report, units); })
@@ -79,10 +84,12 @@ Answer documents(const Sheet& sheet, const std::shared_ptr<const Report>& report
   answer.csv = [=] { return csv(*report); };
   answer.text = [=] {
     std::string words = sheet.first;
-    if constexpr (std::is_invocable_v<Text, std::string, Report, Units>)
-      words += text(sheet.from->title, shown(*report, sheet.units), sheet.units);
-    else
+    if constexpr (std::is_invocable_v<Text, std::string, Report, Units>) {
+      const Units units = units_of_sheet(sheet, *report);
+      words += text(sheet.from->title, shown(*report, units), units);
+    } else {
       words += text(sheet.from->title, *report);
+    }
     return printable(words + sheet.last);
   };
   return answer;
@@ -91,14 +98,20 @@ Answer documents(const Sheet& sheet, const std::shared_ptr<const Report>& report
 /// picture(report, units).
 template <class Report, class Picture>
 std::function<std::string()> drawn(const Sheet& sheet, const std::shared_ptr<const Report>& report, Picture picture) {
-  return [=] { return picture(shown(*report, sheet.units), sheet.units); };
+  return [=] {
+    const Units units = units_of_sheet(sheet, *report);
+    return picture(shown(*report, units), units);
+  };
 }
 
 /// page(report, provenance, case, units, flags...).
 template <class Report, class Page, class... Flags>
 std::function<std::string()> paged(const Sheet& sheet, const std::shared_ptr<const Report>& report, Page page,
                                    const Flags&... flags) {
-  return [=] { return page(shown(*report, sheet.units), sheet.made, sheet.case_text(), sheet.units, flags...); };
+  return [=] {
+    const Units units = units_of_sheet(sheet, *report);
+    return page(shown(*report, units), sheet.made, sheet.case_text(), units, flags...);
+  };
 }
 
 template <class Number>
@@ -202,7 +215,8 @@ Answer simulate_answer(const Question& question, bool check, bool audit) {
       [](const auto& made, const auto& all) { return simulate_json(made, all.run, all.second, all.energy); },
       [](const auto& all) { return simulate_csv(all.run); },
       [=](const std::string& title, const SimulateAnswer& all) {
-        return simulate_text(title, in_units(all.run, sheet.units), all.second, all.energy, sheet.units);
+        const Units units = units_of_sheet(sheet, all.run);
+        return simulate_text(title, in_units(all.run, units), all.second, all.energy, units);
       });
   answer.columns = answered->run.columns;
   answer.arrays = [=] { return std::map<std::string, Array>{{"rows", rows_of(answered->run)}}; };

@@ -28,7 +28,8 @@ CaseSection diagram() {
 CaseSection units() {
   return {
       "units",
-      "The unit in which texts, pages and pictures show y. Documents stay in the units of the case.",
+      "The unit in which texts, pages and pictures show y. Without it a y in metres is shown in mm or um where its "
+      "swings are small. Documents stay in the units of the case.",
       {{"y", "\"mm\"", "mm, um, nm, cm, deg, the name of another, or { symbol = \"mm\", per_si = 1000.0 }", "", true}}};
 }
 

@@ -1,5 +1,7 @@
 #include <sys/wait.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -61,6 +63,25 @@ TEST_CASE("predict: y in the unit that the case wants, in texts and pages, docum
   CHECK_THAT(squeezed(ran.out),
              Contains("amplitude 63.90 mm.") && Contains("from y(0) = 1000 mm") && !Contains("0.0639"));
   CHECK_THAT(scratch.get("b.html"), Contains("amplitude 63.90 mm"));
+}
+
+TEST_CASE("predict: small swings are shown in mm and um, and in documents in metres") {
+  const Scratch scratch;
+  const auto asked = [&](double Fs, const char* unit) {
+    const std::string law = fmt::format("loop.friction={{kind=\"coulomb\",Fs={},Fc={}}}", Fs, Fs / 1.5);
+    std::vector<std::string> words{"predict", shipped("pid-lugre.toml"), "--set", law,
+                                   "--json",  scratch.file("r.json")};
+    if (*unit != '\0') words.insert(words.end(), {"--set", fmt::format("units={{y=\"{}\"}}", unit)});
+    return squeezed(run(words).out);
+  };
+  const auto metres = [&] { return Json::parse(scratch.get("r.json"))["cycles"][0]["amplitude"].get<double>(); };
+  CHECK_THAT(asked(1.5, ""), Contains(fmt::format("amplitude {:#.4g} m.", metres())));
+  const double large = metres();  // the amplitude is as large as the forces
+  CHECK_THAT(asked(0.06, ""), Contains(fmt::format("amplitude {:#.4g} mm.", 1e3 * metres())) && Contains(" mm: "));
+  CHECK(metres() == Approx(0.04 * large));
+  CHECK_THAT(asked(6e-5, ""), Contains(fmt::format("amplitude {:#.4g} um.", 1e6 * metres())));
+  CHECK_THAT(asked(0.06, "m"), Contains(fmt::format("amplitude {:#.4g} m.", metres())) && !Contains(" mm"));
+  CHECK_THAT(asked(0.06, "um"), Contains(" um."));
 }
 
 TEST_CASE("predict: the default case is answered in words, in documents and as a page") {
