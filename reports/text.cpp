@@ -136,9 +136,11 @@ std::string predict_text(const std::string& title, const PredictReport& report, 
   if (report.absence) out += titled("Absence of oscillations", wrapped(absence_in_words(report)));
   if (!report.outcomes.empty()) out += titled("Reached in simulation", outcomes(report, units));
   const auto& box = report.search;
-  out += titled("Search box",
-                wrapped(fmt::format("amplitude of the element's input {:g} to {:g}, frequency {:g} to {:g} rad/s",
-                                    box.amplitude_min, box.amplitude_max, box.frequency_min, box.frequency_max)));
+  out +=
+      titled("Search box",
+             wrapped(fmt::format("amplitude of the element's input {:g} to {}, frequency {:g} to {:g} rad/s",
+                                 box.amplitude_min, Units::attach(fmt::format("{:g}", box.amplitude_max), units.input),
+                                 box.frequency_min, box.frequency_max)));
   out += notes_text(report.notes);
   if (report.status != Status::converged && report.status != Status::no_cycle)
     out += fmt::format("\nStatus: {}\n", to_string(report.status));

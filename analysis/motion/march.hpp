@@ -111,7 +111,6 @@ class March {
   double crossing(std::size_t guard, double from, double to);
   std::size_t first_of_candidates(const std::vector<double>& at_start, double from, double to);
   double locate(std::size_t guard, double from, double to);
-  double just_beyond(std::size_t guard, double at, double last);
   void end_at(double h);
   Status land(std::size_t guard, double tried);
   Status land_by_clock(double tried);

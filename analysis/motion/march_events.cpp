@@ -100,18 +100,9 @@ double March::locate(std::size_t guard, double from, double to) {
   const double rounding = 2e-16 * std::max(h, std::abs(step_.t0));
   const auto expected = on_interpolant(between, from * h, to * h);
   const double found = step_to_zero(by_step, from * h, to * h, expected, h, rounding);
-  return guard != section_guard && field_.holds(field_.owner(guard)) ? just_beyond(guard, found, to * h) : found;
-}
-
-/// A body that breaks away must be beyond its guard: if rounding left the force short of break-away, it would slide
-/// back, stick and break away again at the same instant. On entry work_ is the state at `at`, on return that beyond.
-double March::just_beyond(std::size_t guard, double at, double last) {
-  double step = 2e-16 * std::max(last, std::abs(step_.t0));
-  for (int i = 0; i < 20 && event_value(guard, work_, step_.t0 + at) >= 0.0 && at + step <= last; ++i, step *= 2.0) {
-    at += step;
-    repeat(at, work_);
-  }
-  return at;
+  if (guard == section_guard || !field_.holds(field_.owner(guard))) return found;
+  const double now = event_value(guard, work_, step_.t0 + found), last = to * h;
+  return just_beyond(by_step, now, found, last, 2e-16 * std::max(last, std::abs(step_.t0)));
 }
 
 /// Lets go at once the bodies that can no longer be held after a switch: the jump of one force broke them away. For the

@@ -194,10 +194,9 @@ class CompositeMarch : public CompositeStep<D> {
       return value(y1_, length);
     };
     const auto expected = on_interpolant(between, low, high);
-    double rounding = 2e-16 * (1.0 + phase_), found = step_to_zero(by_step, low, high, expected, h, rounding);
-    for (int i = 0; i < 20 && value(y1_, found) > 0.0 && found + rounding <= high; ++i, rounding *= 2.0)
-      by_step(found += rounding);
-    return found;
+    const double rounding = 2e-16 * (1.0 + phase_), found = step_to_zero(by_step, low, high, expected, h, rounding);
+    const double now = value(y1_, found);
+    return now > 0.0 ? just_beyond(by_step, now, found, high, rounding) : found;
   }
 
   void fire(State& s, int fired) {

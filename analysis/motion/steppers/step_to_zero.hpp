@@ -70,4 +70,12 @@ double step_to_zero(const auto& value, double low, double high, GuardOnInterpola
   return best;
 }
 
+/// Length a few roundings beyond `at`, the zero of a guard, at which the guard is negative, not beyond `last`: a body
+/// that rounding left short of break-away would slide back, stick and break away again at the same instant. `value(h)`
+/// takes the step of length h, as for step_to_zero(), and was last called for `at`, with the result `now`.
+double just_beyond(const auto& value, double now, double at, double last, double rounding) {
+  for (int i = 0; i < 20 && now >= 0.0 && at + rounding <= last; ++i, rounding *= 2.0) now = value(at += rounding);
+  return at;
+}
+
 }  // namespace limcycle

@@ -1,5 +1,6 @@
 #include "limcycle/analysis/motion/steppers/step_to_zero.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -97,4 +98,22 @@ TEST_CASE("step to zero: a body that moves by the smallest number there is stops
     };
     CHECK(step_to_zero(value, 0.0, 0.25, expected, 1.0, rounding) <= 4.0 * rounding);
   }
+}
+
+TEST_CASE("just beyond a zero: the first negative value within some roundings, by steps that are the last ones taken") {
+  const double rounding = 1e-16;
+  for (const double zero : {0.5, 0.5 + 3e-16, 0.5 + 1e-13}) {
+    double last = 0.0;
+    const auto value = [&](double h) {
+      last = h;
+      return zero - h;
+    };
+    const double beyond = just_beyond(value, value(0.5), 0.5, 1.0, rounding);
+    CHECK(last == beyond);
+    CHECK(value(beyond) < 0.0);
+    CHECK(beyond - zero <= std::max(4.0 * rounding, 2.0 * (zero - 0.5)));
+  }
+  const auto rests = [](double) { return 0.0; };
+  CHECK(just_beyond(rests, 0.0, 0.5, 0.5 + 1e-15, rounding) <= 0.5 + 1e-15);
+  CHECK(just_beyond(rests, -1.0, 0.5, 1.0, rounding) == 0.5);
 }
