@@ -25,7 +25,10 @@ LoopParts through(Element element, std::vector<double> numerator, std::vector<do
   return parts;
 }
 
-Cause cause_in(const LoopParts& parts) { return cause_of(parts, {}, hunts(build_loop(parts), {}).found.cycles); }
+Cause cause_in(const LoopParts& parts) {
+  const PredictReport found = hunts(build_loop(parts), {}).found;
+  return cause_of(parts, judging_of_variants({}, found), found.cycles);
+}
 CauseKind kind_of_cause(const LoopParts& parts) { return cause_in(parts).kind; }
 
 }  // namespace
@@ -84,6 +87,21 @@ TEST_CASE("cause: the relay, the dead time and too strong a compensation") {
   CHECK(kind_of_cause(through(relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0}, 0.0)) == CauseKind::relay);
   CHECK(kind_of_cause(through(saturation(1.0), {5.0}, {1.0, 1.0}, 1.0)) == CauseKind::delay);
   CHECK(kind_of_cause(test::over_compensated()) == CauseKind::over_compensation);
+}
+
+TEST_CASE("cause: a limit of the command, through which a loop that is only stable at high gain falls") {
+  // K (s + 1)^3/(10 s + 1)^4 is unstable for K from 5.85 to 7,600: the limit lowers the gain of a large swing into it.
+  for (const double limit : {1.0, 1e-3}) {
+    const auto at = [&](double K) {
+      return through(saturation(limit), {K, 3.0 * K, 3.0 * K, K}, {1e4, 4e3, 600.0, 40.0, 1.0}, 0.0);
+    };
+    const Cause cause = cause_in(at(2e4));
+    CHECK(cause.kind == CauseKind::saturation);
+    REQUIRE(cause.tests.size() == 1);
+    CHECK(cause.tests[0].without == "without limits of the command");
+    CHECK(cause.tests[0].hunts == Hunts::no);
+    CHECK(kind_of_cause(at(100.0)) == CauseKind::undecided);  // unstable without the limit too
+  }
 }
 
 TEST_CASE("cause: an unstable linear part is no single feature's fault") {
