@@ -66,10 +66,10 @@ class Draft {
     struct stat before {};
     if (stat(target_.c_str(), &before) == 0 && fchmod(file_, before.st_mode & 07777U) != 0) return false;
     if (!named_) {
-      const std::string held = "/proc/self/fd/" + std::to_string(file_);
-      unlink(name_.c_str());  // left by an earlier process with the same id
-      if (linkat(AT_FDCWD, held.c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) != 0) return false;
-      named_ = true;
+      if (takes(target_)) return true;  // where no file stands in the way, at once
+      unlink(name_.c_str());            // left by an earlier process with the same id
+      named_ = takes(name_);
+      if (!named_) return false;
     }
     if (rename(name_.c_str(), target_.c_str()) != 0) return false;
     named_ = false;
@@ -77,6 +77,12 @@ class Draft {
   }
 
  private:
+  /// Gives the file without a name this one, if it is free.
+  bool takes(const std::string& name) const {
+    const std::string held = "/proc/self/fd/" + std::to_string(file_);
+    return linkat(AT_FDCWD, held.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  }
+
   std::filesystem::path target_;
   std::string name_;
   int file_ = -1;

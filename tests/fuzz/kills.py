@@ -143,8 +143,18 @@ def faults_after(number, code, whole, files, folder, store, old, any_content):
               for file, body in contents(files).items() if not right(file, body)]
     found += ["lost: " + os.path.basename(file) for file in files if old and not os.path.exists(file)]
     kept = {os.path.relpath(file, folder) for file in files}
+
+    def is_whole_draft(left):
+        """Between its name and that of the older file that it replaces there is a moment for SIGKILL."""
+        target = os.path.join(folder, left.partition(".part")[0])
+        if not old or number != signal.SIGKILL or target not in files:
+            return False
+        with open(os.path.join(folder, left), "rb") as draft:
+            return right(target, draft.read())
+
     return found + ["left behind after %s: %s" % (name, left) for left in listed(folder)
-                    if left not in kept and not (store and left.startswith(os.path.basename(store)))]
+                    if left not in kept and not (store and left.startswith(os.path.basename(store)))
+                    and not is_whole_draft(left)]
 
 
 def kill_runs(program, count, seed, folder, report):
