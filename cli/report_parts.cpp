@@ -6,6 +6,7 @@
 #include <cmath>
 #include <new>
 
+#include "limcycle/analysis/study/balance/nyquist.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
 #include "limcycle/analysis/study/sensitivity/local_sensitivity.hpp"
 #include "limcycle/analysis/sweep.hpp"
@@ -196,6 +197,7 @@ LoopReport report_parts(const Case& from, const ReportWishes& wishes, const Comm
   options.stop = interrupted;
   options.progress = [&](double fraction, std::string_view what) { progress.show(0.3 * fraction, what); };
   report.predict = answer_of([&] { return predict(loop, options); });
+  report.predict.nyquist = nyquist_picture(loop, report.predict, options.stop);
   add_cause(report.predict, report.loop, options);
   const ReportQuestion ask{from, loop, wishes, flags, report.predict};
   const auto part_of_bar = [&](double from_share, double to_share, std::string_view what) {

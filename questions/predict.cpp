@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "limcycle/analysis/study/balance/nyquist.hpp"
 #include "limcycle/analysis/study/predict/interest.hpp"
 #include "limcycle/analysis/study/remedy/cause.hpp"
 
@@ -20,11 +21,12 @@ bool hunts_in_box(const PredictReport& report) {
 
 PredictReport ask_predict(const Case& from, const Asking& asking, bool curves) {
   PredictOptions options = from.predict;
-  options.nyquist = curves;
   options.stop = asking.stop;
   options.progress = asking.progress;
   const LoopParts& parts = need_loop(from);
-  PredictReport report = predict(build_loop(parts), options);
+  const Loop loop = build_loop(parts);
+  PredictReport report = predict(loop, options);
+  if (curves) report.nyquist = nyquist_picture(loop, report, options.stop);
   add_cause(report, parts, options);
   return report;
 }

@@ -38,7 +38,6 @@ std::optional<Cycle> main_cycle(const Loop& loop, const Case& from, std::vector<
                                 const Asking& asking) {
   PredictOptions options = from.predict;
   options.methods = {false, false, false};
-  options.nyquist = false;
   options.accuracy = std::min(from.predict.accuracy, 1e-9);
   options.stop = asking.stop;
   const PredictReport found = predict(loop, options);

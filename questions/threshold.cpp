@@ -39,7 +39,6 @@ ThresholdSensitivity threshold_of(const Case& from, const Loop& loop, const Case
   MarginOptions options;
   options.predict = from.predict;
   options.predict.methods = {false, false, false};
-  options.predict.nyquist = false;
   options.accuracy = 1e-9;  // derivatives need the fold itself
   options.predict.stop = stop;
   const auto found = margin(loop,

@@ -154,7 +154,6 @@ DissipativityReport dissipativity(const LoopParts& parts, const DissipativityOpt
   look_at_sliding(parts, options, report);
   if (report.loop->no_cycle.decision == Decision::yes) {
     PredictOptions check = options.predict;
-    check.nyquist = false;
     check.stop = options.passivity.stop;
     const PredictReport found = predict(loop, check);
     if (found.status != Status::interrupted) report.agrees = found.cycles.empty();

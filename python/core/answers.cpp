@@ -1,9 +1,12 @@
 #include "limcycle/python/core/answers.hpp"
 
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <type_traits>
 #include <utility>
 
+#include "limcycle/analysis/study/balance/nyquist.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/printable.hpp"
 #include "limcycle/questions/answer_of.hpp"
@@ -134,6 +137,28 @@ std::map<std::string, Array> nyquist_arrays(const NyquistPicture& picture) {
           {"minus_inverse_N", {shape, std::move(family)}}};
 }
 
+/// A prediction with the curves of its Nyquist figure, which are computed when they are first asked for: they may take
+/// as long as the prediction itself.
+class ReportWithCurves {
+ public:
+  ReportWithCurves(std::shared_ptr<const Case> from, std::shared_ptr<const PredictReport> report)
+      : from_(std::move(from)), report_(std::move(report)) {}
+
+  std::shared_ptr<const PredictReport> get() {
+    std::call_once(once_, [this] {
+      PredictReport drawn = *report_;
+      drawn.nyquist = nyquist_picture(build_loop(*from_->loop), drawn);
+      report_ = std::make_shared<const PredictReport>(std::move(drawn));
+    });
+    return report_;
+  }
+
+ private:
+  std::shared_ptr<const Case> from_;
+  std::shared_ptr<const PredictReport> report_;
+  std::once_flag once_;
+};
+
 /// One number of each thing, NaN where there is none.
 template <class Things, class Number>
 std::vector<double> each(const Things& things, std::size_t count, const Number& number) {
@@ -181,13 +206,14 @@ std::map<std::string, Array> map_arrays(const HuntingMap& map) {
 }  // namespace
 
 Answer predict_answer(const Question& question) {
-  const auto report = computed([&] { return ask_predict(*question.from, question.asking, true); });
+  const auto report = computed([&] { return ask_predict(*question.from, question.asking, false); });
   Sheet sheet = sheet_of(question, report->status);
   sheet.last.clear();  // the notes say it
   Answer answer = documents(sheet, report, predict_json, predict_csv, predict_text);
-  answer.picture = drawn(sheet, report, predict_picture);
-  answer.page = paged(sheet, report, predict_page);
-  answer.arrays = [=] { return nyquist_arrays(report->nyquist); };
+  const auto with_curves = std::make_shared<ReportWithCurves>(question.from, report);
+  answer.picture = [=] { return drawn(sheet, with_curves->get(), predict_picture)(); };
+  answer.page = [=] { return paged(sheet, with_curves->get(), predict_page)(); };
+  answer.arrays = [=] { return nyquist_arrays(with_curves->get()->nyquist); };
   return answer;
 }
 

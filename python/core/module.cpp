@@ -50,7 +50,12 @@ py::array_t<Number> array_of(const std::vector<std::size_t>& shape, std::vector<
 py::dict numpy_arrays(const Answer& answer) {
   py::dict arrays;
   if (!answer.arrays) return arrays;
-  for (auto& [name, array] : answer.arrays()) {
+  std::map<std::string, Array> found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = answer.arrays();
+  }
+  for (auto& [name, array] : found) {
     const auto& shape = array.shape;
     arrays[py::str(name)] =
         std::visit([&shape](auto& values) -> py::object { return array_of(shape, std::move(values)); }, array.values);

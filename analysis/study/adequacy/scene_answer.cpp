@@ -102,7 +102,6 @@ SceneAnswer ask_balance(const Loop& loop, const std::vector<SceneQuestions::Osci
 SceneAnswer ask_shooting(const Loop& loop, const PredictOptions& options) {
   PredictOptions only_time = options;
   only_time.methods = {.describing_function = false, .composite = false, .harmonic_balance = false};
-  only_time.nyquist = false;
   only_time.load_step = false;  // so that the plain simulation has the same starts
   only_time.progress = {};
   const PredictReport report = predict(loop, only_time);

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/study/balance/df_roots.hpp"
-#include "limcycle/analysis/study/balance/nyquist.hpp"
 #include "limcycle/analysis/study/balance/root_spread.hpp"
 #include "limcycle/analysis/study/balance/within_data.hpp"
 #include "limcycle/analysis/study/predict/failure_note.hpp"
@@ -40,15 +39,6 @@ void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& ba
   if (options.stop && options.stop()) return;
   if (result.predictions.empty()) result.absence = absence(loop, box);
   result.exists = found.status != Status::not_finite;
-  if (!options.nyquist || !result.exists) return;
-  std::vector<SearchPoint> roots;
-  for (const Root& root : found.roots) roots.push_back({root.amplitude, root.frequency});
-  SearchBox drawn = box;  // where there are data, if a plant is measured
-  if (const auto boxes = within_data(loop, box); !boxes.empty()) {
-    drawn.frequency_min = boxes.front().frequency_min;
-    drawn.frequency_max = boxes.back().frequency_max;
-  }
-  result.nyquist = nyquist_picture(loop, balance, drawn, roots, options.stop);
 }
 
 }  // namespace

@@ -16,7 +16,6 @@ struct DfPredictions {
   std::vector<std::string> notes;       ///< regions in which roots may be missing
   std::optional<Absence> absence;       ///< proof of absence, if nothing is predicted
   bool exists = false;                  ///< the describing function, in the box; false too after a stop
-  NyquistPicture nyquist;
   Status status = Status::converged;
 };
 

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+
+#include "limcycle/analysis/study/balance/df_predictions.hpp"
+#include "limcycle/analysis/study/balance/within_data.hpp"
 
 namespace limcycle {
 namespace {
@@ -83,6 +87,21 @@ NyquistPicture nyquist_picture(const Loop& loop, const LoopBalance& balance, con
     }
   }
   return picture;
+}
+
+NyquistPicture nyquist_picture(const Loop& loop, const PredictReport& report, const std::function<bool()>& stop) try {
+  if (!report.describing_function) return {};
+  std::vector<SearchPoint> roots;
+  for (const Prediction& one : report.predictions)
+    if (one.method == DfPredictions::method) roots.push_back({one.input_amplitude, one.frequency});
+  SearchBox drawn = report.search;
+  if (const auto boxes = within_data(loop, drawn); !boxes.empty()) {
+    drawn.frequency_min = boxes.front().frequency_min;
+    drawn.frequency_max = boxes.back().frequency_max;
+  }
+  return nyquist_picture(loop, LoopBalance(loop), drawn, roots, stop);
+} catch (const std::invalid_argument&) {  // numbers beyond the range of the method: no curves, but the rest stands
+  return {};
 }
 
 }  // namespace limcycle

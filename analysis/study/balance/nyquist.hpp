@@ -14,4 +14,9 @@ namespace limcycle {
 NyquistPicture nyquist_picture(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
                                const std::vector<SearchPoint>& roots = {}, const std::function<bool()>& stop = {});
 
+/// The same for what predict() reports of the loop: over its search box, where there are data if a plant is measured,
+/// with points at the roots of its describing function; empty if that does not exist or was not asked for. Cost: up to
+/// 2,300 describing functions.
+NyquistPicture nyquist_picture(const Loop& loop, const PredictReport& report, const std::function<bool()>& stop = {});
+
 }  // namespace limcycle

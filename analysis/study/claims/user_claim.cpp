@@ -145,7 +145,6 @@ ClaimResult test(const UserClaim& user, const PredictOptions& predict_options, c
     PredictOptions how = predict_options;
     how.stop = options.stop;
     how.progress = {};
-    how.nyquist = false;
     const Computed computed = quantity.of == QuantityOf::cycle ? of_cycle(user.quantity, point, how)
                               : quantity.of == QuantityOf::describing_function
                                   ? of_describing_function(user.quantity, point)

@@ -112,7 +112,6 @@ std::vector<std::string> names_of(const Methods& wanted) {
 
 MapPoint map_point(const Loop& loop, const PredictOptions& options) {
   PredictOptions here = options;
-  here.nyquist = false;
   const auto methods = names_of(options.methods);
   MapPoint point;
   try {

@@ -78,7 +78,6 @@ std::optional<CycleReference> cycle_reference(const Loop& loop, const PredictOpt
                                               std::string& why) {
   PredictOptions only_time = options;
   only_time.methods = {.describing_function = false, .composite = false, .harmonic_balance = false};
-  only_time.nyquist = false;
   only_time.accuracy = 1e-8;
   const PredictReport report = simulated(loop, only_time);
   const Cycle* cycle = first_stable(report.cycles);

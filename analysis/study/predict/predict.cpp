@@ -170,7 +170,6 @@ class PredictionStudy {
     report_.predictions = std::move(found.predictions);
     report_.absence = std::move(found.absence);
     report_.describing_function = found.exists;
-    report_.nyquist = std::move(found.nyquist);
     report_.efforts.push_back({std::string(df_name), 0, {}});
     (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(df_name);
   }

@@ -33,11 +33,10 @@ struct OutcomeOfStart;
 /// Options of predict().
 struct PredictOptions {
   Methods methods;
-  std::optional<SearchBox> search;  ///< default: default_search_box
-  int starts = 4;                   ///< simulations from different displacements of y
-  bool load_step = true;            ///< and one from the release of a load: see load_step()
-  double accuracy = 1e-8;           ///< wanted relative error of period and amplitude of a cycle
-  bool nyquist = true;              ///< also the curves for the figure: up to 2,300 describing functions
+  std::optional<SearchBox> search;                      ///< default: default_search_box
+  int starts = 4;                                       ///< simulations from different displacements of y
+  bool load_step = true;                                ///< and one from the release of a load: see load_step()
+  double accuracy = 1e-8;                               ///< wanted relative error of period and amplitude of a cycle
   std::function<bool(const OutcomeOfStart&)> enough{};  ///< true of an outcome: nothing more is simulated or predicted
   std::function<bool()> stop;  ///< called often, by several threads; true ends the work and keeps the results
   std::function<void(double, std::string_view)> progress;  ///< fraction done (0..1), current activity
@@ -120,7 +119,7 @@ struct PredictReport {
   std::vector<std::string> unfinished{};  ///< methods whose search was interrupted: they may predict more
   std::vector<std::string> incomplete{};  ///< methods whose search left something undecided (see the notes): likewise
   bool describing_function = false;       ///< that of the main element exists in the box, and its roots were looked for
-  NyquistPicture nyquist;                 ///< with PredictOptions::nyquist
+  NyquistPicture nyquist;                 ///< filled by those who draw it, with nyquist_picture(); predict() does not
   std::optional<Absence> absence{};  ///< loops with a slope-bounded element without any root: proof of absence, if any
   std::vector<std::string> notes;    ///< notes for the user: methods that do not apply, incomplete searches
   Status status = Status::converged;

@@ -86,7 +86,6 @@ std::string_view to_string(Hunts hunts) {
 HuntsAnswer hunts(const Loop& loop, const Judging& judging) try {
   PredictOptions options = judging.predict;
   options.methods = {false, false, false};
-  options.nyquist = false;
   options.progress = {};
   HuntsAnswer answer;
   answer.found = predict(loop, options);

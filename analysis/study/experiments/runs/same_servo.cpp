@@ -70,7 +70,6 @@ PredictReport asked(const Loop& loop, bool with_mass, double seconds, const std:
   const auto begin = Clock::now();
   PredictOptions options;
   options.starts = starts;
-  options.nyquist = false;
   options.methods = {!with_mass, with_mass, false};
   options.stop = [&] { return seconds_since(begin) > seconds || (stop && stop()); };
   return predict(loop, options);

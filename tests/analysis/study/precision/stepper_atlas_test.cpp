@@ -157,7 +157,6 @@ TEST_CASE("stepper atlas: predict takes a tighter tolerance where bristles need 
     law.sigma1 = std::sqrt(sigma0);
     PredictOptions options;
     options.methods = {.describing_function = false, .composite = false, .harmonic_balance = false};
-    options.nyquist = false;
     options.starts = 1;
     return predict(servo(law), options);
   };

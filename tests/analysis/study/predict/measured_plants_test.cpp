@@ -42,7 +42,6 @@ PredictReport predicted(const LoopParts& parts, const SearchBox& within) {
   options.search = within;
   options.starts = 1;
   options.load_step = false;
-  options.nyquist = false;
   options.methods.harmonic_balance = false;
   return predict(build_loop(parts), options);
 }

@@ -131,7 +131,6 @@ TEST_CASE("friction anywhere: harmonic balance agrees with the exact cycle, whic
     PredictOptions options;
     options.methods.composite = false;
     options.search = wide;
-    options.nyquist = false;
     const auto report = predict(build_loop(random_twins(random).as_sensor), options);
     for (const Prediction& p : predictions_of(report, "harmonic-balance")) {
       if (!p.cycle || report.cycles[*p.cycle].sticking_fraction > 1e-3) continue;

@@ -109,7 +109,6 @@ TEST_CASE("steep curve: on a belt without damping every slip begins from the sam
     parts.friction = law;
     PredictOptions options;
     options.methods = {false, false, false};
-    options.nyquist = false;
     const auto report = predict(build_loop(parts), options);
     REQUIRE(report.cycles.size() == 1);
     const Cycle& cycle = report.cycles.front();
