@@ -3,8 +3,6 @@
 #include "limcycle/reports/continuation/continue.hpp"
 #include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/page/report.hpp"
-#include "limcycle/reports/remedy/remedy.hpp"
-#include "limcycle/reports/tune/tune.hpp"
 
 namespace limcycle {
 
@@ -23,20 +21,6 @@ SensitivityReport in_units(SensitivityReport report, const Units& units);
 PrecisionReport in_units(PrecisionReport report, const Units& units);
 AdequateReport in_units(AdequateReport report, const Units& units);
 LoopReport in_units(LoopReport report, const Units& units);
-
-/// The largest swing of y that a report shows, in the unit of the case: of its cycles, or of its motions where it has
-/// none. 0: it shows none.
-double largest_swing(const PredictReport& report);
-double largest_swing(const Simulation& run);
-double largest_swing(const ContinueReport& report);
-double largest_swing(const MarginReport& report);
-double largest_swing(const MapReport& report);
-double largest_swing(const SensitivityReport& report);
-double largest_swing(const PrecisionReport& report);
-double largest_swing(const AdequateReport& report);
-double largest_swing(const LoopReport& report);
-double largest_swing(const RemedyReport& report);
-double largest_swing(const TuneReport& report);
 
 /// The factor the other way.
 Units in_si(const Units& units);

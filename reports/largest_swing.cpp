@@ -1,7 +1,7 @@
+#include "limcycle/reports/largest_swing.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "limcycle/reports/in_units.hpp"
 
 namespace limcycle {
 namespace {

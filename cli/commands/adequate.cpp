@@ -12,6 +12,7 @@
 #include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/adequacy/adequate.hpp"
 #include "limcycle/reports/in_units.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 #include "limcycle/reports/number.hpp"
 
 namespace limcycle {

@@ -10,6 +10,7 @@
 #include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/continuation/continue.hpp"
 #include "limcycle/reports/in_units.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 
 namespace limcycle {
 namespace {

@@ -13,6 +13,7 @@
 #include "limcycle/questions/map.hpp"
 #include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/in_units.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 #include "limcycle/reports/map/map.hpp"
 
 namespace limcycle {

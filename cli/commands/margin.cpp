@@ -11,6 +11,7 @@
 #include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/in_units.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 
 namespace limcycle {
 namespace {

@@ -9,6 +9,7 @@
 #include "limcycle/models/friction/own_law.hpp"
 #include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/in_units.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 #include "limcycle/reports/precision/atlas.hpp"
 #include "limcycle/reports/precision/precision.hpp"
 

@@ -14,7 +14,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/questions/remedy.hpp"
 #include "limcycle/questions/units_of.hpp"
-#include "limcycle/reports/in_units.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 
 namespace limcycle {

@@ -16,6 +16,7 @@
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 #include "limcycle/reports/text.hpp"
 
 namespace limcycle {

@@ -16,6 +16,7 @@
 #include "limcycle/questions/threshold.hpp"
 #include "limcycle/questions/units_of.hpp"
 #include "limcycle/reports/in_units.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 
 namespace limcycle {

@@ -13,7 +13,7 @@
 #include "limcycle/cli/progress.hpp"
 #include "limcycle/questions/tune.hpp"
 #include "limcycle/questions/units_of.hpp"
-#include "limcycle/reports/in_units.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 #include "limcycle/reports/tune/tune.hpp"
 
 namespace limcycle {

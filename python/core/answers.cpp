@@ -29,6 +29,7 @@
 #include "limcycle/reports/identify/identify.hpp"
 #include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
+#include "limcycle/reports/largest_swing.hpp"
 #include "limcycle/reports/map/map.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"

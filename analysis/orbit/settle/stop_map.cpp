@@ -14,7 +14,7 @@ constexpr double between = 1.25;      ///< ratio of two displacements of a scan
 constexpr double nearly_grows = 0.6;  ///< least ratio of a maximum that is looked at more closely
 constexpr int refinements = 12;       ///< flights for one maximum
 constexpr long steps_of_a_flight = 3000;
-constexpr long switches_held = 100;
+constexpr long switches_held = 100;  ///< of a body that has not broken away
 constexpr double broken = 20.0;    ///< in lengths over which a bristle yields: a body that moved so far has broken away
 constexpr double for_ever = 1e15;  ///< s: a body that the controller does not push waits so long
 

@@ -5,7 +5,6 @@
 
 #include "limcycle/analysis/study/balance/df_roots.hpp"
 #include "limcycle/analysis/study/balance/root_spread.hpp"
-#include "limcycle/analysis/study/balance/within_data.hpp"
 #include "limcycle/analysis/study/predict/failure_note.hpp"
 
 namespace limcycle {
