@@ -53,6 +53,13 @@ void add_result_flags(CLI::App& command, CommonFlags& flags) {
     command.add_option(name, *into, what + std::string(", or to stdout alone with -"))
         ->type_name("FILE|-")
         ->group(common);
+  if (flags.has_tables)
+    command.add_option("--tex", flags.tex, "Write the tables as LaTeX to FILE (so does -o FILE.tex)")
+        ->type_name("FILE")
+        ->group(common);
+  command.add_option("--hdf5", flags.hdf5, "Write the JSON document as HDF5 to FILE (so does -o FILE.h5)")
+      ->type_name("FILE")
+      ->group(common);
 }
 
 void add_computing_flags(CLI::App& command, CommonFlags& flags) {
@@ -96,8 +103,9 @@ int timed(const CommonFlags& flags, const Action& run) {
 
 /// The flags that were given, without those that say where and how results are shown, or how fast they come.
 std::vector<std::string> given_flags(const CLI::App& command) {
-  constexpr std::array without{"set",  "output", "json",   "csv",   "html",  "svg",     "fit",     "fitted",    "apply",
-                               "from", "store",  "resume", "color", "quiet", "verbose", "threads", "time-limit"};
+  constexpr std::array without{"set",   "output", "json",    "csv",     "hdf5",      "tex",   "html",
+                               "svg",   "fit",    "fitted",  "apply",   "from",      "store", "resume",
+                               "color", "quiet",  "verbose", "threads", "time-limit"};
   std::vector<std::string> words;
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || option->get_lnames().empty()) continue;

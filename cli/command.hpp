@@ -29,6 +29,7 @@ struct CommonFlags {
   std::string case_file;
   std::vector<std::string> set;  ///< --set PATH=VALUE, in order
   std::string json, csv;         ///< file, "-" for stdout, empty: none
+  std::string hdf5, tex;         ///< file, empty: none
   std::string output;            ///< -o: file for the output to stdout; empty: stdout
   std::uint64_t seed = 0;
   int threads = 1;
@@ -37,6 +38,7 @@ struct CommonFlags {
   bool quiet = false;          ///< nothing on stderr except errors
   bool verbose = false;        ///< also details of the work, and on stderr its duration
   double time_limit = 0.0;     ///< --time-limit, s; 0: none
+  bool has_tables = true;      ///< false: no --tex
 
   std::vector<std::string> given{};  ///< words of the command line that change its result: see Provenance::flags
 };

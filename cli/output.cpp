@@ -11,11 +11,15 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <utility>
 
 #include "limcycle/cases/loader/printable.hpp"
 #include "limcycle/cli/colour.hpp"
+#include "limcycle/cli/pdf.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
+#include "limcycle/questions/provenance_of.hpp"
 #include "limcycle/questions/words.hpp"
+#include "limcycle/reports/export/hdf5.hpp"
 
 namespace limcycle {
 namespace {
@@ -122,8 +126,8 @@ struct Promise {
 constexpr std::array<Promise, 7> promises{{{".html", true},
                                            {".htm", true},
                                            {".svg", true},
-                                           {".pdf", false},
-                                           {".tex", false},
+                                           {".pdf", true},
+                                           {".tex", true},
                                            {".png", false},
                                            {".eps", false}}};
 
@@ -161,21 +165,37 @@ void check_some_command_writes(const std::string& output) {
   if (promised == nullptr || promised->kept) return;
   throw refusal(
       "--output " + output, "no command writes " + std::string(promised->ending),
-      "a page (-o FILE.html) can be printed to a PDF by a browser, a picture is -o FILE.svg; --help shows which of "
-      "them a command has. The Python module saves figures as PDF, PGF and PNG, and makes tables of LaTeX");
+      "a picture is -o FILE.svg or FILE.pdf, a page -o FILE.html, tables are -o FILE.tex; --help shows which of them a "
+      "command has. The Python module also saves figures as PNG and PGF");
 }
 
-Output::Output(const CommonFlags& flags, const Case* from) : json_(flags.json), csv_(flags.csv) {
+void take_page(CommonFlags& flags, std::string& page) {
+  if (page.empty() && flags.output.ends_with(".html")) page = std::exchange(flags.output, {});
+}
+
+void take_picture(CommonFlags& flags, std::string& picture) {
+  if (picture.empty() && (flags.output.ends_with(".svg") || flags.output.ends_with(".pdf")))
+    picture = std::exchange(flags.output, {});
+}
+
+Output::Output(const CommonFlags& flags, const Case* from)
+    : tex_(flags.tex), json_(flags.json), hdf5_(flags.hdf5), csv_(flags.csv), case_(flags.case_file) {
+  std::string output = flags.output;
+  if (tex_.empty() && flags.has_tables && output.ends_with(".tex")) tex_ = std::exchange(output, {});
+  if (hdf5_.empty() && (output.ends_with(".h5") || output.ends_with(".hdf5"))) hdf5_ = std::exchange(output, {});
+  if (hdf5_ == "-") throw refusal("--hdf5 -", "HDF5 goes to a file", "name one, such as result.h5");
   keep("the case file", flags.case_file);
   if (from != nullptr) {
     keep_data(*from);
     basis_ = basis_lines(*from);
   }
-  text_ = !flags.output.empty() ? flags.output : json_ == "-" || csv_ == "-" ? "" : "-";
+  text_ = !output.empty() ? output : json_ == "-" || csv_ == "-" ? "" : "-";
   colours_ = text_ == "-" && colours_wanted(flags.color, STDOUT_FILENO);
-  check_holds_text(flags.output);
-  check_file("--output", flags.output);
-  check_file("--json", flags.json);
+  check_holds_text(output);
+  check_file("--output", output);
+  check_file("--tex", tex_);
+  check_file("--json", json_);
+  check_file("--hdf5", hdf5_);
   check_file("--csv", flags.csv);
 }
 
@@ -215,6 +235,35 @@ void Output::text(std::string_view document) {
   write(text_, colours_ ? coloured(shown) : shown);
 }
 
+void Output::text(const std::string& first, const Document& document) {
+  text(first + document.text());
+  if (!tex_.empty())
+    write(tex_,
+          document.latex("limcycle " + provenance_of(0, 1, nullptr).version + (case_.empty() ? "" : ": " + case_)));
+}
+
+void Output::check_picture(const std::string& flag, const std::string& path) {
+  check_file(flag, path);
+  if (path.ends_with(".pdf") && rank() == 0 && !makes_pdf())
+    throw refusal(flag + " " + path, "PDF needs the program rsvg-convert, which is not installed",
+                  "install librsvg2-bin, or name an .svg");
+}
+
+void Output::picture(const std::string& path, std::string_view svg) {
+  if (path.empty() || rank() > 0) return;
+  if (!path.ends_with(".pdf")) return write(path, svg);
+  const auto pdf = pdf_of(svg);
+  if (pdf)
+    write(path, *pdf);
+  else if (failure_.empty())
+    failure_ = "cannot make " + path + ": rsvg-convert failed";
+}
+
+void Output::json(std::string_view document) {
+  write(json_, document);
+  if (!hdf5_.empty() && rank() == 0) write(hdf5_, hdf5_document(document));
+}
+
 void Output::write(const std::string& path, std::string_view document) {
   if (path.empty() || rank() > 0) return;
   errno = 0;
@@ -226,6 +275,10 @@ void Output::write(const std::string& path, std::string_view document) {
   if (!written && failure_.empty())
     failure_ = "cannot write to " + (path == "-" ? "stdout" : path) +
                (errno != 0 ? std::string(": ") + std::strerror(errno) : "");
+}
+
+void Output::refuse_tables() const {
+  if (!tex_.empty()) throw refusal("--tex " + tex_, "this question has no tables");
 }
 
 void Output::finish() {

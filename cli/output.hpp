@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limcycle/cli/command.hpp"
+#include "limcycle/reports/document.hpp"
 
 namespace limcycle {
 
@@ -17,8 +18,14 @@ class OutputError : public std::runtime_error {
 /// Throws for a name of --output that promises a document which no command writes, such as a PDF.
 void check_some_command_writes(const std::string& output);
 
-/// Destinations of a command's documents, from its flags: the text to stdout or to --output, JSON and CSV to their
-/// files. With "-" for one of them stdout receives that document and nothing else; the text is then dropped unless
+/// The file of -o, if its ending says that it is to hold a page (.html), or a picture (.svg, .pdf), and no flag named
+/// another: moved into `page` or `picture`.
+void take_page(CommonFlags& flags, std::string& page);
+void take_picture(CommonFlags& flags, std::string& picture);
+
+/// Destinations of a command's documents, from its flags: the text to stdout or to --output, JSON, HDF5 and CSV to
+/// their files. With "-" for one of them stdout receives that document and nothing else; the text is then dropped
+/// unless
 /// --output names a file for it.
 ///
 /// The constructor checks before anything is computed that every file can be written and that none replaces another or
@@ -31,7 +38,7 @@ class Output {
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
-  bool wants_json() const { return !json_.empty(); }
+  bool wants_json() const { return !json_.empty() || !hdf5_.empty(); }
   bool wants_csv() const { return !csv_.empty(); }
   bool wants_text() const { return !text_.empty(); }
 
@@ -40,7 +47,9 @@ class Output {
   /// text is coloured as --color asks. The text shows terminal controls as escapes (see printable()), and so does any
   /// document that goes to a terminal.
   void text(std::string_view document);
-  void json(std::string_view document) { write(json_, document); }
+  /// The same for a document with tables, which go to --tex too; `first`: a line before it.
+  void text(const std::string& first, const Document& document);
+  void json(std::string_view document);  ///< and HDF5, which is made of it
   void csv(std::string_view document) { write(csv_, document); }
 
   /// The files of data that a case names: no document may go there.
@@ -54,6 +63,11 @@ class Output {
   /// file().
   void check_file(const std::string& flag, const std::string& path);
   void file(const std::string& path, std::string_view document) { write(path, document); }
+  /// For a question without tables: throws if --tex asks for them.
+  void refuse_tables() const;
+  /// A picture: SVG as it is, or as PDF where the path ends with .pdf.
+  void check_picture(const std::string& flag, const std::string& path);
+  void picture(const std::string& path, std::string_view svg);
   /// The same for a changed case (-o), which finds the files of data that it names only from their folder.
   void check_case_file(const std::string& path, const Case& from);
 
@@ -63,8 +77,9 @@ class Output {
  private:
   void write(const std::string& path, std::string_view document);
 
-  std::string text_, json_, csv_;  // "-" is stdout, empty: none
-  std::string basis_;              // sentences at the end of the text
+  std::string text_, tex_, json_, hdf5_, csv_;  // "-" is stdout, empty: none
+  std::string case_;                            // for a comment
+  std::string basis_;                           // sentences at the end of the text
   bool colours_ = false;
   struct TakenFile {
     std::string flag;  // of the document that goes there; empty for a file that the command reads

@@ -26,6 +26,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME limcycle)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "librsvg2-bin, octave")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION
 "limit cycles of feedback loops with friction
 Tells from one small text file whether a feedback loop with friction, a relay,
@@ -37,7 +38,7 @@ far every parameter is from where hunting begins or ends.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblimcycle-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libgsl-dev (>= 2.7), libtbb-dev (>= 2021), \
-libfftw3-dev, libfmt-dev (>= 9), libtomlplusplus-dev, libmuparser-dev, libssl-dev, libsqlite3-dev, pkgconf | pkg-config")
+libfftw3-dev, libfmt-dev (>= 9), libtomlplusplus-dev, libmuparser-dev, libmatio-dev, libssl-dev, libsqlite3-dev, libhdf5-dev, pkgconf | pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
 "C++ library for limit cycles of feedback loops with friction
 The methods of the program limcycle as a library: describing functions,

@@ -24,6 +24,7 @@ Provenance provenance_of(std::uint64_t seed, int threads, const Case* from) {
     made.sha256 = from->sha256;
     made.overrides = from->overrides;
     made.curves = from->curves;
+    made.matrices = from->matrices;
     if (from->loop) made.measured = measured_plants(*from->loop);
   }
   return made;

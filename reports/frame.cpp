@@ -33,11 +33,15 @@ Json case_json(const Provenance& provenance) {
             {"file", text_or_null(provenance.file)},
             {"sha256", text_or_null(provenance.sha256)},
             {"measured", Json::array()},
-            {"curves", Json::array()}};
+            {"curves", Json::array()},
+            {"matrices", Json::array()}};
   for (const MeasuredPlantAt& plant : provenance.measured) made["measured"].push_back(measured_json(plant));
   for (const CurveFile& curve : provenance.curves)
     made["curves"].push_back(
         {{"path", curve.path}, {"file", curve.file}, {"sha256", curve.sha256}, {"points", curve.points}});
+  for (const MatrixFile& one : provenance.matrices)
+    made["matrices"].push_back(
+        {{"path", one.path}, {"file", one.file}, {"sha256", one.sha256}, {"variables", one.variables}});
   return made;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "limcycle/models/measured/curve_file.hpp"
+#include "limcycle/models/measured/matrix_file.hpp"
 #include "limcycle/models/measured/plants_of_loop.hpp"
 
 namespace limcycle {
@@ -22,6 +23,7 @@ struct Provenance {
   std::vector<std::string> flags{};         ///< words of the command line that change the result: "--only", "gain-kp"
   std::vector<MeasuredPlantAt> measured{};  ///< plants of the case that are known by data
   std::vector<CurveFile> curves{};          ///< measured friction curves of the case
+  std::vector<MatrixFile> matrices{};       ///< MAT-files of the case
 };
 
 }  // namespace limcycle

@@ -122,17 +122,21 @@ std::string absence_in_words(const PredictReport& report) {
          report.absence->why + ".";
 }
 
-std::string predict_text(const std::string& title, const PredictReport& report, const Units& units) {
+Document predict_document(const std::string& title, const PredictReport& report, const Units& units) {
   const CycleAnswer words = answer(report, units);
-  std::string out = wrapped(title) + "\n" + wrapped(words.what_happens);
+  Document out(wrapped(title) + "\n" + wrapped(words.what_happens));
   for (const auto& sentence : words.worth) out += wrapped(sentence);
-  if (!report.cycles.empty()) out += titled("Limit cycles", cycle_table(report, units).text());
+  if (!report.cycles.empty()) out.add("Limit cycles", cycle_table(report, units));
   if (const Table multipliers = multiplier_table(report); !multipliers.rows.empty())
-    out += titled("Floquet multipliers, without the trivial 1", multipliers.text());
-  if (!report.predictions.empty())
-    out += titled("Predictions", prediction_table(report, units).text() + reasons(report));
-  if (const Table trust = trust_table(report, units); !trust.rows.empty())
-    out += titled("Trust in the predictions, and bounds of the true cycles", trust.text() + sentences(report));
+    out.add("Floquet multipliers, without the trivial 1", multipliers);
+  if (!report.predictions.empty()) {
+    out.add("Predictions", prediction_table(report, units));
+    out += reasons(report);
+  }
+  if (const Table trust = trust_table(report, units); !trust.rows.empty()) {
+    out.add("Trust in the predictions, and bounds of the true cycles", trust);
+    out += sentences(report);
+  }
   if (report.absence) out += titled("Absence of oscillations", wrapped(absence_in_words(report)));
   if (!report.outcomes.empty()) out += titled("Reached in simulation", outcomes(report, units));
   const auto& box = report.search;
@@ -145,6 +149,10 @@ std::string predict_text(const std::string& title, const PredictReport& report, 
   if (report.status != Status::converged && report.status != Status::no_cycle)
     out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;
+}
+
+std::string predict_text(const std::string& title, const PredictReport& report, const Units& units) {
+  return predict_document(title, report, units).text();
 }
 
 }  // namespace limcycle

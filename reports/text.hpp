@@ -6,6 +6,7 @@
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/analysis/orbit/cycle/agreement.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
 
@@ -15,10 +16,14 @@ namespace limcycle {
 
 /// The answer in words, then cycles, predictions with verdicts, the outcome of each start, notes.
 std::string predict_text(const std::string& title, const PredictReport& report, const Units& units);
+Document predict_document(const std::string& title, const PredictReport& report,
+                          const Units& units);  ///< the same, with its tables
 
 /// All points up to `longest_table`; beyond that a summary and a hint to the other formats.
 std::string df_text(const std::string& title, const std::vector<DfPoint>& points,
                     const std::vector<DescribingFunction>& results);
+Document df_document(const std::string& title, const std::vector<DfPoint>& points,
+                     const std::vector<DescribingFunction>& results);  ///< the same, with its tables
 inline constexpr std::size_t longest_table = 200;
 
 /// Summary of a run: how it ended, its outcome, agreement with a second run (if there was one), energy balance (if
@@ -26,6 +31,10 @@ inline constexpr std::size_t longest_table = 200;
 std::string simulate_text(const std::string& title, const Simulation& run,
                           const std::optional<Agreement>& second = std::nullopt,
                           const std::optional<EnergyBalance>& energy = std::nullopt, const Units& units = {});
+Document simulate_document(const std::string& title, const Simulation& run,
+                           const std::optional<Agreement>& second = std::nullopt,
+                           const std::optional<EnergyBalance>& energy = std::nullopt,
+                           const Units& units = {});  ///< the same, with its tables
 
 /// Energy balance of a run, without terms that are zero to rounding.
 Table energy_table(const EnergyBalance& energy);

@@ -9,6 +9,7 @@ const name_of = (law) => `${law.group.replace(' ', '-')}-${law.kind}`;
 
 /// As many entries as a list, or rows and columns as a matrix, may have: longest_list of cases/loader/parameters.hpp.
 const longest = { maxItems: 201 };
+const longest_data = { maxItems: 100000 };
 
 function bounds({ low, high, low_open, high_open }) {
   return {
@@ -30,7 +31,7 @@ function parameter(p) {
     case 'choice': return choice(p.choices, description, more);
     case 'list': return { ...row, description };
     case 'text': return { type: 'string', minLength: 1, description };
-    case 'matrix': return { type: 'array', items: row, ...longest, description };
+    case 'matrix': return { type: 'array', items: row, ...(p.key === 'points' ? longest_data : longest), description };
     case 'complex list': return { type: 'array', items: number_or_pair, ...longest, description };
   }
   throw new Error(`${p.key} is a ${p.type}, which tools/case-schema.mjs does not know`);
@@ -53,13 +54,24 @@ const file_keys = {
   }),
 };
 const has_points = (law) => table_suffix.test(law.kind);
+
+/// Its matrices and lists stand in the case or in a MAT-file: read_matrices.cpp. Measured data stand in a file of columns too.
+const is_measured = (law) => law.kind === 'frf';
+const of_matrices = ({ type }) => ['list', 'matrix', 'complex list'].includes(type);
+const has_matrices = (law) => ['plant', 'controller', 'block'].includes(law.group) && !is_measured(law) && law.parameters.some(of_matrices);
+const mat_file = { file: { type: 'string', minLength: 1, description: 'MAT-file with the matrices and lists that the case does not give' } };
+
 const keys_of = (law) => ({
   ...Object.fromEntries(law.parameters.map((p) => [p.key, parameter(p)])), ...(has_points(law) && file_keys),
+  ...(has_matrices(law) && mat_file),
 });
-const required_of = (law) =>
-  law.parameters.filter(({ key, required }) => required && !(has_points(law) && lists.includes(key))).map((p) => p.key);
+const required_of = (law) => law.parameters.filter((p) => p.required && !(has_points(law) && lists.includes(p.key)) &&
+  !(has_matrices(law) && of_matrices(p))).map((p) => p.key);
 const in_lists = ['velocities_minus', 'forces_minus', ...lists];
-const rules_of = (law) => !has_points(law) ? {} : {
+const rules_of = (law) => is_measured(law) ? { oneOf: [{ required: ['file'] }, { required: ['points'] }] } :
+  has_matrices(law) ? {
+    anyOf: [{ required: ['file'] }, { required: law.parameters.filter((p) => p.required && of_matrices(p)).map((p) => p.key) }],
+  } : !has_points(law) ? {} : {
   if: { required: ['file'] },
   then: { properties: Object.fromEntries(in_lists.map((key) => [key, false])) },
   else: { required: lists, properties: { velocity: false, force: false, scale: false } },

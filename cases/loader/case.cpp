@@ -75,8 +75,10 @@ Case read_case(std::string_view text, const std::string& file, const std::vector
   case_file::Document document = case_file::parse(text, file);
   for (const auto& override : overrides) case_file::apply_override(document, override);
   auto curves = case_file::read_curves(document);
+  auto matrices = case_file::read_matrices(document);
   Case result = read_document(document, own);
   result.curves = std::move(curves);
+  result.matrices = std::move(matrices);
   result.text = text;
   if (!own) result.sha256 = sha256(text);
   return result;
@@ -94,8 +96,10 @@ std::vector<CaseData> data_of(const Case& from) {
   std::vector<CaseData> files;
   if (from.loop)
     for (const MeasuredPlantAt& plant : measured_plants(*from.loop))
-      files.push_back({plant.path, plant.response->data().file, plant.response->data().sha256});
+      if (!plant.response->data().sha256.empty())
+        files.push_back({plant.path, plant.response->data().file, plant.response->data().sha256});
   for (const CurveFile& curve : from.curves) files.push_back({curve.path, curve.file, curve.sha256});
+  for (const MatrixFile& one : from.matrices) files.push_back({one.path, one.file, one.sha256});
   return files;
 }
 

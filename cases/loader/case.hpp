@@ -14,6 +14,7 @@
 #include "limcycle/cases/loader/input_error.hpp"
 #include "limcycle/models/loop.hpp"
 #include "limcycle/models/measured/curve_file.hpp"
+#include "limcycle/models/measured/matrix_file.hpp"
 
 namespace limcycle {
 
@@ -58,7 +59,7 @@ struct IdentifySection {
   FreeChoice choice;
 };
 
-/// A file of measurements on which the loop of a case rests.
+/// A file of measurements or matrices on which the loop of a case rests.
 struct CaseData {
   std::string path;    ///< of the plant or law that it belongs to, such as loop.plant
   std::string file;    ///< as the case names it, from the folder of the case
@@ -75,10 +76,11 @@ struct Case {
 
   std::optional<Element> own;  ///< the friction law that `kind = "own"` stands for
 
-  std::optional<LoopParts> loop;   ///< empty: a case for a lone element, or for records only
-  std::optional<Element> element;  ///< the lone element; empty if there is a loop, or records only
-  std::string element_path;        ///< "loop.friction", "loop.element" or "loop.error": the subject of `df`
-  std::vector<CurveFile> curves;   ///< of the friction laws
+  std::optional<LoopParts> loop;     ///< empty: a case for a lone element, or for records only
+  std::optional<Element> element;    ///< the lone element; empty if there is a loop, or records only
+  std::string element_path;          ///< "loop.friction", "loop.element" or "loop.error": the subject of `df`
+  std::vector<CurveFile> curves;     ///< of the friction laws
+  std::vector<MatrixFile> matrices;  ///< of plants and controllers
 
   std::optional<OutputUnit> y_unit;
   std::optional<DfSection> df;

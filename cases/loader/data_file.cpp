@@ -10,16 +10,9 @@ namespace {
 
 constexpr std::uintmax_t largest_data_file = std::uintmax_t{1} << 26;
 
-std::string bytes_of(const CsvReader& csv) {
-  std::error_code failed;
-  if (std::filesystem::file_size(csv.file(), failed) > largest_data_file && !failed)
-    throw csv.error("is larger than 64 MiB, the limit for measured data");
-  std::ifstream in(csv.file(), std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+}  // namespace
 
-/// Where the file is. It is read, and then its digest is made.
-std::string path_of(const Section& section, const std::string& name) {
+std::string path_of_data(const Section& section, const std::string& name) {
   if (name.empty()) throw section.error("file", "must be the name of a file");
   std::string path = section.document().beside(name);
   std::error_code failed;
@@ -29,10 +22,17 @@ std::string path_of(const Section& section, const std::string& name) {
   return path;
 }
 
-}  // namespace
+std::string digest_of_data(const std::string& path, const std::function<InputError(const std::string&)>& error) {
+  std::error_code failed;
+  if (std::filesystem::file_size(path, failed) > largest_data_file && !failed)
+    throw error("is larger than 64 MiB, the limit for measured data");
+  std::ifstream in(path, std::ios::binary);
+  return limcycle::sha256(std::string{std::istreambuf_iterator<char>(in), {}});
+}
 
 DataFile::DataFile(const Section& section, const std::string& name)
-    : csv(path_of(section, name)), sha256(limcycle::sha256(bytes_of(csv))) {}
+    : csv(path_of_data(section, name)),
+      sha256(digest_of_data(csv.file(), [this](const std::string& rule) { return csv.error(rule); })) {}
 
 double read_scale(const std::optional<Section>& scale, std::string_view column) {
   const auto factor = scale ? scale->find(column) : std::nullopt;

@@ -45,4 +45,16 @@ void name_blocks(Document& document) {
   }
 }
 
+void for_each_part(Document& document, const std::function<void(Value& part, const std::string& path)>& use) {
+  const auto tables = [](Value& within) { return std::get_if<Value::Table>(&within.data); };
+  auto* top = tables(document.root);
+  if (top == nullptr) return;
+  for (auto& [section, value] : *top) {
+    if (section != "loop" && section != "diagram") continue;
+    auto* parts = tables(value);
+    if (parts == nullptr) continue;
+    for (auto& [name, part] : *parts) use(part, section + "." + name);
+  }
+}
+
 }  // namespace limcycle::case_file

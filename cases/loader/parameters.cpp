@@ -9,7 +9,7 @@ ParameterValue read_value(const Place& place, const ParameterRow& row, const Par
   if (std::holds_alternative<std::vector<double>>(present)) return read_list(place, longest_list, row.range, row.unit);
   if (std::holds_alternative<Choice>(present)) return Choice{static_cast<int>(read_choice(place, row.choices))};
   if (std::holds_alternative<Eigen::MatrixXd>(present))
-    return read_matrix(place, static_cast<Eigen::Index>(longest_list));
+    return read_matrix(place, row.key == points_of_data ? longest_data : longest_list, longest_list);
   if (std::holds_alternative<std::string>(present)) return read_string(place);
   return read_complex_list(place, longest_list);
 }

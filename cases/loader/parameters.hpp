@@ -11,6 +11,10 @@ struct MeasuredPlant;
 
 namespace limcycle::case_file {
 
+/// Largest number of rows of measured data.
+inline constexpr std::size_t longest_data = 100'000;
+inline constexpr std::string_view points_of_data = "points";  ///< the key that holds them
+
 /// Largest number of entries in a list of a law, plant or controller, and of rows or columns in its matrices. Matrices
 /// of a loop are dense: beyond this size checking a case would take too long.
 inline constexpr std::size_t longest_list = 201;

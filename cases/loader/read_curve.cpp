@@ -91,16 +91,9 @@ bool is_in_file(const Value& law) {
 
 std::vector<CurveFile> read_curves(Document& document) {
   std::vector<CurveFile> files;
-  const auto tables = [](Value& within) { return std::get_if<Value::Table>(&within.data); };
-  auto* top = tables(document.root);
-  if (top == nullptr) return files;
-  for (auto& [section, value] : *top) {
-    if (section != "loop" && section != "diagram") continue;
-    auto* parts = tables(value);
-    if (parts == nullptr) continue;
-    for (auto& [name, part] : *parts)
-      if (is_in_file(part)) files.push_back(read_curve(document, part, section + "." + name));
-  }
+  for_each_part(document, [&](Value& part, const std::string& path) {
+    if (is_in_file(part)) files.push_back(read_curve(document, part, path));
+  });
   return files;
 }
 

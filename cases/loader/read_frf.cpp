@@ -12,7 +12,29 @@
 namespace limcycle::case_file {
 namespace {
 
-constexpr std::size_t most_points = 100'000;
+/// Rows of a file, or those of the case.
+class FrequencyRows {
+ public:
+  explicit FrequencyRows(CsvReader& csv) : csv_(&csv) {}
+  explicit FrequencyRows(Place points) : points_(std::move(points)) {}
+
+  bool next(std::vector<double>& row) {
+    if (csv_ != nullptr) return csv_->next(row);
+    const auto& rows = *points_->value.as<Value::List>();
+    if (next_ == rows.size()) return false;
+    row = read_list(points_->item(next_++), longest_list);
+    return true;
+  }
+  InputError error(const std::string& rule, const std::string& value = {}) const {
+    if (csv_ != nullptr) return csv_->error(rule, value);
+    return points_->item(next_ - 1).error(rule);
+  }
+
+ private:
+  CsvReader* csv_ = nullptr;
+  std::optional<Place> points_;
+  std::size_t next_ = 0;
+};
 
 /// Which columns of the file are read.
 struct Columns {
@@ -62,80 +84,96 @@ void check_header(const CsvReader& csv, const Columns& columns, const MeasuredPl
   if (plant.format.index != 0 && (has(2, "rad") || has(2, "imag"))) refuse(2, "format", format);
 }
 
-std::complex<double> response_in(const CsvReader& csv, const MeasuredPlant& plant, double first, double second) {
+std::complex<double> response_in(const FrequencyRows& rows, const MeasuredPlant& plant, double first, double second) {
   if (plant.format.index == 0) {
-    if (first == 0.0 && second == 0.0) throw csv.error("has the response 0: leave the row out");
+    if (first == 0.0 && second == 0.0) throw rows.error("has the response 0: leave the row out");
     return {first, second};
   }
   if (plant.format.index == 1 && !(first > 0.0))
-    throw csv.error("must be > 0: it is a magnitude. Is it in decibels? Then format = \"decibel-degrees\"",
-                    fmt::format("{}", first));
+    throw rows.error("must be > 0: it is a magnitude. Is it in decibels? Then format = \"decibel-degrees\"",
+                     fmt::format("{}", first));
   const double size = plant.format.index == 1 ? first : std::pow(10.0, first / 20.0);
   if (!(size > 0.0) || !std::isfinite(size))
-    throw csv.error("decibels are beyond what a number holds: is it a magnitude? Then format = \"magnitude-degrees\"",
-                    fmt::format("{}", first));
+    throw rows.error("decibels are beyond what a number holds: is it a magnitude? Then format = \"magnitude-degrees\"",
+                     fmt::format("{}", first));
   return std::polar(size, second * std::numbers::pi / 180.0);
 }
 
 /// Relative standard deviation of real and imaginary part. Of a coherence c after n averages:
 /// ((1 - c)/(2 n c))^(1/2) (Bendat and Piersol, Random Data, 4th ed. 2010, 9.2.4).
-double deviation_in(const CsvReader& csv, const MeasuredPlant& plant, double size, double value) {
+double deviation_in(const FrequencyRows& rows, const MeasuredPlant& plant, double size, double value) {
   if (plant.uncertainty.index == 1) {
-    if (!(value >= 0.0)) throw csv.error("must be >= 0: it is a standard deviation", fmt::format("{}", value));
+    if (!(value >= 0.0)) throw rows.error("must be >= 0: it is a standard deviation", fmt::format("{}", value));
     return value / size;
   }
   if (!(value > 0.0 && value <= 1.0))
-    throw csv.error("must be > 0 and <= 1: it is a coherence", fmt::format("{}", value));
+    throw rows.error("must be > 0 and <= 1: it is a coherence", fmt::format("{}", value));
   return std::sqrt((1.0 - value) / (2.0 * plant.averages * value));
 }
 
-void check_rising(const CsvReader& csv, const FrequencyData& data, double frequency) {
+void check_rising(const FrequencyRows& rows, const FrequencyData& data, double frequency) {
   if (!(frequency > 0.0))
-    throw csv.error("must be > 0: it is a frequency; leave the row at zero out", fmt::format("{}", frequency));
+    throw rows.error("must be > 0: it is a frequency; leave the row at zero out", fmt::format("{}", frequency));
   if (!data.frequency.empty() && !(frequency > data.frequency.back()))
-    throw csv.error(
+    throw rows.error(
         "must be more than the frequency of the row before: sort the rows, and leave out those that are twice "
         "there",
         fmt::format("{}", frequency));
 }
 
 /// Phases within one turn in radians, behind a magnitude that falls: degrees would turn by tens there.
-void check_degrees(const CsvReader& csv, const MeasuredPlant& plant, const FrequencyData& data, double largest_phase) {
+void check_degrees(const FrequencyRows& rows, const MeasuredPlant& plant, const FrequencyData& data,
+                   double largest_phase) {
   const EndSlopes slopes = end_slopes(data);
   if (plant.format.index == 0 || largest_phase > 2.02 * std::numbers::pi || std::min(slopes.low, slopes.high) > -0.75)
     return;
-  throw csv.error(fmt::format(
+  throw rows.error(fmt::format(
       "all phases lie within {:.3g}, although the response falls by {:.2g} decades a decade: are they in radians? "
       "They must be in degrees (or format = \"re-im\")",
       largest_phase, -std::min(slopes.low, slopes.high)));
+}
+
+FrequencyData data_in(FrequencyRows rows, const MeasuredPlant& plant) {
+  FrequencyData data;
+  const bool has_uncertainty = plant.uncertainty.index > 0;
+  double largest_phase = 0.0;
+  for (std::vector<double> row; rows.next(row);) {
+    const double frequency = plant.frequency.index == 0 ? row[0] : 2.0 * std::numbers::pi * row[0];
+    check_rising(rows, data, frequency);
+    if (data.size() == longest_data)
+      throw rows.error(fmt::format("is one of more than {} points: keep every n-th", longest_data));
+    data.frequency.push_back(frequency);
+    data.response.push_back(response_in(rows, plant, row[1], row[2]));
+    largest_phase = std::max(largest_phase, std::abs(row[2]));
+    if (has_uncertainty) data.deviation.push_back(deviation_in(rows, plant, std::abs(data.response.back()), row[3]));
+  }
+  check_degrees(rows, plant, data, largest_phase);
+  return data;
+}
+
+FrequencyData data_of_file(const Section& section, const MeasuredPlant& plant) {
+  const Columns columns = columns_of(section, plant);
+  DataFile opened(section, plant.file);
+  opened.csv.choose(columns.chosen);
+  check_header(opened.csv, columns, plant);
+  FrequencyData data = data_in(FrequencyRows(opened.csv), plant);
+  data.file = plant.file;
+  data.sha256 = std::move(opened.sha256);
+  return data;
+}
+
+FrequencyData data_of_points(const Section& section, const MeasuredPlant& plant) {
+  FrequencyData data = data_in(FrequencyRows(section.at(points_of_data, "rows of the data")), plant);
+  data.file = "the case";
+  return data;
 }
 
 }  // namespace
 
 void complete(const Section& section, MeasuredPlant& plant) {
   if (plant.validate()) return;  // reported by whoever reads the plant
-  const Columns columns = columns_of(section, plant);
-  DataFile opened(section, plant.file);
-  CsvReader& csv = opened.csv;
-  csv.choose(columns.chosen);
-  check_header(csv, columns, plant);
-  FrequencyData data;
-  data.file = plant.file;
-  data.sha256 = std::move(opened.sha256);
-  double largest_phase = 0.0;
-  for (std::vector<double> row; csv.next(row);) {
-    const double frequency = plant.frequency.index == 0 ? row[0] : 2.0 * std::numbers::pi * row[0];
-    check_rising(csv, data, frequency);
-    if (data.size() == most_points)
-      throw csv.error(fmt::format("is one of more than {} points: keep every n-th", most_points));
-    data.frequency.push_back(frequency);
-    data.response.push_back(response_in(csv, plant, row[1], row[2]));
-    largest_phase = std::max(largest_phase, std::abs(row[2]));
-    if (columns.has_uncertainty)
-      data.deviation.push_back(deviation_in(csv, plant, std::abs(data.response.back()), row[3]));
-  }
-  check_degrees(csv, plant, data, largest_phase);
-  plant.data = std::make_shared<const FrequencyData>(std::move(data));
+  plant.data = std::make_shared<const FrequencyData>(plant.file.empty() ? data_of_points(section, plant)
+                                                                        : data_of_file(section, plant));
   try {
     plant.response = plant.measured();
   } catch (const std::invalid_argument&) {  // reported by validate()

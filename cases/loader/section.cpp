@@ -77,12 +77,11 @@ std::vector<double> read_list(const Place& place, std::size_t most, const Range&
   return numbers;
 }
 
-Eigen::MatrixXd read_matrix(const Place& place, Eigen::Index most) {
-  const auto limit = static_cast<std::size_t>(most);
-  const auto& rows = list_of(place, "a list of rows [[a, b], [c, d]]", limit);
+Eigen::MatrixXd read_matrix(const Place& place, std::size_t most_rows, std::size_t most_columns) {
+  const auto& rows = list_of(place, "a list of rows [[a, b], [c, d]]", most_rows);
   Eigen::MatrixXd matrix;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto row = read_list(place.item(i), limit);
+    const auto row = read_list(place.item(i), most_columns);
     if (i == 0) matrix.resize(std::ssize(rows), std::ssize(row));
     if (std::ssize(row) != matrix.cols())
       throw place.item(i).error(

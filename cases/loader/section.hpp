@@ -38,7 +38,7 @@ int read_integer(const Place& place, int low, int high);
 std::string read_string(const Place& place);
 std::vector<double> read_list(const Place& place, std::size_t most, const Range& range = any_number,
                               std::string_view unit = "1");
-Eigen::MatrixXd read_matrix(const Place& place, Eigen::Index most);
+Eigen::MatrixXd read_matrix(const Place& place, std::size_t most_rows, std::size_t most_columns);
 std::vector<std::complex<double>> read_complex_list(const Place& place, std::size_t most);
 std::size_t read_choice(const Place& place, std::span<const std::string_view> names);
 /// The name of a column of a file, or its number from 1.

@@ -17,6 +17,9 @@ void read_diagram(const Section& section, Case& into);
 /// in their place.
 std::vector<CurveFile> read_curves(Document& document);
 
+/// Reads the MAT-files that hold matrices of plants and controllers, and puts these in their place.
+std::vector<MatrixFile> read_matrices(Document& document);
+
 /// The reference of a loop: a number or {kind = "ramp", rate = ...}.
 void read_reference(const Place& place, LoopParts& parts);
 

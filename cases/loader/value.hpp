@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -82,6 +83,9 @@ Document parse(std::string_view text, const std::string& file);
 /// numbers have paths as all others do. Called by parse(). Throws InputError for a name that is missing, taken or no
 /// name.
 void name_blocks(Document& document);
+
+/// Calls `use` with every part of [loop] and block of [diagram], and its path.
+void for_each_part(Document& document, const std::function<void(Value& part, const std::string& path)>& use);
 
 /// Applies "PATH=VALUE": replaces or creates the value at PATH. Throws InputError naming the override.
 void apply_override(Document& document, const std::string& override);

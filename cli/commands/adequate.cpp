@@ -87,7 +87,7 @@ AdequateReport compute(const Case& from, const LoopParts& parts, const AdequateF
 }
 
 int run(AdequateFlags flags) {
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
   const Case from = load_case(flags);
   const LoopParts& parts = need_friction(from);
   Output output(flags, &from);
@@ -96,12 +96,12 @@ int run(AdequateFlags flags) {
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
   const AdequateReport shown = in_units(report, units);
-  std::string text = adequate_text(from.title, shown, units);
+  Document text = adequate_document(from.title, shown, units);
   if (!flags.html.empty()) {
     output.file(flags.html, adequate_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
-  output.text(first_line(flags, report.status) + text);
+  output.text(first_line(flags, report.status), text);
   if (output.wants_json()) output.json(adequate_json(made, report));
   if (output.wants_csv()) output.csv(adequate_csv(report));
   output.finish();

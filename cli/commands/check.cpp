@@ -93,7 +93,7 @@ struct CheckFlags : CommonFlags {
 };
 
 int check(CheckFlags flags) {
-  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  take_picture(flags, flags.picture);
   const Case from = load_case(flags);
   if (!flags.picture.empty() && !from.loop) throw std::invalid_argument("--svg: the case holds no loop to draw");
   const auto plants = from.loop ? measured_plants(*from.loop) : std::vector<MeasuredPlantAt>();
@@ -105,10 +105,10 @@ int check(CheckFlags flags) {
   Provenance shown = made;
   shown.file = one_line(made.file);
   output.keep_data(from);
-  output.check_file("--svg", flags.picture);
-  output.check_file("--fit", flags.fit);
-  if (!flags.fit.empty()) output.file(flags.fit, fit_picture(plants.front()));
-  if (!flags.picture.empty()) output.file(flags.picture, block_diagram(*from.loop, units_of(from)));
+  output.check_picture("--svg", flags.picture);
+  output.check_picture("--fit", flags.fit);
+  if (!flags.fit.empty()) output.picture(flags.fit, fit_picture(plants.front()));
+  if (!flags.picture.empty()) output.picture(flags.picture, block_diagram(*from.loop, units_of(from)));
   output.text(check_text(shown, summary));
   if (output.wants_json()) output.json(check_json(made, summary));
   if (output.wants_csv()) output.csv(check_csv(made, summary));
@@ -120,9 +120,12 @@ int check(CheckFlags flags) {
 
 void add_check(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CheckFlags>();
+  flags->has_tables = false;
   CLI::App* command = add_command(program, action, "check", "Validate a case file and print a summary", true, flags,
                                   [flags] { return check(*flags); });
-  command->add_option("--svg", flags->picture, "Write a block diagram of the loop to FILE (so does -o FILE.svg)")
+  command
+      ->add_option("--svg", flags->picture,
+                   "Write a block diagram of the loop to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
   command->add_option("--fit", flags->fit, "Write a picture of the data of the (first) measured plant and their fit")
       ->type_name("FILE.svg");

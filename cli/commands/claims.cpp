@@ -66,6 +66,7 @@ std::vector<Claim> chosen(const std::vector<Claim>& all, const std::vector<std::
 
 int list(const ClaimsFlags& flags, const std::vector<Claim>& which, const std::optional<Case>& from) {
   Output output(flags);
+  output.refuse_tables();
   output.text(claims_list(which));
   if (output.wants_json()) output.json(claims_list_json(provenance(flags, from ? &*from : nullptr), which));
   if (output.wants_csv()) output.csv(claims_csv({}));
@@ -111,7 +112,7 @@ int exit_code(const std::vector<TestedClaim>& tested, Status ended) {
 }
 
 int run(ClaimsFlags flags) {
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
   const std::optional<Case> from = case_of(flags);
   const auto which = chosen(from ? claims_of(*from) : claims(), flags.words);
   if (flags.list) return list(flags, which, from);
@@ -120,13 +121,13 @@ int run(ClaimsFlags flags) {
   const auto tested = test_all(which, flags);
   const Status ended = ending(tested, which.size());
   const auto made = provenance(flags, from ? &*from : nullptr);
-  std::string text = claims_text(tested, flags.verbose);
-  if (from) text = wrapped(from->title) + "\n" + text;
+  Document text(from ? wrapped(from->title) + "\n" : "");
+  text += claims_document(tested, flags.verbose);
   if (!flags.html.empty()) {
     output.file(flags.html, claims_page(tested, made, arguments(flags), from ? from->text : ""));
     text += page_line(flags.html);
   }
-  output.text(first_line(flags, ended) + text);
+  output.text(first_line(flags, ended), text);
   if (output.wants_json()) output.json(claims_json(made, tested, ended));
   if (output.wants_csv()) output.csv(claims_csv(tested));
   output.finish();

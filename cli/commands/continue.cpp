@@ -27,15 +27,15 @@ int exit_code(const FollowReport& found) {
 }
 
 int run(ContinueFlags flags) {
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
-  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
+  take_picture(flags, flags.picture);
   const ParameterRange range = parameter_range("--parameter", flags.parameter);
   const Case from = load_case(flags);
   need_loop(from);
   const CaseNumber number = number_at(from, "--parameter", range.path);
   Output output(flags, &from);
   output.check_file("--html", flags.html);
-  output.check_file("--svg", flags.picture);
+  output.check_picture("--svg", flags.picture);
 
   ContinueReport report{range.path, number.unit, {}};
   {
@@ -45,13 +45,13 @@ int run(ContinueFlags flags) {
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
   const ContinueReport shown = in_units(report, units);
-  std::string text = continue_text(from.title, shown, units);
+  Document text = continue_document(from.title, shown, units);
   if (!flags.html.empty()) {
     output.file(flags.html, continue_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
-  if (!flags.picture.empty()) output.file(flags.picture, continue_picture(shown, units));
-  output.text(first_line(flags, report.found.status) + text);
+  if (!flags.picture.empty()) output.picture(flags.picture, continue_picture(shown, units));
+  output.text(first_line(flags, report.found.status), text);
   if (output.wants_json()) output.json(continue_json(made, report));
   if (output.wants_csv()) output.csv(continue_csv(report));
   output.finish();
@@ -71,7 +71,8 @@ void add_continue(CLI::App& program, Action& action) {
       ->required();
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
-  command->add_option("--svg", flags->picture, "Write the bifurcation diagram to FILE (so does -o FILE.svg)")
+  command
+      ->add_option("--svg", flags->picture, "Write the bifurcation diagram to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
 }
 

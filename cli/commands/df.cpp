@@ -29,7 +29,7 @@ int run(const SweepFlags& flags) {
     return run_stored(task, columns, design, flags, from);
   });
   const Status ended = results.size() < points.size() ? ending_so_far() : Status::converged;
-  output.text(first_line(flags, ended) + df_text(from.title, points, results));
+  output.text(first_line(flags, ended), df_document(from.title, points, results));
   Provenance made = provenance(flags, &from);
   made.isa = to_string(asking.isa);
   if (output.wants_json()) output.json(df_json(made, points, results));

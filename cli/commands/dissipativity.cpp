@@ -32,7 +32,7 @@ DissipativityWishes wishes_of(const DissipativityFlags& flags) {
 }
 
 int run(DissipativityFlags flags) {
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
   const Case from = load_case(flags);
   Output output(flags, &from);
   output.check_file("--html", flags.html);
@@ -43,12 +43,12 @@ int run(DissipativityFlags flags) {
     report = answer_of([&] { return ask_dissipativity(from, wishes, asking_of(flags, progress)); });
   }
   const auto made = provenance(flags, &from);
-  std::string text = dissipativity_text(from.title, report);
+  Document text = dissipativity_document(from.title, report);
   if (!flags.html.empty()) {
     output.file(flags.html, dissipativity_page(report, made, from.text, flags_of(wishes)));
     text += page_line(flags.html);
   }
-  output.text(first_line(flags, report.status) + text);
+  output.text(first_line(flags, report.status), text);
   if (output.wants_json()) output.json(dissipativity_json(made, report));
   if (output.wants_csv()) output.csv(dissipativity_csv(report));
   output.finish();

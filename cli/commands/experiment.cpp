@@ -50,6 +50,7 @@ std::vector<LawSetting> laws_of(const std::vector<std::string>& wanted) {
 
 int list(const ExperimentFlags& flags) {
   Output output(flags);
+  output.refuse_tables();
   output.text(experiment_list(experiments()));
   if (output.wants_json()) output.json(experiment_list_json(provenance(flags), experiments()));
   if (output.wants_csv()) output.csv(experiment_csv({}));
@@ -84,25 +85,25 @@ Status ending(const std::vector<Experiment>& results, std::size_t wanted) {
 int run(ExperimentFlags flags) {
   if (!flags.set.empty()) throw refusal("--set", "experiments have no case; --law chooses laws");
   if (flags.name.empty()) return list(flags);
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
-  if (flags.pictures.empty() && flags.output.ends_with(".svg")) flags.pictures = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
+  take_picture(flags, flags.pictures);
   const auto entries = chosen(flags.name);
   laws_of(flags.laws);
   Output output(flags);
   output.check_file("--html", flags.html);
-  output.check_file("--svg", flags.pictures);
+  output.check_picture("--svg", flags.pictures);
   const auto results = run_all(entries, flags);
   const Status ended = ending(results, entries.size());
   const auto made = provenance(flags);
-  std::string text = experiment_text(results);
+  Document text = experiment_document(results);
   if (!flags.html.empty() && !results.empty()) {
     std::string words;
     for (const auto& law : flags.laws) words += (words.empty() ? "--law " : " --law ") + law;
     output.file(flags.html, experiment_page(results, made, words));
     text += page_line(flags.html);
   }
-  if (!flags.pictures.empty()) output.file(flags.pictures, experiment_picture(results));
-  output.text(first_line(flags, ended) + text);
+  if (!flags.pictures.empty()) output.picture(flags.pictures, experiment_picture(results));
+  output.text(first_line(flags, ended), text);
   if (output.wants_json()) output.json(experiment_json(made, results, ended));
   if (output.wants_csv()) output.csv(experiment_csv(results));
   output.finish();
@@ -122,7 +123,8 @@ void add_experiment(CLI::App& program, Action& action) {
   command->add_option("--law", flags->laws, "Only this law; repeatable")->type_name("KIND")->allow_extra_args(false);
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
-  command->add_option("--svg", flags->pictures, "Write the figures to FILE (so does -o FILE.svg)")->type_name("FILE");
+  command->add_option("--svg", flags->pictures, "Write the figures to FILE (so does -o FILE.svg or FILE.pdf)")
+      ->type_name("FILE");
 }
 
 }  // namespace limcycle

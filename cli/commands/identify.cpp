@@ -29,11 +29,11 @@ void tell_of_fitted(const IdentifyFlags& flags, const Case& from, const Identifi
 
 int run(IdentifyFlags flags) {
   if (flags.fitted.empty() && flags.output.ends_with(".toml")) flags.fitted = std::exchange(flags.output, {});
-  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  take_picture(flags, flags.picture);
   const Case from = load_case(flags);
   Output output(flags, &from);
   output.check_file("--fitted", flags.fitted);
-  output.check_file("--svg", flags.picture);
+  output.check_picture("--svg", flags.picture);
   if (from.identify)
     for (const auto& record : from.identify->records) output.keep("a record", record.path);
 
@@ -49,11 +49,12 @@ int run(IdentifyFlags flags) {
   } catch (const NoAnswer& reason) {
     no_fitted = reason.what();
   }
-  output.text(first_line(flags, report.status) + identify_text(from.title, report) +
-              (fitted.empty() ? "" : "\nThe case with the fitted law: " + flags.fitted + "\n"));
+  Document text = identify_document(from.title, report);
+  if (!fitted.empty()) text += "\nThe case with the fitted law: " + flags.fitted + "\n";
+  output.text(first_line(flags, report.status), text);
   if (output.wants_json()) output.json(identify_json(made, report));
   if (output.wants_csv()) output.csv(identify_csv(report));
-  if (!flags.picture.empty()) output.file(flags.picture, identify_picture(report));
+  if (!flags.picture.empty()) output.picture(flags.picture, identify_picture(report));
   if (!fitted.empty()) output.file(flags.fitted, fitted);
   output.finish();
   tell_cut_short(flags, report.status);
@@ -70,7 +71,9 @@ void add_identify(CLI::App& program, Action& action) {
                                   [flags] { return run(*flags); });
   command->add_option("--fitted", flags->fitted, "Write the case with the fitted law to FILE (so does -o FILE.toml)")
       ->type_name("FILE");
-  command->add_option("--svg", flags->picture, "Write measured and fitted forces to FILE (so does -o FILE.svg)")
+  command
+      ->add_option("--svg", flags->picture,
+                   "Write measured and fitted forces to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
 }
 

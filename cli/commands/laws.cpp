@@ -37,6 +37,7 @@ int laws(const CommonFlags& flags, const std::string& kind, bool markdown) {
 
 void add_laws(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
+  flags->has_tables = false;
   const auto kind = std::make_shared<std::string>();
   const auto markdown = std::make_shared<bool>(false);
   auto* command =

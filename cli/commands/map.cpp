@@ -38,8 +38,8 @@ Status compute(const Case& from, HuntingMap& map, const MapFlags& flags, const M
 }
 
 int run(MapFlags flags) {
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
-  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
+  take_picture(flags, flags.picture);
   const Case from = load_case(flags);
   need_loop(from);
   const Methods methods = map_methods("--methods", flags.methods);
@@ -48,19 +48,19 @@ int run(MapFlags flags) {
   Output output(flags, &from);
   output.keep("the store", flags.store);
   output.check_file("--html", flags.html);
-  output.check_file("--svg", flags.picture);
+  output.check_picture("--svg", flags.picture);
 
   const Status ended = compute(from, report.map, flags, methods);
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
-  std::string text = map_text(from.title, report);
+  Document text = map_document(from.title, report);
   if (!flags.html.empty()) {
     const std::string again = flags_of(report.map, !flags.methods.empty(), flags.starts);
     output.file(flags.html, map_page(in_units(report, units), made, from.text, units, again));
     text += page_line(flags.html);
   }
-  if (!flags.picture.empty()) output.file(flags.picture, map_picture(in_units(report, units), units));
-  output.text(first_line(flags, ended) + text);
+  if (!flags.picture.empty()) output.picture(flags.picture, map_picture(in_units(report, units), units));
+  output.text(first_line(flags, ended), text);
   if (output.wants_json()) output.json(map_json(made, report, ended));
   if (output.wants_csv()) output.csv(map_csv(report));
   output.finish();
@@ -88,7 +88,8 @@ void add_map(CLI::App& program, Action& action) {
   add_sweep_flags(*command, *flags);
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
-  command->add_option("--svg", flags->picture, "Write the picture to FILE (so does -o FILE.svg)")->type_name("FILE");
+  command->add_option("--svg", flags->picture, "Write the picture to FILE (so does -o FILE.svg or FILE.pdf)")
+      ->type_name("FILE");
 }
 
 }  // namespace limcycle

@@ -48,7 +48,7 @@ std::vector<Toward> directions(const std::vector<std::string>& written) {
 }
 
 int run(MarginFlags flags) {
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
   const Case from = load_case(flags);
   need_loop(from);
   const MarginWishes wishes{flags.parameters, directions(flags.toward), flags.factor, {"--parameter", "--toward"}};
@@ -65,12 +65,12 @@ int run(MarginFlags flags) {
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
   const MarginReport shown = in_units(report, units);
-  std::string text = margin_text(from.title, shown, units);
+  Document text = margin_document(from.title, shown, units);
   if (!flags.html.empty()) {
     output.file(flags.html, margin_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
-  output.text(first_line(flags, report.status) + text);
+  output.text(first_line(flags, report.status), text);
   if (output.wants_json()) output.json(margin_json(made, report));
   if (output.wants_csv()) output.csv(margin_csv(report));
   output.finish();

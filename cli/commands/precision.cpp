@@ -62,12 +62,12 @@ StepperAtlas compute_atlas(const Case& from, const PrecisionFlags& flags) {
 int run_atlas(const Case& from, const PrecisionFlags& flags) {
   Output output(flags, &from);
   output.check_file("--html", flags.html);
-  output.check_file("--svg", flags.picture);
+  output.check_picture("--svg", flags.picture);
   const StepperAtlas atlas = compute_atlas(from, flags);
   const auto made = provenance(flags, &from);
   if (!flags.html.empty()) output.file(flags.html, atlas_page(atlas, made, from.text));
-  if (!flags.picture.empty()) output.file(flags.picture, atlas_picture(atlas));
-  output.text(first_line(flags, atlas.status) + atlas_text(from.title, atlas));
+  if (!flags.picture.empty()) output.picture(flags.picture, atlas_picture(atlas));
+  output.text(first_line(flags, atlas.status), atlas_document(from.title, atlas));
   if (output.wants_json()) output.json(atlas_json(made, atlas));
   if (output.wants_csv()) output.csv(atlas_csv(atlas));
   output.finish();
@@ -76,11 +76,11 @@ int run_atlas(const Case& from, const PrecisionFlags& flags) {
 }
 
 int run(PrecisionFlags flags) {
-  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  take_picture(flags, flags.picture);
   flags.stability = flags.stability || flags.families;
   if (!flags.picture.empty() && !flags.stability)
     throw std::invalid_argument("--svg: precision has a picture with --stability only");
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
   const Case from = load_case(flags);
   if (flags.stability) return run_atlas(from, flags);
   Output output(flags, &from);
@@ -89,12 +89,12 @@ int run(PrecisionFlags flags) {
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
   const PrecisionReport shown = in_units(report, units);
-  std::string text = precision_text(from.title, shown, units);
+  Document text = precision_document(from.title, shown, units);
   if (!flags.html.empty()) {
     output.file(flags.html, precision_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
-  output.text(first_line(flags, report.status) + text);
+  output.text(first_line(flags, report.status), text);
   if (output.wants_json()) output.json(precision_json(made, report));
   if (output.wants_csv()) output.csv(precision_csv(report));
   output.finish();
@@ -113,7 +113,7 @@ void add_precision(CLI::App& program, Action& action) {
   command->add_flag("--stability", flags->stability,
                     "Instead: where steppers fail, over stiffness and tolerance, for the case's law");
   command->add_flag("--families", flags->families, "The same for families of laws in its place");
-  command->add_option("--svg", flags->picture, "Write the map of --stability to FILE (so does -o FILE.svg)")
+  command->add_option("--svg", flags->picture, "Write the map of --stability to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");

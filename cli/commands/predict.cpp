@@ -31,8 +31,8 @@ struct PredictFlags : CommonFlags {
 
 /// The ending of the -o file selects a page or a picture; the text then stays on stdout.
 void sort_out(PredictFlags& flags) {
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
-  if (flags.pictures.empty() && flags.output.ends_with(".svg")) flags.pictures = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
+  take_picture(flags, flags.pictures);
 }
 
 int exit_code(const PredictReport& report, bool require_agreement) {
@@ -58,7 +58,7 @@ int run(PredictFlags flags) {
   output.keep_data(from);
   output.keep("the page to be made again", flags.from);
   output.check_file("--html", flags.html);
-  output.check_file("--svg", flags.pictures);
+  output.check_picture("--svg", flags.pictures);
 
   PredictReport report;
   {
@@ -69,14 +69,14 @@ int run(PredictFlags flags) {
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
   const PredictReport shown = in_units(report, units);
-  std::string text = predict_text(from.title, shown, units);
+  Document text = predict_document(from.title, shown, units);
   if (flags.verbose) text += predict_efforts(shown, from.predict.methods, units);
   if (!flags.html.empty()) {
     output.file(flags.html, predict_page(shown, made, from.text, units));
     text += page_line(flags.html);
   }
-  if (!flags.pictures.empty()) output.file(flags.pictures, predict_picture(shown, units));
-  output.text(first_line(flags, report.status) + text);
+  if (!flags.pictures.empty()) output.picture(flags.pictures, predict_picture(shown, units));
+  output.text(first_line(flags, report.status), text);
   const std::string document = predict_json(made, report);
   if (output.wants_json()) output.json(document);
   if (output.wants_csv()) output.csv(predict_csv(report));
@@ -97,7 +97,8 @@ void add_predict(CLI::App& program, Action& action) {
   add_from_flag(*command, flags->from);
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
-  command->add_option("--svg", flags->pictures, "Write a picture to FILE (so does -o FILE.svg)")->type_name("FILE");
+  command->add_option("--svg", flags->pictures, "Write a picture to FILE (so does -o FILE.svg or FILE.pdf)")
+      ->type_name("FILE");
   command->add_flag("--require-agreement", flags->require_agreement,
                     "Exit with 1 if a prediction is false or biased, or a limit cycle is missed");
 }

@@ -55,7 +55,7 @@ int exit_code(const RemedyReport& report) {
 int run(RemedyFlags flags) {
   const std::string fixed = flags.apply.empty() ? "" : std::exchange(flags.output, {});
   if (!flags.apply.empty() && fixed.empty()) throw refusal("--apply " + flags.apply, "needs -o FILE for the case");
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
   const Case from = load_case(flags);
   need_loop(from);
   RemedyWishes wishes{flags.only, weights_of(flags.weights), static_cast<std::size_t>(flags.samples)};
@@ -78,7 +78,7 @@ int run(RemedyFlags flags) {
   }
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
-  std::string text = remedy_text(from.title, report, units);
+  Document text = remedy_document(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, remedy_page(report, made, from.text, units));
     text += page_line(flags.html);
@@ -91,7 +91,7 @@ int run(RemedyFlags flags) {
     } catch (const NoAnswer& none) {  // what was computed is shown nevertheless
       refused = none.what();
     }
-  output.text(first_line(flags, report.status) + text);
+  output.text(first_line(flags, report.status), text);
   if (output.wants_json()) output.json(remedy_json(made, report));
   if (output.wants_csv()) output.csv(remedy_csv(report));
   output.finish();

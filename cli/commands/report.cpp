@@ -85,8 +85,9 @@ int run(ReportFlags flags) {
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
   output.file(page, report_page(in_units(report, units), made, from.text, units, flags_text(flags)));
-  output.text(first_line(flags, report.predict.status) +
-              predict_text(from.title, in_units(report.predict, units), units) + page_line(page));
+  Document text = predict_document(from.title, in_units(report.predict, units), units);
+  text += page_line(page);
+  output.text(first_line(flags, report.predict.status), text);
   const std::string document = predict_json(made, report.predict);
   if (output.wants_json()) output.json(document);
   if (output.wants_csv()) output.csv(predict_csv(report.predict));

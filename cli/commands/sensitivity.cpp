@@ -43,7 +43,7 @@ SensitivityReport compute(const Case& from, SensitivityFlags& flags, Status& sta
 }
 
 int run(SensitivityFlags flags) {
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
   for (const double factor : flags.wishes.factors)
     if (!std::isfinite(factor) || factor == 0.0) throw std::invalid_argument("--factors must be finite and not 0");
   const Case from = load_case(flags);
@@ -58,12 +58,12 @@ int run(SensitivityFlags flags) {
   made.isa = to_string(instruction_set(flags));
   const Units units = units_of(from, largest_swing(report));
   const SensitivityReport shown = in_units(report, units);
-  std::string text = sensitivity_text(from.title, shown, units);
+  Document text = sensitivity_document(from.title, shown, units);
   if (!flags.html.empty()) {
     output.file(flags.html, sensitivity_page(shown, made, from.text, units, flags_of(flags.wishes, flags.seed)));
     text += page_line(flags.html);
   }
-  output.text(first_line(flags, status) + text);
+  output.text(first_line(flags, status), text);
   if (output.wants_json()) output.json(sensitivity_json(made, report, status));
   if (output.wants_csv()) output.csv(sensitivity_csv(report));
   output.finish();

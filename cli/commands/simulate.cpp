@@ -34,9 +34,9 @@ int run(SimulateFlags flags) {
   Output output(flags, &from);
   const auto [result, second, energy] = compute(from, flags);
   const Units units = units_of(from, largest_swing(result));
-  std::string text = simulate_text(from.title, in_units(result, units), second, energy, units);
+  Document text = simulate_document(from.title, in_units(result, units), second, energy, units);
   if (!output.wants_csv() && !output.wants_json()) text += "\nThe samples: --csv FILE, --csv - or -o FILE.\n";
-  output.text(first_line(flags, result.status) + text);
+  output.text(first_line(flags, result.status), text);
   if (output.wants_json()) output.json(simulate_json(provenance(flags, &from), result, second, energy));
   if (output.wants_csv()) output.csv(simulate_csv(result));
   output.finish();

@@ -33,6 +33,7 @@ int show_status(const CommonFlags& flags, const std::string& file) {
 
 void add_status(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
+  flags->has_tables = false;
   const auto file = std::make_shared<std::string>();
   auto* command =
       add_command(program, action, "status", "Progress and results so far of a sweep with a store, also while it runs",

@@ -110,6 +110,7 @@ int run(SynthesizeFlags flags) {
 
 void add_synthesize(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<SynthesizeFlags>();
+  flags->has_tables = false;
   CLI::App* command = add_command(program, action, "synthesize",
                                   "Write the records of a rig with the case's friction law, to test `identify`", true,
                                   flags, [flags] { return run(*flags); });

@@ -69,14 +69,14 @@ std::string tuned_case(const Case& from, const TuneReport& report) {
 int run(TuneFlags flags) {
   const std::string tuned = flags.apply ? std::exchange(flags.output, {}) : "";
   if (flags.apply && tuned.empty()) throw refusal("--apply", "needs -o FILE for the case");
-  if (flags.html.empty() && flags.output.ends_with(".html")) flags.html = std::exchange(flags.output, {});
-  if (flags.picture.empty() && flags.output.ends_with(".svg")) flags.picture = std::exchange(flags.output, {});
+  take_page(flags, flags.html);
+  take_picture(flags, flags.picture);
   const Case from = load_case(flags);
   const TuneWishes wishes = wishes_of(flags);
   tune_numbers(from, wishes);  // reports errors before anything is computed
   Output output(flags, &from);
   output.check_file("--html", flags.html);
-  output.check_file("--svg", flags.picture);
+  output.check_picture("--svg", flags.picture);
   output.check_case_file(tuned, from);
 
   TuneReport report;
@@ -86,12 +86,12 @@ int run(TuneFlags flags) {
   }
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));
-  std::string text = tune_text(from.title, report, units);
+  Document text = tune_document(from.title, report, units);
   if (!flags.html.empty()) {
     output.file(flags.html, tune_page(report, made, from.text, units, flags_of(wishes, flags.seed)));
     text += page_line(flags.html);
   }
-  if (!flags.picture.empty()) output.file(flags.picture, tune_picture(report, units));
+  if (!flags.picture.empty()) output.picture(flags.picture, tune_picture(report, units));
   std::string refused;
   if (!tuned.empty() && report.status != Status::interrupted) try {
       output.file(tuned, tuned_case(from, report));
@@ -99,7 +99,7 @@ int run(TuneFlags flags) {
     } catch (const NoAnswer& none) {  // what was computed is shown nevertheless
       refused = none.what();
     }
-  output.text(first_line(flags, report.status) + text);
+  output.text(first_line(flags, report.status), text);
   if (output.wants_json()) output.json(tune_json(made, report));
   if (output.wants_csv()) output.csv(tune_csv(report));
   output.finish();
@@ -145,7 +145,7 @@ void add_tune(CLI::App& program, Action& action) {
   command->add_flag("--apply", flags->apply, "Write the case with the numbers that were found to the file of -o");
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
-  command->add_option("--svg", flags->picture, "Write the map of the search to FILE (so does -o FILE.svg)")
+  command->add_option("--svg", flags->picture, "Write the map of the search to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
 }
 

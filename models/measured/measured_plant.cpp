@@ -23,6 +23,15 @@ std::shared_ptr<const MeasuredResponse> MeasuredPlant::measured() const {
 }
 
 std::optional<BrokenRule> MeasuredPlant::validate() const {
+  const bool rows = points.size() > 0;
+  if (file.empty() && !rows && !data)
+    return BrokenRule{"file", "is required: a CSV file of the data, or their rows as points"};
+  if (!file.empty() && rows) return BrokenRule{"points", "stands beside `file`: leave one of them out"};
+  if (rows && !columns.empty()) return BrokenRule{"columns", "belongs to a file: order the numbers of each row"};
+  if (rows && points.cols() != (uncertainty.index > 0 ? 4 : 3))
+    return BrokenRule{"points", uncertainty.index > 0
+                                    ? "must have 4 numbers a row, the last its uncertainty"
+                                    : "must have 3 numbers a row: frequency, and two of the response"};
   if (order != std::floor(order)) return BrokenRule{"order", "must be a whole number"};
   if (gain == 0.0) return BrokenRule{"gain", "must not be zero"};
   if (uncertainty.index == 2 && averages < 1.0)
@@ -36,7 +45,7 @@ std::optional<BrokenRule> MeasuredPlant::validate() const {
   try {
     measured();
   } catch (const std::invalid_argument& refused) {
-    return BrokenRule{"file", refused.what()};
+    return BrokenRule{rows ? "points" : "file", refused.what()};
   }
   return std::nullopt;
 }

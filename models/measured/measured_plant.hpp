@@ -12,11 +12,12 @@ struct PlantModel;
 /// A plant known by its measured frequency response from u (force) to y (position), friction acting as a negative u. In
 /// the frequency domain the data are used as they are, in time a stable fit of them: see MeasuredResponse.
 struct MeasuredPlant {
-  std::string file;
+  std::string file{};
+  Eigen::MatrixXd points{};  ///< in the place of the file: its rows
   Choice frequency{}, format{}, poles_at_zero{}, relative_degree{}, uncertainty{};
   double order{0.0}, delay{0.0}, gain{1.0}, averages{0.0};
   std::vector<double> columns{};
-  std::shared_ptr<const FrequencyData> data{};         ///< of `file`, read by whoever makes the plant
+  std::shared_ptr<const FrequencyData> data{};         ///< of `file` or `points`, read by whoever makes the plant
   std::shared_ptr<const MeasuredResponse> response{};  ///< made for the parameters by measured()
 
   static constexpr std::string_view kind = "frf";
@@ -28,7 +29,8 @@ struct MeasuredPlant {
   static constexpr std::string_view uncertainties[] = {"none", "standard-deviation", "coherence"};
   static std::vector<Parameter<MeasuredPlant, double>> parameters() {
     using P = MeasuredPlant;
-    return {{"file", "1", "CSV file of the data, beside the case", &P::file},
+    return {{"file", "1", "CSV file of the data, beside the case", &P::file, any_number, false},
+            {"points", "1", "rows of the data in the place of the file", &P::points, any_number, false},
             {"frequency", "1", "unit of its first column", &P::frequency, any_number, true, "", frequencies},
             {"format", "1", "of the two columns after it", &P::format, any_number, true, "", formats},
             {"order", "1", "of the fit, 1 to 40; 0: chosen", &P::order, {0.0, most_fitted_order}, false},

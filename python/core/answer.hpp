@@ -22,6 +22,7 @@ struct Array {
 /// The result of a question, from which each document is made when it is asked for.
 struct Answer {
   std::function<std::string()> json, csv, text;
+  std::function<std::string()> latex;                    ///< the tables of the text
   std::function<std::string()> picture;                  ///< SVG; empty: the question has none
   std::function<std::string()> page;                     ///< HTML; empty likewise
   std::function<std::map<std::string, Array>()> arrays;  ///< beside the document; empty: none

@@ -24,6 +24,7 @@
 #include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/csv.hpp"
 #include "limcycle/reports/dissipativity/dissipativity.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/figures/picture.hpp"
 #include "limcycle/reports/html.hpp"
 #include "limcycle/reports/identify/identify.hpp"
@@ -80,22 +81,25 @@ Report shown(const Report& report, const Units& units) {
     return report;
 }
 
-/// json(provenance, report), csv(report), text(title, report, units) or text(title, report).
+/// json(provenance, report), csv(report), text(title, report, units) or text(title, report), a Document.
 template <class Report, class Json, class Csv, class Text>
 Answer documents(const Sheet& sheet, const std::shared_ptr<const Report>& report, Json json, Csv csv, Text text) {
   Answer answer;
   answer.json = [=] { return json(sheet.made, *report); };
   answer.csv = [=] { return csv(*report); };
-  answer.text = [=] {
-    std::string words = sheet.first;
+  const auto in_words = [=] {
+    Document words(sheet.first);
     if constexpr (std::is_invocable_v<Text, std::string, Report, Units>) {
       const Units units = units_of_sheet(sheet, *report);
       words += text(sheet.from->title, shown(*report, units), units);
     } else {
       words += text(sheet.from->title, *report);
     }
-    return printable(words + sheet.last);
+    words += sheet.last;
+    return words;
   };
+  answer.text = [=] { return printable(in_words().text()); };
+  answer.latex = [=] { return in_words().latex("limcycle " + sheet.made.version + ": " + sheet.from->title); };
   return answer;
 }
 
@@ -210,7 +214,7 @@ Answer predict_answer(const Question& question) {
   const auto report = computed([&] { return ask_predict(*question.from, question.asking, false); });
   Sheet sheet = sheet_of(question, report->status);
   sheet.last.clear();  // the notes say it
-  Answer answer = documents(sheet, report, predict_json, predict_csv, predict_text);
+  Answer answer = documents(sheet, report, predict_json, predict_csv, predict_document);
   const auto with_curves = std::make_shared<ReportWithCurves>(question.from, report);
   answer.picture = [=] { return drawn(sheet, with_curves->get(), predict_picture)(); };
   answer.page = [=] { return paged(sheet, with_curves->get(), predict_page)(); };
@@ -228,7 +232,7 @@ Answer df_answer(const Question& question) {
   Answer answer = documents(
       sheet, results, [=](const auto& made, const auto& all) { return df_json(made, from->df->points(), all); },
       [=](const auto& all) { return df_csv(from->df->points(), all); },
-      [=](const std::string& title, const auto& all) { return df_text(title, from->df->points(), all); });
+      [=](const std::string& title, const auto& all) { return df_document(title, from->df->points(), all); });
   answer.arrays = [=] { return df_arrays(*from->df, *results); };
   return answer;
 }
@@ -243,7 +247,7 @@ Answer simulate_answer(const Question& question, bool check, bool audit) {
       [](const auto& all) { return simulate_csv(all.run); },
       [=](const std::string& title, const SimulateAnswer& all) {
         const Units units = units_of_sheet(sheet, all.run);
-        return simulate_text(title, in_units(all.run, units), all.second, all.energy, units);
+        return simulate_document(title, in_units(all.run, units), all.second, all.energy, units);
       });
   answer.columns = answered->run.columns;
   answer.arrays = [=] { return std::map<std::string, Array>{{"rows", rows_of(answered->run)}}; };
@@ -256,7 +260,7 @@ Answer continue_answer(const Question& question, const std::string& path, double
     return ContinueReport{path, number.unit, ask_continue(*question.from, number, low, high, question.asking)};
   });
   const Sheet sheet = sheet_of(question, report->found.status);
-  Answer answer = documents(sheet, report, continue_json, continue_csv, continue_text);
+  Answer answer = documents(sheet, report, continue_json, continue_csv, continue_document);
   answer.picture = drawn(sheet, report, continue_picture);
   answer.page = paged(sheet, report, continue_page);
   return answer;
@@ -267,7 +271,7 @@ Answer margin_answer(const Question& question, const std::vector<std::string>& p
   const MarginWishes wishes{paths, toward, factor};
   const auto report = computed([&] { return ask_margin(*question.from, wishes, question.asking); });
   const Sheet sheet = sheet_of(question, report->status);
-  Answer answer = documents(sheet, report, margin_json, margin_csv, margin_text);
+  Answer answer = documents(sheet, report, margin_json, margin_csv, margin_document);
   answer.page = paged(sheet, report, margin_page);
   return answer;
 }
@@ -284,7 +288,8 @@ Answer map_answer(const Question& question, const MapAxis& x, const MapAxis& y, 
   });
   const Sheet sheet = sheet_of(question, ended);
   Answer answer = documents(
-      sheet, report, [=](const auto& made, const auto& all) { return map_json(made, all, ended); }, map_csv, map_text);
+      sheet, report, [=](const auto& made, const auto& all) { return map_json(made, all, ended); }, map_csv,
+      map_document);
   answer.picture = drawn(sheet, report, map_picture);
   answer.page = paged(sheet, report, map_page, flags_of(report->map, !methods.empty(), starts));
   answer.arrays = [=] { return map_arrays(report->map); };
@@ -302,7 +307,7 @@ Answer sensitivity_answer(const Question& question, const SensitivityWishes& wis
   sheet.made.isa = to_string(question.asking.isa);
   Answer answer = documents(
       sheet, report, [=](const auto& made, const auto& all) { return sensitivity_json(made, all, ended); },
-      sensitivity_csv, sensitivity_text);
+      sensitivity_csv, sensitivity_document);
   answer.page = paged(sheet, report, sensitivity_page, flags_of(wishes, question.asking.seed));
   return answer;
 }
@@ -310,7 +315,7 @@ Answer sensitivity_answer(const Question& question, const SensitivityWishes& wis
 Answer dissipativity_answer(const Question& question, const DissipativityWishes& wishes) {
   const auto report = computed([&] { return ask_dissipativity(*question.from, wishes, question.asking); });
   const Sheet sheet = sheet_of(question, report->status);
-  Answer answer = documents(sheet, report, dissipativity_json, dissipativity_csv, dissipativity_text);
+  Answer answer = documents(sheet, report, dissipativity_json, dissipativity_csv, dissipativity_document);
   answer.page = [=] { return dissipativity_page(*report, sheet.made, sheet.case_text(), flags_of(wishes)); };
   return answer;
 }
@@ -319,7 +324,7 @@ Answer remedy_answer(const Question& question, const RemedyWishes& wishes) {
   chosen_remedies(*question.from, "only", wishes.only);  // reports errors before anything is computed
   const auto report = computed([&] { return ask_remedy(*question.from, wishes, question.asking); });
   const Sheet sheet = sheet_of(question, report->status);
-  Answer answer = documents(sheet, report, remedy_json, remedy_csv, remedy_text);
+  Answer answer = documents(sheet, report, remedy_json, remedy_csv, remedy_document);
   answer.page = paged(sheet, report, remedy_page);
   answer.applied = [=](const std::string& name) {
     auto overrides = sheet.from->overrides;
@@ -333,7 +338,7 @@ Answer tune_answer(const Question& question, const TuneWishes& wishes) {
   tune_numbers(*question.from, wishes);  // reports errors before anything is computed
   const auto report = computed([&] { return ask_tune(*question.from, wishes, question.asking); });
   const Sheet sheet = sheet_of(question, report->status);
-  Answer answer = documents(sheet, report, tune_json, tune_csv, tune_text);
+  Answer answer = documents(sheet, report, tune_json, tune_csv, tune_document);
   answer.picture = drawn(sheet, report, tune_picture);
   answer.page = paged(sheet, report, tune_page, flags_of(wishes, question.asking.seed));
   answer.applied = [=](const std::string&) {
@@ -347,7 +352,7 @@ Answer tune_answer(const Question& question, const TuneWishes& wishes) {
 Answer identify_answer(const Question& question) {
   const auto report = computed([&] { return ask_identify(*question.from, question.asking); });
   const Sheet sheet = sheet_of(question, report->status);
-  Answer answer = documents(sheet, report, identify_json, identify_csv, identify_text);
+  Answer answer = documents(sheet, report, identify_json, identify_csv, identify_document);
   answer.picture = [=] { return identify_picture(*report); };
   answer.applied = [=](const std::string&) {
     return read_case(fitted_text(*sheet.from, *report, sheet.from->file), sheet.from->file);

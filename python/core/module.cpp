@@ -12,6 +12,7 @@
 #include "limcycle/questions/answer_of.hpp"
 #include "limcycle/questions/provenance_of.hpp"
 #include "limcycle/reports/case_files/laws.hpp"
+#include "limcycle/reports/export/hdf5.hpp"
 
 namespace limcycle::python {
 namespace {
@@ -119,6 +120,7 @@ void define_cases(py::module_& module) {
 }
 
 void define_work(py::module_& module) {
+  module.def("hdf5", [](const std::string& json) { return py::bytes(hdf5_document(json)); });
   py::class_<Work>(module, "Work")
       .def(py::init([](std::uint64_t seed, int threads, const std::string& isa, double limit, py::object progress) {
         return Work{seed, threads, isa_of(isa), limit, std::move(progress)};
@@ -127,6 +129,7 @@ void define_work(py::module_& module) {
       .def("json", [](const Answer& answer) { return document(answer.json); })
       .def("csv", [](const Answer& answer) { return document(answer.csv); })
       .def("text", [](const Answer& answer) { return document(answer.text); })
+      .def("latex", [](const Answer& answer) { return document(answer.latex); })
       .def("picture", [](const Answer& answer) { return document(answer.picture); })
       .def("page", [](const Answer& answer) { return document(answer.page); })
       .def("arrays", &numpy_arrays)

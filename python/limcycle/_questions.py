@@ -7,6 +7,7 @@ import math
 from typing import Any, Callable, Mapping, Optional, Sequence, Tuple, TypeVar, Union
 
 from . import _core, _results
+from ._bar import Bar
 from ._checks import number, stretch, whole, word, words
 from ._errors import CaseError
 from ._loop import Loop, changed
@@ -16,7 +17,7 @@ from ._toml import plain
 from .laws import Law
 
 Question = TypeVar("Question", bound=Callable[..., Any])
-Progress = Optional[Callable[[float, str], None]]
+Progress = Union[None, bool, Callable[[float, str], None]]
 Side = Union[Tuple[str, float, float, int], Tuple[str, float, float, int, str]]
 
 _PATH = 'a path such as "loop.controller.kd"'
@@ -25,7 +26,7 @@ _COMMON = {
     "threads": "`threads`: 0 is one a core; results do not depend on it.",
     "isa": '`isa`: instruction set of the kernels; "auto" is the widest of this machine.',
     "time_limit": '`time_limit`: seconds after which the work ends and keeps its results, with the status "time-limit".',
-    "progress": "`progress(fraction, what)` is called while it works.",
+    "progress": "`progress(fraction, what)` is called while it works; True shows a bar of tqdm.",
 }
 
 
@@ -65,8 +66,10 @@ def _work(time_limit: Optional[float], progress: Progress, *, seed: int = 0, thr
     limit = 0.0
     if time_limit is not None:
         limit = number("time_limit", time_limit, "> 0 s, or None", lambda s: 0.0 < s < math.inf)
+    if isinstance(progress, bool):
+        progress = Bar() if progress else None
     if progress is not None and not callable(progress):
-        raise CaseError("progress", repr(progress), "must be a function of the fraction done and the activity")
+        raise CaseError("progress", repr(progress), "must be a function of the fraction done and the activity, or True")
     return _core.Work(whole("seed", seed, 0, 2**64 - 1), whole("threads", threads, 0, 1024),
                       word("isa", isa, "the name of an instruction set"), limit, progress)
 

@@ -132,6 +132,9 @@ class _Kept:
     def text(self) -> str:
         return str(self._documents["text"])
 
+    def latex(self) -> str:
+        return str(self._documents["latex"])
+
     def picture(self) -> Optional[str]:
         picture: Optional[str] = self._documents["picture"]
         return picture
@@ -200,9 +203,11 @@ class Result(Record):
         return table(records, columns, digits)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes the document that the ending of `path` names: .json, .csv, .html, .svg or .txt, or the figure of plot()
-        as .pdf, .pgf or .png."""
-        makers: Dict[str, Callable[[], Optional[str]]] = {".json": self.to_json, ".csv": self.to_csv}
+        """Writes the document that the ending of `path` names: .json, .h5 (the same as HDF5), .csv, .html, .svg, .txt or
+        .tex (its tables), or the figure of plot() as .pdf, .pgf or .png."""
+        makers: Dict[str, Callable[[], Union[str, bytes, None]]] = {
+            ".json": self.to_json, ".h5": lambda: _core.hdf5(self.to_json()), ".csv": self.to_csv,
+            ".tex": self._answer.latex}
         if self._answer.has_page:
             makers[".html"] = self.to_html
         if self._answer.has_picture:
@@ -215,9 +220,9 @@ class Result(Record):
         if ending not in makers:
             raise ValueError(f"{type(self).__name__} is saved as {', '.join([*makers, *_FIGURES])}, "
                              f"not {ending or 'a file without ending'}")
-        document = makers[ending]()
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(document or "")
+        document = makers[ending]() or ""
+        with open(path, "wb") as file:
+            file.write(document if isinstance(document, bytes) else document.encode())
 
     def _save_figure(self, path: Union[str, "os.PathLike[str]"]) -> None:
         from . import _plots
@@ -232,7 +237,7 @@ class Result(Record):
     def __reduce__(self) -> Any:
         made = self._answer
         return _revived, (type(self), {"json": made.json(), "csv": made.csv(), "text": made.text(),
-                                       "picture": made.picture(), "arrays": self._arrays(), "columns": made.columns})
+                                       "latex": made.latex(), "picture": made.picture(), "arrays": self._arrays(), "columns": made.columns})
 
     def __str__(self) -> str:
         return self._answer.text()

@@ -10,7 +10,8 @@ from ._toml import plain
 
 
 def table_of(system: Any, path: str) -> Any:
-    """`system`: a dictionary, (num, den), (A, B, C, D), (zeros, poles, gain), or a system of python-control or SciPy."""
+    """`system`: a dictionary, (num, den), (A, B, C, D), (zeros, poles, gain), or a system of python-control
+    (a frequency response too) or SciPy."""
     if system is None or isinstance(system, Mapping) or hasattr(system, "to_table"):
         return system
     if isinstance(system, (tuple, list)):
@@ -22,8 +23,7 @@ def table_of(system: Any, path: str) -> Any:
             return _state_space(system[0], system[1], system[2], system[3], path)
         raise CaseError(path, "", f"must be (num, den), (zeros, poles, gain) or (A, B, C, D), found {len(system)} parts")
     if hasattr(system, "frdata") or hasattr(system, "fresp"):
-        raise CaseError(path, type(system).__name__, "is a frequency response without a model",
-                        'write its points to a CSV file and give {"kind": "frf", "file": ...}')
+        return _frequency_response(system, path)
     if getattr(system, "dt", None) not in (None, 0, 0.0, False):
         raise CaseError(path, f"{type(system).__name__}(dt={system.dt})", "must be a continuous-time system",
                         "a sampled controller is a continuous one with the key sample_time")
@@ -34,6 +34,20 @@ def table_of(system: Any, path: str) -> Any:
     if hasattr(system, "zeros") and hasattr(system, "gain") and not callable(system.zeros):
         return _zpk(system.zeros, system.poles, system.gain)
     raise CaseError(path, "", f"must be a dictionary or a linear system, found a {type(system).__name__}")
+
+
+def _frequency_response(system: Any, path: str) -> Dict[str, Any]:
+    """Of an FRD object: its points, which the case then holds."""
+    response = plain(system.frdata if hasattr(system, "frdata") else system.fresp)
+    omega = _numbers(system.omega)
+    while isinstance(response, (list, tuple)) and len(response) == 1 and isinstance(response[0], (list, tuple)):
+        response = response[0]
+    if not isinstance(response, (list, tuple)) or any(isinstance(one, (list, tuple)) for one in response):
+        raise CaseError(path, "", "must have one input and one output")
+    if len(response) != len(omega):
+        raise CaseError(path, f"{len(response)} values at {len(omega)} frequencies", "must have a value at each frequency")
+    points = [[w, complex(one).real, complex(one).imag] for w, one in zip(omega, response)]
+    return {"kind": "frf", "frequency": "rad/s", "format": "re-im", "points": points}
 
 
 def element_of(nonlinearity: Any, path: str) -> Any:

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "limcycle/analysis/study/adequacy/adequate.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
@@ -21,6 +22,8 @@ Table rule_table(const AdequateReport& report);
 Table adequate_table(const AdequateReport& report, const Units& units);
 
 std::string adequate_text(const std::string& title, const AdequateReport& report, const Units& units);
+Document adequate_document(const std::string& title, const AdequateReport& report,
+                           const Units& units);  ///< the same, with its tables
 
 std::string adequate_json(const Provenance& provenance, const AdequateReport& report);
 

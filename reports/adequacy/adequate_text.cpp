@@ -133,10 +133,10 @@ Table adequate_table(const AdequateReport& report, const Units& units) {
   return table;
 }
 
-std::string adequate_text(const std::string& title, const AdequateReport& report, const Units& units) {
-  std::string out = wrapped(title) + "\n" + wrapped(adequate_answer(report, units));
+Document adequate_document(const std::string& title, const AdequateReport& report, const Units& units) {
+  Document out(wrapped(title) + "\n" + wrapped(adequate_answer(report, units)));
   if (!report.points.empty()) {
-    out += "\nError of period and amplitude by law and method, or the other verdict\n" + ladder_table(report).text();
+    out.add("Error of period and amplitude by law and method, or the other verdict", ladder_table(report));
     out += wrapped(
         "DF: describing function, comp. DF: with mass and friction as one element, HB: harmonic balance; none: no "
         "cycle found, -: no answer. Worst: by shooting, over the spread of the parameters; only for laws that are "
@@ -152,7 +152,7 @@ std::string adequate_text(const std::string& title, const AdequateReport& report
         costs.rows.back().push_back(point ? as_duration(point->answer.seconds) : "-");
       }
     }
-    out += "\nCPU time of an answer\n" + costs.text();
+    out.add("CPU time of an answer", costs);
   }
   out += "\nParameters of each law\n";
   for (const auto& law : report.laws) out += item(law.name, 20, law.rule);
@@ -164,6 +164,10 @@ std::string adequate_text(const std::string& title, const AdequateReport& report
   out += notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;
+}
+
+std::string adequate_text(const std::string& title, const AdequateReport& report, const Units& units) {
+  return adequate_document(title, report, units).text();
 }
 
 }  // namespace limcycle

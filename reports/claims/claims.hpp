@@ -4,6 +4,7 @@
 
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/claims/run_claims.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 
@@ -24,6 +25,7 @@ std::string_view in_words(Evidence evidence);
 /// For a terminal: the answer, the table, and in words the claims that did not hold; all of each claim with `verbose`
 /// or if there is one only.
 std::string claims_text(const std::vector<TestedClaim>& tested, bool verbose);
+Document claims_document(const std::vector<TestedClaim>& tested, bool verbose);  ///< the same, with its tables
 
 /// Ids and statements of claims that were not tested, for a terminal.
 std::string claims_list(const std::vector<Claim>& claims);

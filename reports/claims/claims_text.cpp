@@ -137,9 +137,12 @@ Table checks_table(const ClaimResult& result) {
   return table;
 }
 
-std::string claims_text(const std::vector<TestedClaim>& tested, bool verbose) {
-  std::string out = wrapped(claims_answer(tested));
-  if (tested.size() > 1) out += "\n" + claims_table(tested).text();
+Document claims_document(const std::vector<TestedClaim>& tested, bool verbose) {
+  Document out(wrapped(claims_answer(tested)));
+  if (tested.size() > 1) {
+    out += "\n";
+    out.add_untitled("Claims", claims_table(tested));
+  }
   if (verbose || tested.size() == 1) {
     for (const auto& one : tested) out += "\n" + one_in_full(one);
     return out;
@@ -147,7 +150,12 @@ std::string claims_text(const std::vector<TestedClaim>& tested, bool verbose) {
   std::string words;
   for (const auto& one : tested)
     if (!one.as_expected() || one.result.verdict != ClaimVerdict::holds) words += "\n" + in_short(one);
-  return out + (words.empty() ? "" : "\nThose that do not hold, or not as expected\n" + words);
+  if (!words.empty()) out += "\nThose that do not hold, or not as expected\n" + words;
+  return out;
+}
+
+std::string claims_text(const std::vector<TestedClaim>& tested, bool verbose) {
+  return claims_document(tested, verbose).text();
 }
 
 std::string claims_list(const std::vector<Claim>& claims) {

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "limcycle/analysis/study/continuation/follow.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
@@ -20,6 +21,8 @@ std::string continue_answer(const ContinueReport& report, const Units& units);
 
 /// For a terminal: the answer, the events with their sentences, up to `longest_branch_table` points of each branch.
 std::string continue_text(const std::string& title, const ContinueReport& report, const Units& units);
+Document continue_document(const std::string& title, const ContinueReport& report,
+                           const Units& units);  ///< the same, with its tables
 inline constexpr std::size_t longest_branch_table = 25;
 
 /// JSON document of `continue`; with several branches `branch` has the points of all, distinguished by the key `part`.

@@ -116,9 +116,9 @@ std::string continue_answer(const ContinueReport& report, const Units&) {
   return out;
 }
 
-std::string continue_text(const std::string& title, const ContinueReport& report, const Units& units) {
-  std::string out = wrapped(title) + "\n" + wrapped(continue_answer(report, units));
-  if (!report.found.branches.empty()) out += "\nEvents\n" + event_table(report, units).text();
+Document continue_document(const std::string& title, const ContinueReport& report, const Units& units) {
+  Document out(wrapped(title) + "\n" + wrapped(continue_answer(report, units)));
+  if (!report.found.branches.empty()) out.add("Events", event_table(report, units));
   std::size_t number = 0;
   for (const auto& branch : report.found.branches)
     for (const auto& event : branch.events)
@@ -128,12 +128,17 @@ std::string continue_text(const std::string& title, const ContinueReport& report
     out += report.found.branches.size() == 1 ? "\nBranch\n" : fmt::format("\nBranch {}\n", number - 1);
     if (branch.points.size() > longest_branch_table)
       out += fmt::format("(some of {} points; --csv FILE writes all)\n", branch.points.size());
-    out += branch_table(branch, report, units).text();
+    out.add_untitled(report.found.branches.size() == 1 ? "Branch" : fmt::format("Branch {}", number - 1),
+                     branch_table(branch, report, units));
   }
   out += notes_text(report.found.notes);
   if (report.found.status != Status::converged && report.found.status != Status::no_cycle)
     out += fmt::format("\nStatus: {}\n", to_string(report.found.status));
   return out;
+}
+
+std::string continue_text(const std::string& title, const ContinueReport& report, const Units& units) {
+  return continue_document(title, report, units).text();
 }
 
 }  // namespace limcycle

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "limcycle/analysis/study/continuation/margin.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
@@ -14,6 +15,8 @@ std::string margin_answer(const MarginReport& report, const Units& units);
 
 /// For a terminal: the answer, a table of plant and controller, one of friction, the sentences on their details.
 std::string margin_text(const std::string& title, const MarginReport& report, const Units& units);
+Document margin_document(const std::string& title, const MarginReport& report,
+                         const Units& units);  ///< the same, with its tables
 
 std::string margin_json(const Provenance& provenance, const MarginReport& report);
 

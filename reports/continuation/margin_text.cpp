@@ -129,19 +129,23 @@ std::string margin_answer(const MarginReport& report, const Units& units) {
   return out + of_balance(report);
 }
 
-std::string margin_text(const std::string& title, const MarginReport& report, const Units& units) {
-  std::string out = wrapped(title) + "\n" + wrapped(margin_answer(report, units));
+Document margin_document(const std::string& title, const MarginReport& report, const Units& units) {
+  Document out(wrapped(title) + "\n" + wrapped(margin_answer(report, units)));
   for (const bool friction : {false, true}) {
     const Table table = margin_table(report, friction);
     if (table.rows.empty()) continue;
-    out += fmt::format("\n{}: where hunting {}\n", friction ? "Friction" : "Plant and controller",
-                       report.hunts ? "ends" : "begins") +
-           table.text();
+    out.add(fmt::format("{}: where hunting {}", friction ? "Friction" : "Plant and controller",
+                        report.hunts ? "ends" : "begins"),
+            table);
     for (const auto& sentence : margin_reasons(report, friction)) out += wrapped(sentence, 80, 2);
   }
   out += notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;
+}
+
+std::string margin_text(const std::string& title, const MarginReport& report, const Units& units) {
+  return margin_document(title, report, units).text();
 }
 
 }  // namespace limcycle

@@ -4,6 +4,7 @@
 
 #include "limcycle/analysis/study/dissipativity.hpp"
 #include "limcycle/analysis/study/experiments/experiment.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 
@@ -14,6 +15,8 @@ std::string dissipativity_answer(const DissipativityReport& report);
 
 /// For a terminal: the answer, bounds, passivity with the counter-example, and conclusions from energy for the loop.
 std::string dissipativity_text(const std::string& title, const DissipativityReport& report);
+Document dissipativity_document(const std::string& title,
+                                const DissipativityReport& report);  ///< the same, with its tables
 
 std::string dissipativity_json(const Provenance& provenance, const DissipativityReport& report);
 

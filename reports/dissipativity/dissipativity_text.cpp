@@ -189,13 +189,14 @@ std::string sliding_text(const DissipativityReport& report) {
 
 }  // namespace
 
-std::string dissipativity_text(const std::string& title, const DissipativityReport& report) {
-  std::string text = wrapped(title) + "\n" + wrapped(dissipativity_answer(report));
-  if (report.over_all) text += "\nBounds\n" + bound_table(report).text();
+Document dissipativity_document(const std::string& title, const DissipativityReport& report) {
+  Document text(wrapped(title) + "\n" + wrapped(dissipativity_answer(report)));
+  if (report.over_all) text.add("Bounds", bound_table(report));
   text += "\nPassivity\n";
   for (const auto& fact : passivity_facts(report)) text += item(fact[0], 10, fact[1]);
   if (const auto& found = report.passivity.counterexample) {
-    text += "\nCounter-example\n" + wrapped(sentence(found->words)) + counterexample_table(*found).text();
+    text += "\nCounter-example\n" + wrapped(sentence(found->words));
+    text.add_untitled("Counter-example", counterexample_table(*found));
     text += item("taken out", 10,
                  joules(found->energy) + " a cycle; by an independent simulation " + joules(found->confirmed));
     if (!found->taken.empty())
@@ -211,7 +212,12 @@ std::string dissipativity_text(const std::string& title, const DissipativityRepo
     text += "\nLoop\n" + questions;
     text += stuck_text(report.loop->stuck) + sliding_text(report);
   }
-  return text + notes_text(report.notes);
+  text += notes_text(report.notes);
+  return text;
+}
+
+std::string dissipativity_text(const std::string& title, const DissipativityReport& report) {
+  return dissipativity_document(title, report).text();
 }
 
 }  // namespace limcycle

@@ -4,6 +4,7 @@
 
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/experiments/experiment.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 
@@ -16,6 +17,7 @@ std::string experiment_list_json(const Provenance& provenance, const std::vector
 /// For a terminal: the procedure, a finding for each law, the numbers (of a single experiment, up to
 /// `longest_experiment_table` rows), the outcome of the documents' claims.
 std::string experiment_text(const std::vector<Experiment>& experiments);
+Document experiment_document(const std::vector<Experiment>& experiments);  ///< the same, with its tables
 inline constexpr std::size_t longest_experiment_table = 100;
 
 /// JSON document of `experiment`: numbers, findings, claims, and the curves as drawn. `ended`: status of the work.

@@ -29,14 +29,14 @@ std::string section(const std::string& heading, const std::string& body) {
   return body.empty() ? "" : "\n" + heading + "\n" + body;
 }
 
-std::string one_text(const Experiment& one, bool with_numbers) {
-  std::string out = wrapped(one.name + ": " + one.title);
+Document one_document(const Experiment& one, bool with_numbers) {
+  Document out(wrapped(one.name + ": " + one.title));
   out += wrapped("After: " + one.document + ".") + wrapped("Input: " + one.input + ".");
   out += section("Findings", findings(one));
-  if (with_numbers && !one.rows.empty())
-    out += one.rows.size() <= longest_experiment_table
-               ? section("Numbers", experiment_table(one).text())
-               : fmt::format("\n{} rows of numbers: --csv FILE, --json FILE or -o FILE.html\n", one.rows.size());
+  if (with_numbers && !one.rows.empty() && one.rows.size() <= longest_experiment_table)
+    out.add("Numbers", experiment_table(one));
+  else if (with_numbers && !one.rows.empty())
+    out += fmt::format("\n{} rows of numbers: --csv FILE, --json FILE or -o FILE.html\n", one.rows.size());
   out += section("Claims of the documents", claims(one));
   out += notes_text(one.notes);
   if (one.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(one.status));
@@ -69,11 +69,18 @@ std::string claims_in_words(const std::vector<Experiment>& experiments) {
   return out + ".";
 }
 
-std::string experiment_text(const std::vector<Experiment>& experiments) {
-  std::string out;
-  for (const auto& one : experiments) out += (out.empty() ? "" : "\n\n") + one_text(one, experiments.size() == 1);
+Document experiment_document(const std::vector<Experiment>& experiments) {
+  Document out;
+  for (const auto& one : experiments) {
+    if (&one != &experiments.front()) out += "\n\n";
+    out += one_document(one, experiments.size() == 1);
+  }
   if (const std::string words = claims_in_words(experiments); !words.empty()) out += "\n" + wrapped(words);
   return out;
+}
+
+std::string experiment_text(const std::vector<Experiment>& experiments) {
+  return experiment_document(experiments).text();
 }
 
 Table experiment_table(const Experiment& one) {

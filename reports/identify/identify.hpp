@@ -2,6 +2,7 @@
 #include <string>
 
 #include "limcycle/analysis/study/identify/identify.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace limcycle {
@@ -9,6 +10,7 @@ namespace limcycle {
 /// For a terminal: the answer, the ranking of the laws, the numbers of the chosen one with their intervals, what the
 /// records do not determine, how each record is fitted.
 std::string identify_text(const std::string& title, const IdentifyReport& report);
+Document identify_document(const std::string& title, const IdentifyReport& report);  ///< the same, with its tables
 
 /// Numbers are named by their path, "loop.friction.Fs". The value of one that is not identifiable is null.
 std::string identify_json(const Provenance& provenance, const IdentifyReport& report);

@@ -193,16 +193,20 @@ const IdentifiedLaw* shown_law(const IdentifyReport& report) {
   return found == report.laws.end() ? nullptr : &*found;
 }
 
-std::string identify_text(const std::string& title, const IdentifyReport& report) {
-  std::string out = wrapped(title) + "\n" + wrapped(answer_text(report));
-  if (report.laws.size() > 1) out += "\nLaws\n" + ranking(report).text();
+Document identify_document(const std::string& title, const IdentifyReport& report) {
+  Document out(wrapped(title) + "\n" + wrapped(answer_text(report)));
+  if (report.laws.size() > 1) out.add("Laws", ranking(report));
   if (const IdentifiedLaw* law = shown_law(report)) {
-    out += fmt::format("\nNumbers of {}\n", law->law.kind()) + number_table(*law).text();
-    out += "\nRecords\n" + record_table(report, *law).text();
+    out.add(fmt::format("Numbers of {}", law->law.kind()), number_table(*law));
+    out.add("Records", record_table(report, *law));
     out += details(report, *law);
   }
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;
+}
+
+std::string identify_text(const std::string& title, const IdentifyReport& report) {
+  return identify_document(title, report).text();
 }
 
 }  // namespace limcycle

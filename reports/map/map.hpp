@@ -3,6 +3,7 @@
 
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/map/hunting_map.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
@@ -20,6 +21,7 @@ std::string map_answer(const MapReport& report);
 
 /// For a terminal: the answer, the map in letters, two tables.
 std::string map_text(const std::string& title, const MapReport& report);
+Document map_document(const std::string& title, const MapReport& report);  ///< the same, with its tables
 
 /// JSON document of `map`; points that were not computed are null. `ended`: status of the work.
 std::string map_json(const Provenance& provenance, const MapReport& report, Status ended = Status::converged);

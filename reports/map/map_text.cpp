@@ -123,16 +123,19 @@ Table worth_table(const MapReport& report) {
   return table;
 }
 
-std::string map_text(const std::string& title, const MapReport& report) {
+Document map_document(const std::string& title, const MapReport& report) {
   const HuntingMap& map = report.map;
-  std::string out = wrapped(title) + "\n" + wrapped(map_answer(report)) + "\n";
+  Document out(wrapped(title) + "\n" + wrapped(map_answer(report)) + "\n");
   if (map.known() < map.size())
     out += wrapped(fmt::format("{} of {} points are computed.", map.known(), map.size())) + "\n";
   out += wrapped("x: " + side(map.x, report.x_unit)) + wrapped("y: " + side(map.y, report.y_unit)) + "\n";
   if (map.known() == 0) return out;
-  out += letters(map) + "\n" + happens_table(report).text();
-  if (!map.methods.empty()) out += "\nReliability of each method\n" + worth_table(report).text();
+  out += letters(map) + "\n";
+  out.add_untitled("What happens", happens_table(report));
+  if (!map.methods.empty()) out.add("Reliability of each method", worth_table(report));
   return out;
 }
+
+std::string map_text(const std::string& title, const MapReport& report) { return map_document(title, report).text(); }
 
 }  // namespace limcycle

@@ -66,10 +66,14 @@ std::string origin(const HtmlPage& page) {
                                        from.threads == 1 ? "" : "s", from.isa));
   if (!from.file.empty()) out += entry("case file", from.file) + entry("its SHA-256", from.sha256);
   for (const MeasuredPlantAt& plant : from.measured)
-    out += entry("measured plant", basis_in_words(plant)) + entry("SHA-256 of its data", plant.response->data().sha256);
+    out += entry("measured plant", basis_in_words(plant)) +
+           (plant.response->data().sha256.empty() ? "" : entry("SHA-256 of its data", plant.response->data().sha256));
   for (const CurveFile& curve : from.curves)
     out += entry("friction curve", fmt::format("{}: {} points of {}", curve.path, curve.points, curve.file)) +
            entry("SHA-256 of its data", curve.sha256);
+  for (const MatrixFile& one : from.matrices)
+    out += entry("matrices", fmt::format("{}: {} of {}", one.path, fmt::join(one.variables, ", "), one.file)) +
+           entry("SHA-256 of its data", one.sha256);
   out += "</dl>\n";
   if (page.case_text.empty()) return out;
   return out + "<details open><summary>Case file</summary>\n<pre>" + html_escaped(page.case_text) +

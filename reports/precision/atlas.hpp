@@ -2,6 +2,7 @@
 #include <string>
 
 #include "limcycle/analysis/study/precision/stepper_atlas.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 
@@ -15,6 +16,7 @@ std::string atlas_answer(const StepperAtlas& atlas);
 Table atlas_table(const StepperAtlas& atlas, const std::string& law);
 
 std::string atlas_text(const std::string& title, const StepperAtlas& atlas);
+Document atlas_document(const std::string& title, const StepperAtlas& atlas);  ///< the same, with its tables
 std::string atlas_json(const Provenance& provenance, const StepperAtlas& atlas);
 /// One row a run.
 std::string atlas_csv(const StepperAtlas& atlas);

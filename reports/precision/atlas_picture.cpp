@@ -28,7 +28,8 @@ constexpr std::array<Look, 9> looks{{{RunClass::right, "#2e9e5b", ""},
 
 const Look& look_of(RunClass kind) { return *std::ranges::find(looks, kind, &Look::kind); }
 
-constexpr double square_width = 17.0, square_height = 13.0, stepper_width = 150.0, width = 760.0, outer_margin = 10.0;
+constexpr double square_width = 17.0, square_height = 13.0, stepper_width = 150.0, atlas_width = 760.0,
+                 outer_margin = 10.0;
 constexpr std::string_view atlas_style =
     "text{font:11px system-ui,sans-serif;fill:#59636e}.title{font-size:14px;font-weight:600}.law{font-size:13px;"
     "font-weight:600}.cell{fill:#fff;text-anchor:middle;font-weight:600}.dark{fill:#1f2328}rect{stroke:#8b949e;"
@@ -101,7 +102,7 @@ Drawn law_panels(const StepperAtlas& atlas, const std::string& law, double top) 
     std::ranges::copy_if(own, std::back_inserter(points), [&](const auto* point) { return point->stepper == stepper; });
     const auto rows = distinct<double>(points, [](const AtlasPoint& point) { return point.setting; }).size();
     const double height = 40.0 + square_height * static_cast<double>(rows);
-    if (left + stepper_width > width) {
+    if (left + stepper_width > atlas_width) {
       left = outer_margin;
       drawn.bottom += row_height;
       row_height = 0.0;
@@ -147,7 +148,7 @@ std::string atlas_picture(const StepperAtlas& atlas) {
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
              "height=\"{1:.0f}\" role=\"img\" aria-label=\"{2}\">\n<style>{3}</style>\n",
-             width, top, html_escaped(atlas_answer(atlas)), atlas_style) +
+             atlas_width, top, html_escaped(atlas_answer(atlas)), atlas_style) +
          body + "</svg>\n";
 }
 

@@ -106,8 +106,8 @@ Table atlas_table(const StepperAtlas& atlas, const std::string& law) {
   return table;
 }
 
-std::string atlas_text(const std::string& title, const StepperAtlas& atlas) {
-  std::string out = wrapped(title) + "\n" + wrapped(atlas_answer(atlas));
+Document atlas_document(const std::string& title, const StepperAtlas& atlas) {
+  Document out(wrapped(title) + "\n" + wrapped(atlas_answer(atlas)));
   out += wrapped(fmt::format(
       "Right: the period within {} (a motion that comes to rest: y within {} of its range); each run begins on the "
       "verified motion. Tables: the largest tolerance, or step in s, from which on all that were answered are right "
@@ -115,9 +115,10 @@ std::string atlas_text(const std::string& title, const StepperAtlas& atlas) {
       power(atlas_right), power(atlas_right)));
   for (const auto& law : laws_of(atlas)) {
     const Table table = atlas_table(atlas, law);
-    if (!table.rows.empty())
-      out += fmt::format("\n{}, by stiffness before sliding\n{}", law, table.text(100)) +
-             wrapped(counts(atlas, law) + ".", 80, 2);
+    if (!table.rows.empty()) {
+      out.add(fmt::format("{}, by stiffness before sliding", law), table, 100);
+      out += wrapped(counts(atlas, law) + ".", 80, 2);
+    }
     for (const auto& one : atlas.references)
       if (one.law == law)
         out += wrapped(fmt::format("{} {}: {}.", law, column_name(one.stiffness),
@@ -126,6 +127,10 @@ std::string atlas_text(const std::string& title, const StepperAtlas& atlas) {
   }
   if (atlas.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(atlas.status));
   return out;
+}
+
+std::string atlas_text(const std::string& title, const StepperAtlas& atlas) {
+  return atlas_document(title, atlas).text();
 }
 
 }  // namespace limcycle

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "limcycle/analysis/study/precision/precision.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
@@ -34,6 +35,8 @@ Table point_table(const WorkChart& chart);
 Table stiffness_table(const StiffnessStudy& study);
 
 std::string precision_text(const std::string& title, const PrecisionReport& report, const Units& units);
+Document precision_document(const std::string& title, const PrecisionReport& report,
+                            const Units& units);  ///< the same, with its tables
 
 std::string precision_json(const Provenance& provenance, const PrecisionReport& report);
 

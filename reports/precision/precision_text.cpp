@@ -65,12 +65,14 @@ std::string reasons(const WorkChart& chart) {
   return out;
 }
 
-std::string chart_text(const WorkChart& chart) {
-  std::string out = "\n" + question_in_words(chart) + "\n" + wrapped(reference_in_words(chart), 80, 2);
+Document chart_document(const WorkChart& chart) {
+  Document out("\n" + question_in_words(chart) + "\n" + wrapped(reference_in_words(chart), 80, 2));
   if (chart.points.empty()) return out;
   if (chart.question == "cycle") out += wrapped(conditions(), 80, 2);
   out += "  CPU time of each method for a given error, its least error, its failures:\n";
-  return out + method_table(chart).text() + reasons(chart);
+  out.add_untitled("CPU time of each method for a given error", method_table(chart));
+  out += reasons(chart);
+  return out;
 }
 
 }  // namespace
@@ -191,21 +193,25 @@ Table stiffness_table(const StiffnessStudy& study) {
   return table;
 }
 
-std::string precision_text(const std::string& title, const PrecisionReport& report, const Units& units) {
-  std::string out = wrapped(title) + "\n" + wrapped(precision_answer(report));
+Document precision_document(const std::string& title, const PrecisionReport& report, const Units& units) {
+  Document out(wrapped(title) + "\n" + wrapped(precision_answer(report)));
   if (report.cycle)
     out += wrapped(fmt::format("The cycle: period {} s, amplitude {}.",
                                with_error(report.cycle->cycle.period, report.cycle->error),
                                Units::attach(with_error(report.cycle->cycle.amplitude, report.cycle->error), units.y)));
   for (const auto* chart : {&report.cycle_chart, &report.df_chart})
-    if (*chart) out += chart_text(**chart);
+    if (*chart) out += chart_document(**chart);
   if (!report.stiffness.points.empty()) {
-    out += "\nStiffness limit of each stepper: CPU time, or the failure\n" + stiffness_table(report.stiffness).text();
+    out.add("Stiffness limit of each stepper: CPU time, or the failure", stiffness_table(report.stiffness));
     for (const auto& note : report.stiffness.notes) out += wrapped(note + ".", 80, 2);
   }
   out += notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;
+}
+
+std::string precision_text(const std::string& title, const PrecisionReport& report, const Units& units) {
+  return precision_document(title, report, units).text();
 }
 
 }  // namespace limcycle

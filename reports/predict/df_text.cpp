@@ -73,13 +73,16 @@ std::string summary(const std::vector<DfPoint>& points, const std::vector<Descri
 
 }  // namespace
 
-std::string df_text(const std::string& title, const std::vector<DfPoint>& points,
-                    const std::vector<DescribingFunction>& results) {
+Document df_document(const std::string& title, const std::vector<DfPoint>& points,
+                     const std::vector<DescribingFunction>& results) {
   if (results.size() > points.size()) throw std::invalid_argument("more describing functions than points");
-  std::string out = wrapped(title) + "\n";
-  out += results.empty()                  ? "No point was computed.\n"
-         : results.size() > longest_table ? summary(points, results)
-                                          : df_table(points, results).text();
+  Document out(wrapped(title) + "\n");
+  if (results.empty())
+    out += "No point was computed.\n";
+  else if (results.size() > longest_table)
+    out += summary(points, results);
+  else
+    out.add_untitled("Describing function", df_table(points, results));
   std::map<std::string_view, std::size_t> methods, problems;
   double worst = -1.0;
   for (const auto& result : results) {
@@ -97,6 +100,11 @@ std::string df_text(const std::string& title, const std::vector<DfPoint>& points
                        : status == "undefined" ? undefined_text
                                                : status);
   return out;
+}
+
+std::string df_text(const std::string& title, const std::vector<DfPoint>& points,
+                    const std::vector<DescribingFunction>& results) {
+  return df_document(title, points, results).text();
 }
 
 }  // namespace limcycle

@@ -105,21 +105,33 @@ std::string agreement_in_words(const Agreement& second) {
   return out + ".";
 }
 
-std::string simulate_text(const std::string& title, const Simulation& run, const std::optional<Agreement>& second,
-                          const std::optional<EnergyBalance>& energy, const Units& units) {
-  std::string out = wrapped(title) + "\n";
+Document simulate_document(const std::string& title, const Simulation& run, const std::optional<Agreement>& second,
+                           const std::optional<EnergyBalance>& energy, const Units& units) {
+  Document out(wrapped(title) + "\n");
   out += fmt::format("{} samples, {} steps of {}", run.rows.size(), run.steps, run.stepper);
   out += run.status == Status::converged ? ".\n" : fmt::format("; ended early: {}.\n", to_string(run.status));
   if (!run.why.empty()) out += wrapped(run.why);
   if (const auto outcome = outcome_in_words(run, units); !outcome.empty()) out += wrapped(outcome);
   if (second) out += wrapped(agreement_in_words(*second));
-  if (energy) out += wrapped(energy_in_words(*energy)) + "\n" + energy_table(*energy).text();
-  if (!run.rows.empty()) out += "\n" + ranges(run, units).text();
+  if (energy) {
+    out += wrapped(energy_in_words(*energy)) + "\n";
+    out.add_untitled("Energy", energy_table(*energy));
+  }
+  if (!run.rows.empty()) {
+    out += "\n";
+    out.add_untitled("Ranges", ranges(run, units));
+  }
   std::map<std::string, std::size_t> kinds;
   for (const auto& event : run.events) ++kinds[event.what];
   if (!kinds.empty()) out += "\nLocated events\n";
   for (const auto& [what, n] : kinds) out += fmt::format("{:>8}  {}\n", n, what);
-  return out + notes_text(run.notes);
+  out += notes_text(run.notes);
+  return out;
+}
+
+std::string simulate_text(const std::string& title, const Simulation& run, const std::optional<Agreement>& second,
+                          const std::optional<EnergyBalance>& energy, const Units& units) {
+  return simulate_document(title, run, second, energy, units).text();
 }
 
 }  // namespace limcycle

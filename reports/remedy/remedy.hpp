@@ -2,6 +2,7 @@
 #include <string>
 
 #include "limcycle/analysis/study/remedy/remedy.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
@@ -14,6 +15,8 @@ std::string remedy_answer(const RemedyReport& report, const Units& units);
 
 /// For a terminal: the answer, the remedies that end hunting with their costs, the others with the reason.
 std::string remedy_text(const std::string& title, const RemedyReport& report, const Units& units);
+Document remedy_document(const std::string& title, const RemedyReport& report,
+                         const Units& units);  ///< the same, with its tables
 
 std::string remedy_json(const Provenance& provenance, const RemedyReport& report);
 

@@ -99,21 +99,25 @@ std::string remedy_answer(const RemedyReport& report, const Units& units) {
   return out + in_words(*first, units) + " (" + first->candidate.name + ").";
 }
 
-std::string remedy_text(const std::string& title, const RemedyReport& report, const Units& units) {
-  std::string out = wrapped(title) + "\n" + wrapped(remedy_answer(report, units));
+Document remedy_document(const std::string& title, const RemedyReport& report, const Units& units) {
+  Document out(wrapped(title) + "\n" + wrapped(remedy_answer(report, units)));
   const Table table = remedy_table(report, units);
   if (!table.rows.empty()) {
-    out += "\nWhat ends it\n" + table.text() +
-           wrapped(
-               "*: no other remedy is at least as good in every cost and better in one. Each value is the one "
-               "nearest to the present at which the loop does not hunt, confirmed by simulations on both sides of the "
-               "edge: choose a value well beyond it.");
-    out += "\nWhat it costs there\n" + remedy_cost_table(report, units).text();
+    out.add("What ends it", table);
+    out += wrapped(
+        "*: no other remedy is at least as good in every cost and better in one. Each value is the one "
+        "nearest to the present at which the loop does not hunt, confirmed by simulations on both sides of the "
+        "edge: choose a value well beyond it.");
+    out.add("What it costs there", remedy_cost_table(report, units));
     out += wrapped(cost_legend(report.step, units));
   }
   out += without_cure(report) + notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;
+}
+
+std::string remedy_text(const std::string& title, const RemedyReport& report, const Units& units) {
+  return remedy_document(title, report, units).text();
 }
 
 }  // namespace limcycle

@@ -3,6 +3,7 @@
 
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/sensitivity/sensitivity.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
@@ -14,6 +15,8 @@ std::string sensitivity_answer(const SensitivityReport& report);
 
 /// For a terminal: the answer and the tables below.
 std::string sensitivity_text(const std::string& title, const SensitivityReport& report, const Units& units);
+Document sensitivity_document(const std::string& title, const SensitivityReport& report,
+                              const Units& units);  ///< the same, with its tables
 
 /// JSON document of `sensitivity`. `ended`: status of the work.
 std::string sensitivity_json(const Provenance& provenance, const SensitivityReport& report,

@@ -172,24 +172,27 @@ std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
   return notes;
 }
 
-std::string sensitivity_text(const std::string& title, const SensitivityReport& report, const Units& units) {
-  std::string out = wrapped(title) + "\n" + wrapped(sensitivity_answer(report));
+Document sensitivity_document(const std::string& title, const SensitivityReport& report, const Units& units) {
+  Document out(wrapped(title) + "\n" + wrapped(sensitivity_answer(report)));
   if (report.cycle && !report.local.empty())
-    out += "\nDerivatives of the cycle (exact, at the values of the case)\n" + derivative_table(report, units).text();
+    out.add("Derivatives of the cycle (exact, at the values of the case)", derivative_table(report, units));
   if (report.cycle && !report.local.empty())
-    out += "\nFirst harmonic and offset of the cycle\n" + harmonic_table(report, units).text();
+    out.add("First harmonic and offset of the cycle", harmonic_table(report, units));
   for (std::size_t k = 0; k < report.predicted.size(); ++k) {
     const auto& predicted = report.predicted[k];
     out += "\n" + predicted_heading(report, k) + "\n" + wrapped(predicted_sentence(predicted, units));
-    if (const Table table = predicted_table(predicted, units); !table.rows.empty()) out += table.text();
-    if (const Table table = gain_table(predicted, units); !table.rows.empty())
-      out += "Its gain N, at this amplitude and frequency\n" + table.text();
+    if (const Table table = predicted_table(predicted, units); !table.rows.empty())
+      out.add_untitled(predicted_heading(report, k), table);
+    if (const Table table = gain_table(predicted, units); !table.rows.empty()) {
+      out += "Its gain N, at this amplitude and frequency\n";
+      out.add_untitled("Its gain N, at this amplitude and frequency", table);
+    }
   }
   for (const auto& threshold : report.thresholds) {
     out += "\nThreshold\n" + wrapped(threshold_sentence(threshold));
-    if (const Table table = threshold_table(threshold); !table.rows.empty()) out += table.text();
+    if (const Table table = threshold_table(threshold); !table.rows.empty()) out.add_untitled("Threshold", table);
   }
-  if (!report.one_at_a_time.empty()) out += "\nOne at a time\n" + change_table(report, units).text();
+  if (!report.one_at_a_time.empty()) out.add("One at a time", change_table(report, units));
   if (report.global)
     for (const auto& output : report.global->outputs) {
       out += fmt::format("\nOutput \"{}\": no answer from {} of the loops\n", output.output,
@@ -198,13 +201,18 @@ std::string sensitivity_text(const std::string& title, const SensitivityReport& 
         out += wrapped(same_everywhere(output));
         continue;
       }
-      out += "\nMorris: mean effect of the whole range\n" + morris_table(report, output).text();
-      out += "\nSobol indices: shares of the variance\n" + sobol_table(report, output).text();
+      out.add("Morris: mean effect of the whole range", morris_table(report, output));
+      out.add("Sobol indices: shares of the variance", sobol_table(report, output));
       std::vector<std::string> notes = output.sobol.notes;
       notes.insert(notes.end(), output.morris.notes.begin(), output.morris.notes.end());
       out += notes_text(notes);
     }
-  return out + notes_text(sensitivity_notes(report));
+  out += notes_text(sensitivity_notes(report));
+  return out;
+}
+
+std::string sensitivity_text(const std::string& title, const SensitivityReport& report, const Units& units) {
+  return sensitivity_document(title, report, units).text();
 }
 
 }  // namespace limcycle

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "limcycle/analysis/study/tune/tune.hpp"
+#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 #include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
@@ -15,6 +16,8 @@ std::string tune_answer(const TuneReport& report, const Units& units);
 
 /// For a terminal: the answer, the numbers, the costs before and after, the searches, the points by outcome.
 std::string tune_text(const std::string& title, const TuneReport& report, const Units& units);
+Document tune_document(const std::string& title, const TuneReport& report,
+                       const Units& units);  ///< the same, with its tables
 
 std::string tune_json(const Provenance& provenance, const TuneReport& report);
 

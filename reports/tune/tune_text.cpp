@@ -248,26 +248,31 @@ std::string tune_answer(const TuneReport& report, const Units& units) {
          as_it_stands(report, units) + edges_in_words(report) + agreement_in_words(report, units);
 }
 
-std::string tune_text(const std::string& title, const TuneReport& report, const Units& units) {
-  std::string out = wrapped(title) + "\n" + wrapped(tune_answer(report, units));
-  out += "\nThe numbers\n" + tune_number_table(report).text();
+Document tune_document(const std::string& title, const TuneReport& report, const Units& units) {
+  Document out(wrapped(title) + "\n" + wrapped(tune_answer(report, units)));
+  out.add("The numbers", tune_number_table(report));
   if (report.best) {
-    out += "\nWhat the loop costs\n" + tune_cost_table(report, units).text() + wrapped(cost_legend(report.step, units));
+    out.add("What the loop costs", tune_cost_table(report, units));
+    out += wrapped(cost_legend(report.step, units));
     if (report.minimised == TuneCost::ise)
       out +=
           wrapped(fmt::format("The squared error is integrated over {} s after that step.", shortest(report.horizon)));
   }
-  if (!report.searches.empty())
-    out +=
-        "\nThe local searches\n" + tune_search_table(report, units).text() +
-        wrapped(
-            "from, to: cost where a search begins and ends; judged: points that were asked whether they hunt; refuted: "
-            "its end did not stand the second judgement");
-  out += "\nThe points\n" + tune_outcome_table(report).text() +
-         wrapped("not judged: allowed as far as it is known, but at a cost no better than that of others");
+  if (!report.searches.empty()) {
+    out.add("The local searches", tune_search_table(report, units));
+    out += wrapped(
+        "from, to: cost where a search begins and ends; judged: points that were asked whether they hunt; refuted: "
+        "its end did not stand the second judgement");
+  }
+  out.add("The points", tune_outcome_table(report));
+  out += wrapped("not judged: allowed as far as it is known, but at a cost no better than that of others");
   out += notes_text(report.notes);
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));
   return out;
+}
+
+std::string tune_text(const std::string& title, const TuneReport& report, const Units& units) {
+  return tune_document(title, report, units).text();
 }
 
 }  // namespace limcycle

@@ -168,7 +168,7 @@ TEST_CASE("laws: the JSON document holds the parameter tables") {
   CHECK(document.at("schema") == "limcycle/1");
   CHECK(document.at("command") == "laws");
   CHECK(document.at("case") ==
-        Json::parse(R"({"title": null, "file": null, "sha256": null, "measured": [], "curves": []})"));
+        Json::parse(R"({"title": null, "file": null, "sha256": null, "measured": [], "curves": [], "matrices": []})"));
   CHECK(document.at("laws").size() == limcycle::catalogue().size());
   const Json lugre = Json::parse(run({"laws", "lugre", "--json", "-"}).out).at("laws").at(0);
   CHECK(lugre.at("states") == 1);

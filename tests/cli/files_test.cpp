@@ -48,15 +48,45 @@ TEST_CASE("files: a name that promises another document than is written is refus
   const Scratch scratch;
   const std::string servo = shipped("pid-lugre.toml");
   for (const char* command : {"check", "predict", "report", "simulate", "remedy", "df"})
-    for (const char* name : {"x.pdf", "x.tex", "x.png"}) {
+    for (const char* name : {"x.eps", "x.png"}) {
       check_refused_with(run({command, servo, "-o", scratch.file(name)}),
                          "no command writes ." + std::string(name + 2));
       CHECK_FALSE(std::filesystem::exists(scratch.file(name)));
     }
   check_refused_with(run({"margin", servo, "-o", scratch.file("x.svg")}), "this command writes no .svg");
   check_refused_with(run({"check", servo, "-o", scratch.file("x.html")}), "this command writes no .html");
-  check_refused_with(run({"laws", "-o", scratch.file("x.pdf")}), "no command writes .pdf");
+  check_refused_with(run({"laws", "-o", scratch.file("x.pdf")}), "this command writes no .pdf");
+  check_refused_with(run({"check", servo, "-o", scratch.file("x.tex")}), "this command writes no .tex");
+  check_refused_with(run({"check", servo, "--tex", scratch.file("x.tex")}), "unknown option '--tex'");
+  check_refused_with(run({"claims", "--list", "--tex", scratch.file("x.tex")}), "this question has no tables");
+  check_refused_with(run({"check", servo, "--hdf5", "-"}), "HDF5 goes to a file");
+  check_refused_with(run({"check", servo, "--json", scratch.file("x"), "--hdf5", scratch.file("x")}), "goes already");
   CHECK(run({"check", servo, "-o", scratch.file("x.txt")}).code == 0);
+}
+
+TEST_CASE("files: HDF5 and tables of LaTeX, by a flag or by the ending of -o") {
+  const Scratch scratch;
+  const auto df = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> words{"df",    shipped("df-lugre.toml"),  "--set", "df.amplitude=[1e-5, 1e-3]",
+                                   "--set", "df.frequency=[1.0, 10.0]"};
+    words.insert(words.end(), flags.begin(), flags.end());
+    return run(words).code;
+  };
+  CHECK(df({"--hdf5", scratch.file("a.h5"), "--tex", scratch.file("a.tex")}) == 0);
+  CHECK(df({"-o", scratch.file("b.h5")}) == 0);
+  CHECK(df({"-o", scratch.file("b.tex")}) == 0);
+  CHECK(scratch.get("a.h5").substr(0, 8) == "\x89HDF\r\n\x1a\n");
+  CHECK(scratch.get("a.h5") == scratch.get("b.h5"));
+  CHECK_THAT(scratch.get("a.tex"), Contains("\\begin{tabular}") && Contains("df-lugre.toml"));
+  CHECK(scratch.get("a.tex") == scratch.get("b.tex"));
+}
+
+TEST_CASE("files: PDF is refused at once where nothing makes it") {
+  const Scratch scratch;
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", scratch.file("no-programs").c_str(), 1);
+  check_refused_with(run({"check", shipped("pid-lugre.toml"), "-o", scratch.file("x.pdf")}), "install librsvg2-bin");
+  setenv("PATH", path.c_str(), 1);
 }
 
 TEST_CASE("files: a name that is empty is refused") {

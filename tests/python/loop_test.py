@@ -175,11 +175,24 @@ class SystemsOfOthers(unittest.TestCase):
         with self.assertRaisesRegex(limcycle.CaseError, "linear system"):
             relay_loop(plant=3.0)
 
-    def test_a_measured_response_goes_into_a_file(self):
+    def test_a_measured_response_is_a_measured_plant(self):
         class FrequencyResponseData:  # as in python-control
-            fresp, omega, dt = np.ones((1, 1, 3)), np.array([1.0, 2.0, 3.0]), None
+            omega, dt = np.logspace(-1, 2, 80), None
 
-        self.assertRaisesRegex(limcycle.CaseError, 'loop.plant.*CSV.*"frf"', relay_loop, plant=FrequencyResponseData())
+            def __init__(self, shape):
+                self.fresp = (1.0 / (1j * self.omega + 1.0) ** 3).reshape(shape)
+
+        measured = limcycle.predict(relay_loop(plant=FrequencyResponseData((1, 1, 80))))
+        known = limcycle.predict(relay_loop(plant=([1.0], [1.0, 3.0, 3.0, 1.0])))
+        self.assertAlmostEqual(measured.predictions[0].frequency / known.predictions[0].frequency, 1.0, delta=1e-4)
+        self.assertAlmostEqual(measured.cycles[0].period / known.cycles[0].period, 1.0, delta=1e-4)
+        self.assertEqual(measured.case.measured[0].points, 80)
+        with self.assertRaisesRegex(limcycle.CaseError, "one input and one output"):
+            relay_loop(plant=FrequencyResponseData((2, 1, 40)))
+        short = FrequencyResponseData((80,))
+        short.fresp = short.fresp[:70]
+        with self.assertRaisesRegex(limcycle.CaseError, "70 values at 80 frequencies.*a value at each"):
+            relay_loop(plant=short)
 
     def test_delay(self):
         loop = relay_loop(plant=([1.0], [1.0, 1.0]), delay=0.5)

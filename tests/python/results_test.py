@@ -146,14 +146,18 @@ class Documents(unittest.TestCase):
     def test_saved_files(self):
         result = limcycle.predict(relay_loop())
         with tempfile.TemporaryDirectory() as folder:
-            for ending, begin in ((".json", "{"), (".csv", "kind,"), (".html", "<!"), (".svg", "<svg"), (".txt", "Loop")):
+            for ending, begin in ((".json", "{"), (".csv", "kind,"), (".html", "<!"), (".svg", "<svg"), (".txt", "Loop"),
+                                  (".tex", "% limcycle")):
                 path = os.path.join(folder, "result" + ending)
                 result.save(path)
                 with open(path, encoding="utf-8") as file:
                     self.assertTrue(file.read().startswith(begin), ending)
-            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.html, \.svg, \.txt, \.pdf, \.pgf, \.png, not \.tex"):
-                result.save(os.path.join(folder, "result.tex"))
-            with self.assertRaisesRegex(ValueError, r"\.json, \.csv, \.txt, \.pdf, \.pgf, \.png, not \.svg"):
+            result.save(os.path.join(folder, "result.h5"))
+            with open(os.path.join(folder, "result.h5"), "rb") as file:
+                self.assertEqual(file.read(8), b"\x89HDF\r\n\x1a\n")
+            with self.assertRaisesRegex(ValueError, r"\.json, \.h5, \.csv, .*\.svg, \.txt, \.pdf, \.pgf, \.png, not \.doc"):
+                result.save(os.path.join(folder, "result.doc"))
+            with self.assertRaisesRegex(ValueError, r"\.json, \.h5, \.csv, \.tex, \.txt, \.pdf, \.pgf, \.png, not \.svg"):
                 limcycle.df(limcycle.laws.relay(level=1.0), 1.0, 1.0).save(os.path.join(folder, "table.svg"))
 
     def test_tables_of_latex(self):

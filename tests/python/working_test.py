@@ -1,6 +1,7 @@
 """While it works: interrupts, threads, progress, time limits, memory."""
 
 import gc
+import io
 import os
 import resource
 import signal
@@ -9,6 +10,7 @@ import sys
 import threading
 import time
 import unittest
+import unittest.mock
 
 import limcycle
 import numpy as np
@@ -57,6 +59,17 @@ class WhileItWorks(unittest.TestCase):
         limcycle.predict(servo(), progress=lambda fraction, what: seen.append((fraction, what)))
         self.assertEqual(seen[-1], (1.0, "done"))
         self.assertTrue(all(0.0 <= fraction <= 1.0 and what for fraction, what in seen))
+
+    def test_a_bar_of_tqdm(self):
+        with unittest.mock.patch("sys.stderr", new=io.StringIO()) as shown:
+            limcycle.map(limcycle.load(case("pid-lugre")), ("loop.controller.kp", 1.0, 5.0, 2),
+                         ("loop.controller.ki", 0.0, 4.0, 2), progress=True)
+            gc.collect()
+        self.assertIn("%|", shown.getvalue())
+        with unittest.mock.patch.dict(sys.modules, {"tqdm.auto": None}):
+            with self.assertRaisesRegex(limcycle.CaseError, "progress.*tqdm"):
+                limcycle.predict(servo(), progress=True)
+        limcycle.predict(servo(), progress=False)
 
     def test_an_exception_of_progress_ends_it(self):
         def refuse(fraction, what):

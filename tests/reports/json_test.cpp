@@ -42,7 +42,8 @@ TEST_CASE("every document says what it is and where it comes from") {
                                          {"file", "case.toml"},
                                          {"sha256", std::string(64, '0')},
                                          {"measured", OrderedJson::array()},
-                                         {"curves", OrderedJson::array()}}));
+                                         {"curves", OrderedJson::array()},
+                                         {"matrices", OrderedJson::array()}}));
   CHECK(document["provenance"]["version"] == "1.2.3");
   CHECK(document["provenance"]["seed"] == 18446744073709551615U);
   for (const char* key : {"commit", "isa", "threads"}) CHECK(document["provenance"].contains(key));

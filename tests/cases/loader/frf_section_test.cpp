@@ -106,7 +106,7 @@ TEST_CASE("frf: every key is checked for its type and range, and those that are 
   CHECK_THAT(folder.refusal("format = \"re-im\""), Contains("loop.plant.frequency: is required"));
   CHECK_THAT(folder.refusal(required + "ordr = 2"), Contains("unknown key") && Contains("did you mean order?"));
   for (const auto& row : MeasuredPlant::parameters()) {
-    if (row.required) continue;
+    if (row.required || row.key == "file") continue;
     INFO(row.key);
     const std::string key(row.key);
     CHECK_THAT(folder.refusal(required + key + " = 1979-05-27"),
@@ -176,4 +176,33 @@ TEST_CASE("frf: bad data are refused with file and row") {
   CHECK_THAT(limcycle::test::message("[loop.plant]\nkind = \"frf\"\nfile = \"no.csv\"\nfrequency = \"Hz\"\nformat = "
                                      "\"re-im\"\n[loop.friction]\nkind = \"coulomb\"\nFc = 1\n"),
              Contains("loop.plant.file = \"no.csv\": no such file: "));
+}
+
+TEST_CASE("frf: rows in the case in the place of a file", "[frf]") {
+  const FrfFolder folder;
+  folder.write(rows([](double w, Complex G) { return fmt::format("{},{},{}", w, G.real(), G.imag()); }));
+  const auto of_file = measured_plants(*folder.read("frequency = \"rad/s\"\nformat = \"re-im\"").loop)[0].response;
+  const std::string list =
+      rows([](double w, Complex G) { return fmt::format("[{}, {}, {}],", w, G.real(), G.imag()); });
+  const auto with_plant = [](const std::string& keys) {
+    return "[loop.plant]\nkind = \"frf\"\nfrequency = \"rad/s\"\nformat = \"re-im\"\n" + keys +
+           "\n[loop.controller]\nkind = \"pid\"\nkp = 3.0\nkd = 6.0\n"
+           "[loop.friction]\nkind = \"coulomb\"\nFc = 1.0\n";
+  };
+  const Case from = read_case(with_plant("points = [" + list + "]"), "a.toml");
+  const auto of_points = measured_plants(*from.loop)[0].response;
+  CHECK(of_points->data().frequency == of_file->data().frequency);
+  CHECK(of_points->data().response == of_file->data().response);
+  CHECK(of_points->fit_in_words() == of_file->fit_in_words());
+  CHECK_THAT(basis_in_words(measured_plants(*from.loop)[0]), Contains("in the case"));
+  CHECK(data_of(from).empty());
+
+  const auto refused = [&](const std::string& keys) { return limcycle::test::message(with_plant(keys)); };
+  CHECK_THAT(refused(""), Contains("loop.plant.file") && Contains("or their rows as points"));
+  CHECK_THAT(refused("file = \"d.csv\"\npoints = [[1.0, 1.0, 0.0]]"), Contains("stands beside `file`"));
+  CHECK_THAT(refused("points = [[1.0, 1.0]]"), Contains("must have 3 numbers a row"));
+  CHECK_THAT(refused("columns = [1, 2, 3]\npoints = [[1.0, 1.0, 0.0]]"), Contains("loop.plant.columns"));
+  CHECK_THAT(
+      refused("points = [[1.0, 1.0, 0.0], [0.5, 1.0, 0.0]]"),
+      Contains("a.toml:5: loop.plant.points[1]") && Contains("must be more than the frequency of the row before"));
 }

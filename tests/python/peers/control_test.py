@@ -22,12 +22,17 @@ class Systems(unittest.TestCase):
             loop = limcycle.Loop(plant=system, element=limcycle.laws.relay(level=1.0), search=SEARCH)
             self.assertAlmostEqual(limcycle.predict(loop).cycles[0].frequency, np.pi / 1.8398753422, delta=1e-6)
 
+    def test_a_frequency_response_is_a_measured_plant(self):
+        plant = control.tf([1.0], [1.0, 3.0, 3.0, 1.0])
+        omega = np.logspace(-1, 2, 200)
+        relay = limcycle.laws.relay(level=1.0)
+        exact, measured = predictions(plant, relay), predictions(control.frd(plant, omega), relay)
+        np.testing.assert_allclose(measured, exact, rtol=1e-4)
+
     def test_what_is_no_continuous_model_is_refused(self):
         relay = limcycle.laws.relay(level=1.0)
         with self.assertRaisesRegex(limcycle.CaseError, "continuous-time"):
             limcycle.Loop(plant=control.tf([1.0], [1.0, 0.5], 0.1), element=relay)
-        with self.assertRaisesRegex(limcycle.CaseError, "frequency response without a model"):
-            limcycle.Loop(plant=control.frd([1.0, 0.5j], [1.0, 2.0]), element=relay)
         with self.assertRaisesRegex(limcycle.CaseError, "one input and one output"):
             limcycle.Loop(plant=control.ss(-np.eye(2), np.eye(2), np.eye(2), np.zeros((2, 2))), element=relay)
 
