@@ -48,10 +48,9 @@ std::vector<DescribingFunction> ask_df(const Case& from, const DfSection& sectio
 }
 
 std::vector<DescribingFunction> ask_df(const Case& from, const DfSection& section, const Asking& asking) {
-  const auto points = section.points();
   return describing_function_table(
-      df_element(from), points, options_with(section, asking), asking.stop, [&](std::size_t done) {
-        asking.report(static_cast<double>(done) / static_cast<double>(points.size()), "points");
+      df_element(from), section.points(), options_with(section, asking), asking.stop, [&](std::size_t done) {
+        asking.report(static_cast<double>(done) / static_cast<double>(section.size()), "points");
       });
 }
 

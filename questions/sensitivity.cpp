@@ -98,6 +98,8 @@ std::string design_text(const GlobalPlan& plan, const HuntingQuestion& question)
   for (const auto& one : plan.spread().parameters)
     text += fmt::format("; {} {} {} {} {} {}", one.path, to_string(one.distribution), one.low, one.high, one.mean,
                         one.deviation);
+  for (const auto& pair : plan.spread().correlations)
+    text += fmt::format("; correlation {} {} {}", pair.one, pair.other, pair.value);
   text += fmt::format("; starts {}; accuracy {}; rtol {}; seed {}", fmt::join(question.displacements, " "),
                       question.accuracy, question.rtol, plan.spread().seed);
   return text;
@@ -131,13 +133,13 @@ SweptRows sweep_plan(const Case& from, const Loop& loop, const GlobalPlan& plan,
 std::vector<std::vector<double>> fair_sample(const GlobalPlan& plan,
                                              const std::vector<std::optional<HuntingAnswer>>& answers) {
   std::vector<std::vector<double>> sample;
-  for (std::size_t k = 0; k < plan.sobol().samples(); ++k)
-    for (const std::size_t row : {plan.sobol().row_a(k), plan.sobol().row_b(k)}) {
-      const auto& answer = answers[plan.morris().rows() + row];
-      if (!answer) continue;
-      sample.push_back(plan.values(plan.morris().rows() + row));
-      sample.back().insert(sample.back().end(), {answer->hunts, answer->amplitude, answer->period});
-    }
+  for (std::size_t k = 0; k < plan.fair_rows(); ++k) {
+    const std::size_t row = plan.fair_row(k);
+    const auto& answer = answers[row];
+    if (!answer) continue;
+    sample.push_back(plan.values(row));
+    sample.back().insert(sample.back().end(), {answer->hunts, answer->amplitude, answer->period});
+  }
   return sample;
 }
 
@@ -210,6 +212,11 @@ SensitivityReport ask_sensitivity(const Case& from, const SensitivityWishes& wis
   if (wishes.local_only || asking.stopped()) return report;
   if (report.spread_is_default)
     report.notes.emplace_back("the case has no [sensitivity] section: each of its numbers varies uniformly by +-20 %");
+  if (!report.spread.correlations.empty())
+    report.notes.emplace_back(
+        "the numbers of the spread are correlated: Morris's effects and Sobol's shares of the variance, which are "
+        "those "
+        "of independent numbers, are not computed");
   if (!report.spread.parameters.empty()) status = look_everywhere(from, loop, wishes, asking, sweep, report);
   return report;
 }

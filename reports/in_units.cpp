@@ -142,9 +142,12 @@ SensitivityReport in_units(SensitivityReport report, const Units& units) {
     if (row.size() > column) row[column] *= k;
   if (!report.global) return report;
   for (auto& output : report.global->outputs)
-    if (output.output == "amplitude")
+    if (output.output == "amplitude") {
       for (auto& one : output.morris.parameters)
         for (Estimate* value : {&one.mu, &one.mu_star, &one.sigma}) scale(*value, k);
+      if (output.band)
+        for (double* value : {&output.band->low, &output.band->median, &output.band->high}) *value *= k;
+    }
   return report;
 }
 

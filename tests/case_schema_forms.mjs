@@ -110,6 +110,7 @@ export const forms = {
       {path = "loop.plant.mass", distribution = "normal", mean = 1.0, deviation = 0.1, from = 0.5, to = 2.0},
       {path = "loop.controller.kp", distribution = "uniform", factor = 2.0},
     ]
+    correlation = [{between = ["loop.friction.Fs", "loop.plant.mass"], value = -0.5}]
     samples = 16
     seed = 1`),
   claims: also(`[[claim]]
@@ -141,7 +142,7 @@ const is_table = (value) => type_of(value) === 'object';
 // What the schema leaves to the program: states by name; texts of which it wants more than that they are texts, names of
 // blocks and sums of signals among them; and a formula may be a number too.
 const states = /^simulate\.initial\b/;
-const free_text = /\.(path|formula)$|^diagram\.(output$|block\[\]\(.*\)\.(input|on|between))/;
+const free_text = /\.(path|formula|between\[\])$|^diagram\.(output$|block\[\]\(.*\)\.(input|on|between))/;
 const formula = /\.formula$/;
 const always = () => true;
 const never = () => false;

@@ -276,7 +276,15 @@ export const sections = {
   }),
   sensitivity: table('How numbers are spread', {
     parameters: spread_list('which numbers, and how'),
-    samples: integer(1, 100_000_000, 'base samples of the Sobol study', { default: 1024 }),
+    correlation: {
+      type: 'array',
+      items: table('Two numbers that go together', {
+        between: { type: 'array', items: text('a number of the list of parameters'), minItems: 2, maxItems: 2 },
+        value: number('correlation of their normal scores', { exclusiveMinimum: -1, exclusiveMaximum: 1 }),
+      }, ['between', 'value']),
+      description: 'of numbers that do not vary independently',
+    },
+    samples: integer(1, 100_000_000, 'base samples of the Sobol study', { default: 256 }),
     seed: integer(0, 2147483647, 'of everything random', { default: 0 }),
   }, ['parameters']),
   identify: table('Friction laws to be fitted to records', {

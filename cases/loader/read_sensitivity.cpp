@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/sections.hpp"
@@ -74,6 +75,48 @@ SpreadParameter read_parameter(const Section& section, const std::vector<CaseNum
   return one;
 }
 
+/// {between = ["loop.friction.Fs", "loop.friction.Fc"], value = 0.8}
+SpreadCorrelation read_correlation(const Section& section, const std::vector<SpreadParameter>& parameters) {
+  section.allow({"between", "value"});
+  const Place between = section.at("between", "two parameters of the list");
+  const auto* paths = between.value.as<Value::List>();
+  if (paths == nullptr || paths->size() != 2) throw between.error("must be a list of two parameters");
+  std::size_t found[2];
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Place place = between.item(k);
+    const std::string path = read_string(place);
+    const auto at = std::ranges::find(parameters, path, &SpreadParameter::path);
+    if (at == parameters.end()) {
+      std::vector<std::string> known;
+      for (const auto& one : parameters) known.push_back(one.path);
+      throw place.error("is not in the list of parameters", suggest(path, known));
+    }
+    found[k] = static_cast<std::size_t>(at - parameters.begin());
+  }
+  if (found[0] == found[1]) throw between.error("must be two different parameters");
+  const double value = read_number(section.at("value", "the correlation, between -1 and 1"), {-1.0, 1.0, true, true});
+  return {std::min(found[0], found[1]), std::max(found[0], found[1]), value};
+}
+
+std::vector<SpreadCorrelation> read_correlations(const Place& list, const ParameterSpread& spread) {
+  const auto* items = list.value.as<Value::List>();
+  if (items == nullptr) throw list.wrong_type("a list of tables {between, value}");
+  ParameterSpread so_far = spread;
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    const Place item = list.item(i);
+    const auto one = read_correlation(Section(item.document, item.value, item.path), spread.parameters);
+    const auto same = [&](const SpreadCorrelation& other) { return other.one == one.one && other.other == one.other; };
+    if (std::ranges::any_of(so_far.correlations, same)) throw item.error("names a pair that stands in the list before");
+    so_far.correlations.push_back(one);
+  }
+  try {
+    const JointSpread possible(so_far);
+  } catch (const std::invalid_argument& refused) {
+    throw list.error(refused.what());
+  }
+  return so_far.correlations;
+}
+
 }  // namespace
 
 std::vector<SpreadParameter> read_spread_list(const Place& list, const std::vector<CaseNumber>& numbers) {
@@ -93,9 +136,10 @@ std::vector<SpreadParameter> read_spread_list(const Place& list, const std::vect
 }
 
 ParameterSpread read_sensitivity(const Section& section, const Case& from) {
-  section.allow({"parameters", "samples", "seed"});
+  section.allow({"parameters", "correlation", "samples", "seed"});
   ParameterSpread spread;
   spread.parameters = read_spread_list(section.at("parameters", "list of {path, distribution, ...}"), numbers_of(from));
+  if (const auto list = section.find("correlation")) spread.correlations = read_correlations(*list, spread);
   if (const auto samples = section.find("samples")) spread.samples = read_integer(*samples, 1, most_samples);
   if (const auto seed = section.find("seed"))
     spread.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, 2147483647));

@@ -206,13 +206,16 @@ std::vector<std::string> remedy_overrides(const RemedyCandidate& candidate, doub
 
 SampledParts sampled_parts(const Case& from, std::uint64_t seed) {
   if (!from.sensitivity) return {};
-  return [from, seed](const RemedyCandidate& candidate, double value, std::size_t sample) -> std::optional<LoopParts> {
+  return [from, seed, joint = JointSpread(*from.sensitivity)](const RemedyCandidate& candidate, double value,
+                                                              std::size_t sample) -> std::optional<LoopParts> {
     RandomStream random(seed, "remedy", sample);
     std::vector<std::string> overrides;
-    for (const SpreadParameter& one : from.sensitivity->parameters) {
-      const double drawn = one.quantile(random.uniform());
-      if (one.path != candidate.parameter) overrides.push_back(override_of(one.path, drawn));
-    }
+    const auto& parameters = from.sensitivity->parameters;
+    std::vector<double> shares(parameters.size());
+    for (double& share : shares) share = random.uniform();
+    const auto drawn = joint.values(std::move(shares));
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+      if (parameters[i].path != candidate.parameter) overrides.push_back(override_of(parameters[i].path, drawn[i]));
     const auto remedy = remedy_overrides(candidate, value);
     overrides.insert(overrides.end(), remedy.begin(), remedy.end());
     try {

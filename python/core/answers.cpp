@@ -172,21 +172,23 @@ std::vector<double> each(const Things& things, std::size_t count, const Number& 
   return values;
 }
 
+/// All in one go over the results, which are larger than a cache.
 std::map<std::string, Array> df_arrays(const DfSection& grid, const std::vector<DescribingFunction>& results) {
   const std::vector<std::size_t> shape{grid.amplitude.size(), grid.frequency.size(), grid.bias.size()};
   std::vector<std::complex<double>> gain(grid.size(), {nan, nan});
-  for (std::size_t k = 0; k < results.size(); ++k)
-    if (results[k].answered()) gain[k] = results[k].gain;
-  const auto known = [&](double DescribingFunction::*member) {
-    return each(results, grid.size(), [&](const auto& one) { return one.answered() ? one.*member : nan; });
-  };
-  return {{"amplitude", line(grid.amplitude)},
-          {"frequency", line(grid.frequency)},
-          {"bias", line(grid.bias)},
-          {"gain", {shape, std::move(gain)}},
-          {"mean", {shape, known(&DescribingFunction::mean)}},
-          {"dissipation", {shape, known(&DescribingFunction::dissipation)}},
-          {"error", {shape, known(&DescribingFunction::error)}}};
+  std::vector<double> mean(grid.size(), nan), dissipation = mean, error = mean;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const DescribingFunction& one = results[k];
+    if (!one.answered()) continue;
+    gain[k] = one.gain;
+    mean[k] = one.mean;
+    dissipation[k] = one.dissipation;
+    error[k] = one.error;
+  }
+  return {{"amplitude", line(grid.amplitude)}, {"frequency", line(grid.frequency)},
+          {"bias", line(grid.bias)},           {"gain", {shape, std::move(gain)}},
+          {"mean", {shape, std::move(mean)}},  {"dissipation", {shape, std::move(dissipation)}},
+          {"error", {shape, std::move(error)}}};
 }
 
 Array rows_of(const Simulation& run) {

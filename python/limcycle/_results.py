@@ -407,12 +407,13 @@ class Map(Result):
 
 
 class Sensitivity(Result):
-    """Of sensitivity(): `parameters`, `one_at_a_time`, `morris`, `sobol`, `share_without_answer`."""
+    """Of sensitivity(): `parameters`, `one_at_a_time`, `morris`, `sobol`, `bands`, `share_without_answer`."""
 
     parameters: List[Record]
     one_at_a_time: List[Record]
     morris: List[Record]
     sobol: List[Record]
+    bands: List[Record]
     status: str
 
     def plot(self, ax: Any = None, output: str = "amplitude") -> Any:

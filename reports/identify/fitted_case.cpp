@@ -65,15 +65,32 @@ std::string friction_table(const IdentifiedLaw& law) {
   return text;
 }
 
+/// The correlations of the numbers that are spread, as the derivatives at the fit have them: the coordinates of the fit
+/// rise with the numbers.
+std::string correlation_list(const IdentifiedLaw& law, const std::vector<std::string>& spread) {
+  std::string list;
+  for (std::size_t i = 0; i < law.correlated.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const double value = law.correlations(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      const auto is_spread = [&](const std::string& name) { return std::ranges::find(spread, name) != spread.end(); };
+      if (!std::isfinite(value) || !is_spread(law.correlated[i]) || !is_spread(law.correlated[k])) continue;
+      list += fmt::format("  {{between = [\"loop.friction.{}\", \"loop.friction.{}\"], value = {:.6f}}},\n",
+                          law.correlated[k], law.correlated[i], std::clamp(value, -0.999999, 0.999999));
+    }
+  return list.empty() ? list : "[sensitivity]\ncorrelation = [\n" + list + "]\n";
+}
+
 /// Each identifiable number as normal, with the deviation of its interval, and not below its bound; one on its bound as
 /// uniform over its interval.
 std::string sensitivity_section(const IdentifiedLaw& law) {
   constexpr double half_in_deviations = 1.959964;
   std::string text;
+  std::vector<std::string> spread;
   for (const auto& one : law.numbers) {
     if (!one.identifiable || !one.high || one.name.find('[') != std::string::npos) continue;
     const double low = one.low.value_or(0.0), deviation = 0.5 * (*one.high - low) / half_in_deviations;
     if (!(deviation > 0.0)) continue;
+    spread.push_back(one.name);
     text += fmt::format("[[sensitivity.parameters]]\npath = \"loop.friction.{}\"\n", one.name);
     if (one.value > 0.0)
       text += fmt::format("distribution = \"normal\"\nmean = {}\ndeviation = {}\nfrom = {}\nto = {}\n",
@@ -83,7 +100,7 @@ std::string sensitivity_section(const IdentifiedLaw& law) {
     else  // on its bound
       text += fmt::format("distribution = \"uniform\"\nfrom = {}\nto = {}\n", toml_number(low), toml_number(*one.high));
   }
-  return text;
+  return correlation_list(law, spread) + text;
 }
 
 /// Follows the brackets of arrays and inline tables from line to line: within them a line is no header.

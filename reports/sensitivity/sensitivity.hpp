@@ -54,6 +54,7 @@ std::string threshold_sentence(const ThresholdSensitivity& threshold);
 std::string predicted_sentence(const PredictedOscillation& predicted, const Units& units);
 Table change_table(const SensitivityReport& report, const Units& units);
 Table morris_table(const SensitivityReport& report, const OutputSensitivity& output);
+Table band_table(const SensitivityReport& report, const Units& units);  ///< of the outputs over the spread
 Table sobol_table(const SensitivityReport& report, const OutputSensitivity& output);
 
 /// Elasticities of amplitude and period, the largest on top.

@@ -109,6 +109,7 @@ std::string interactions_picture(const SensitivityReport& report, const OutputSe
 std::string hunting_heat_picture(const SensitivityReport& report) {
   const auto& parameters = report.spread.parameters;
   if (!report.global || parameters.size() < 2 || report.sample.size() < 4 * bins) return "";
+  if (report.global->outputs.front().sobol.parameters.empty()) return "";
   const auto order = report.global->outputs.front().sobol.by_total();
   if (!report.global->outputs.front().sobol.parameters[order[1]].total.known) return "";
   const std::size_t x = order[0], y = order[1];

@@ -11,6 +11,7 @@ std::string output_section(const SensitivityReport& report, const OutputSensitiv
                            const std::string& heading) {
   std::string out = html_tag(heading, "Global: " + output.output);
   out += html_tag("p", fmt::format("No answer from {} of the loops.", as_percent(output.share_without_answer)));
+  if (output.sobol.parameters.empty()) return out;  // of correlated numbers
   if (output.sobol.deviation == 0.0)
     return out + html_tag("p", "It is the same for every loop that answered: there is no variance to share out.");
   out += html_picture(indices_picture(report, output),
@@ -67,6 +68,8 @@ std::string sensitivity_sections(const SensitivityReport& report, const Units& u
     body += html_tag(heading, "The spread") +
             html_picture(hunting_heat_picture(report), "Values of the spread at which the loop hunts.") +
             html_picture(scatter_picture(report), "Every loop of the fair sample over each of the parameters.");
+    if (const Table bands = band_table(report, units); !bands.rows.empty())
+      body += html_table(bands, "Where it hunts, 95 % of the loops lie between low and high");
     for (const auto& output : report.global->outputs) body += output_section(report, output, heading);
   }
   return body + html_notes(sensitivity_notes(report), level);

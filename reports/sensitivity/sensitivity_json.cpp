@@ -204,6 +204,18 @@ std::string sensitivity_json(const Provenance& provenance, const SensitivityRepo
       without[output.output] = number(output.share_without_answer);
       if (output.output == HuntingAnswer::names[1]) share = output.share_without_answer;
     }
+  Json bands = Json::array(), correlations = Json::array();
+  if (report.global)
+    for (const auto& output : report.global->outputs)
+      if (output.band)
+        bands.push_back({{"output", output.output},
+                         {"low", number(output.band->low)},
+                         {"median", number(output.band->median)},
+                         {"high", number(output.band->high)},
+                         {"answers", output.band->answers}});
+  const auto& spread = report.spread.parameters;
+  for (const auto& pair : report.spread.correlations)
+    correlations.push_back({{"between", {spread[pair.one].path, spread[pair.other].path}}, {"value", pair.value}});
   Json predicted = Json::array(), thresholds = Json::array();
   for (const auto& one : report.predicted) predicted.push_back(predicted_json(one));
   for (const auto& one : report.thresholds) thresholds.push_back(threshold_json(one));
@@ -222,6 +234,8 @@ std::string sensitivity_json(const Provenance& provenance, const SensitivityRepo
                      {"sobol", sobol},
                      {"interactions", interactions},
                      {"convergence", convergence},
+                     {"bands", bands},
+                     {"correlations", correlations},
                      {"robustness", report.global ? robustness_json(report) : Json(nullptr)},
                      {"share_without_answer", report.global ? number(share) : Json(nullptr)},
                      {"without_answer", without},
@@ -257,6 +271,10 @@ std::string sensitivity_csv(const SensitivityReport& report) {
   }
   if (!report.global) return out;
   for (const auto& output : report.global->outputs) {
+    if (output.band) {
+      const Estimate median{output.band->median, output.band->low, output.band->high, true};
+      estimate("band", "", output.output, median, "median");
+    }
     const auto name = [&](std::size_t i) { return report.spread.parameters[i].path; };
     for (std::size_t i = 0; i < output.morris.parameters.size(); ++i) {
       estimate("morris", name(i), output.output, output.morris.parameters[i].mu_star, "mu_star");

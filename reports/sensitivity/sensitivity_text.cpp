@@ -150,6 +150,20 @@ Table sobol_table(const SensitivityReport& report, const OutputSensitivity& outp
   return table;
 }
 
+Table band_table(const SensitivityReport& report, const Units& units) {
+  Table table{{{"", "", Align::left}, {"low", ""}, {"median", ""}, {"high", ""}, {"loops", ""}}, {}};
+  if (!report.global) return table;
+  for (const OutputSensitivity& output : report.global->outputs) {
+    if (!output.band) continue;
+    const std::string unit = output.output == "amplitude" ? units.y : "s";
+    const auto number = [](double value) { return with_digits(value, 4); };
+    table.rows.push_back({output.output + (unit.empty() ? "" : " (" + unit + ")"), number(output.band->low),
+                          number(output.band->median), number(output.band->high),
+                          std::to_string(output.band->answers)});
+  }
+  return table;
+}
+
 std::vector<std::string> sensitivity_notes(const SensitivityReport& report) {
   std::vector<std::string> notes = report.notes;
   for (const auto& one : report.local)
@@ -193,10 +207,13 @@ Document sensitivity_document(const std::string& title, const SensitivityReport&
     if (const Table table = threshold_table(threshold); !table.rows.empty()) out.add_untitled("Threshold", table);
   }
   if (!report.one_at_a_time.empty()) out.add("One at a time", change_table(report, units));
+  if (const Table bands = band_table(report, units); !bands.rows.empty())
+    out.add("Where it hunts, 95 % of the loops lie between low and high", bands);
   if (report.global)
     for (const auto& output : report.global->outputs) {
       out += fmt::format("\nOutput \"{}\": no answer from {} of the loops\n", output.output,
                          as_percent(output.share_without_answer));
+      if (output.sobol.parameters.empty()) continue;  // of correlated numbers
       if (output.sobol.deviation == 0.0) {
         out += wrapped(same_everywhere(output));
         continue;

@@ -69,3 +69,29 @@ TEST_CASE("section sensitivity: what is refused") {
   CHECK_THAT(message(with_spread("parameters = [{" + Fs + "factor = 2}, {" + Fs + "factor = 3}]\n")),
              Contains("stands in the list twice"));
 }
+
+TEST_CASE("sensitivity section: correlations") {
+  const std::string both =
+      "[sensitivity]\nparameters = [{path = \"loop.friction.Fs\", factor = 1.1}, {path = \"loop.friction.Fc\", factor "
+      "= 1.1}]\n";
+  const auto with_list = [&](const std::string& list) {
+    return std::string(servo) + both + "correlation = " + list + "\n";
+  };
+  const std::string pair = "between = [\"loop.friction.Fc\", \"loop.friction.Fs\"]";
+  const Case from = read_case(with_list("[{" + pair + ", value = 0.8}]"), "a.toml");
+  REQUIRE(from.sensitivity->correlations.size() == 1);
+  CHECK(from.sensitivity->correlations[0].one == 0);
+  CHECK(from.sensitivity->correlations[0].other == 1);
+  CHECK(from.sensitivity->correlations[0].value == 0.8);
+  CHECK_THAT(message(with_list("[{" + pair + ", value = 1.0}]")), Contains("correlation[0].value = 1"));
+  CHECK_THAT(message(with_list("[{" + pair + "}]")), Contains("value: is required"));
+  CHECK_THAT(message(with_list("[{between = [\"loop.friction.Fs\"], value = 0.1}]")),
+             Contains("a list of two parameters"));
+  CHECK_THAT(message(with_list("[{between = [\"loop.friction.Fs\", \"loop.friction.Fs\"], value = 0.1}]")),
+             Contains("two different parameters"));
+  CHECK_THAT(message(with_list("[{between = [\"loop.friction.Fs\", \"loop.plant.mass\"], value = 0.1}]")),
+             Contains("is not in the list of parameters"));
+  CHECK_THAT(message(with_list("[{" + pair + ", value = 0.1}, {" + pair + ", value = 0.2}]")),
+             Contains("stands in the list before"));
+  CHECK_THAT(message(with_list("3")), Contains("must be a list of tables"));
+}

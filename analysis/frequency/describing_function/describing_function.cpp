@@ -34,13 +34,14 @@ DescribingFunction describing_function(const Element& element, const DfPoint& po
   return DfTable(element, {}, options).at(point);
 }
 
-std::vector<DescribingFunction> describing_function_table(const Element& element, const std::vector<DfPoint>& points,
+std::vector<DescribingFunction> describing_function_table(const Element& element, std::vector<DfPoint> points,
                                                           const DfOptions& options, const std::function<bool()>& stop,
                                                           const std::function<void(std::size_t)>& progress) {
-  DfTable table(element, points, options);
-  std::vector<DescribingFunction> results(points.size());
-  std::vector<bool> known(points.size(), false);
-  SweepTask task{points.size(), 1, table.block(), {}};
+  const std::size_t count = points.size();
+  DfTable table(element, std::move(points), options);
+  std::vector<DescribingFunction> results(count);
+  std::vector<bool> known(count, false);
+  SweepTask task{count, 1, table.block(), {}};
   task.compute = [&](std::span<const std::size_t> which, std::span<double>) {
     // A block is contiguous, as nothing is known beforehand.
     return which.empty() ? 0 : table.compute(which, std::span(results).subspan(which.front(), which.size()), stop);

@@ -65,7 +65,7 @@ DescribingFunction describing_function(const Element& element, const DfPoint& po
 /// any of the threads, one at a time: once it returns true no further point is begun, and the longest gapless run of
 /// computed points from the first on is returned. `progress` is called from time to time and at the end with the number
 /// of points done. The result at a point does not depend on the other points.
-std::vector<DescribingFunction> describing_function_table(const Element& element, const std::vector<DfPoint>& points,
+std::vector<DescribingFunction> describing_function_table(const Element& element, std::vector<DfPoint> points,
                                                           const DfOptions& options,
                                                           const std::function<bool()>& stop = {},
                                                           const std::function<void(std::size_t)>& progress = {});

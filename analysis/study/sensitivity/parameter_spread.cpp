@@ -2,6 +2,7 @@
 
 #include <gsl/gsl_cdf.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
@@ -45,6 +46,37 @@ double SpreadParameter::low_end() const {
 }
 double SpreadParameter::high_end() const {
   return quantile(distribution == Distribution::normal ? 1.0 - two_deviations : 1.0);
+}
+
+JointSpread::JointSpread(const ParameterSpread& spread) : parameters_(spread.parameters) {
+  if (spread.correlations.empty()) return;
+  const auto n = static_cast<Eigen::Index>(parameters_.size());
+  factor_ = Eigen::MatrixXd::Identity(n, n);
+  for (const auto& [one, other, value] : spread.correlations)
+    factor_(static_cast<Eigen::Index>(std::max(one, other)), static_cast<Eigen::Index>(std::min(one, other))) = value;
+  constexpr double least_pivot = 1e-10;   // of a matrix with ones on its diagonal
+  for (Eigen::Index i = 0; i < n; ++i) {  // Cholesky's factor, row by row in the place of the lower half
+    for (Eigen::Index k = 0; k < i; ++k)
+      factor_(i, k) = (factor_(i, k) - factor_.row(i).head(k).dot(factor_.row(k).head(k))) / factor_(k, k);
+    const double pivot = 1.0 - factor_.row(i).head(i).squaredNorm();
+    if (!(pivot > least_pivot))
+      throw std::invalid_argument("no distribution has these correlations: " +
+                                  parameters_[static_cast<std::size_t>(i)].path + " cannot have all of its own");
+    factor_(i, i) = std::sqrt(pivot);
+  }
+}
+
+std::vector<double> JointSpread::values(std::vector<double> shares) const {
+  if (correlated()) {
+    Eigen::VectorXd scores(std::ssize(shares));
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      scores(static_cast<Eigen::Index>(i)) = gsl_cdf_ugaussian_Pinv(shares[i]);
+    const Eigen::VectorXd joint = factor_ * scores;
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      shares[i] = gsl_cdf_ugaussian_P(joint(static_cast<Eigen::Index>(i)));
+  }
+  for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = parameters_[i].quantile(shares[i]);
+  return shares;
 }
 
 std::vector<std::vector<double>> corner_points(const ParameterSpread& spread) {

@@ -1,5 +1,6 @@
 #include "limcycle/analysis/study/sensitivity/sensitivity.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -27,14 +28,55 @@ double noise_of(std::size_t output, std::span<const std::optional<double>> answe
 
 GlobalPlan::GlobalPlan(const ParameterSpread& spread, std::size_t trajectories, std::size_t samples, bool second_order)
     : spread_(spread),
+      joint_(spread),
       morris_(spread.parameters.size(), trajectories, morris_levels, spread.seed),
-      sobol_(spread.parameters.size(), samples, second_order, spread.seed) {}
+      sobol_(spread.parameters.size(), samples, second_order && !joint_.correlated(), spread.seed) {}
 
 std::vector<double> GlobalPlan::values(std::size_t row) const {
-  std::vector<double> at = row < morris_.rows() ? morris_.row(row) : sobol_.row(row - morris_.rows());
-  for (std::size_t i = 0; i < at.size(); ++i) at[i] = spread_.parameters[i].quantile(at[i]);
-  return at;
+  if (joint_.correlated())
+    return joint_.values(sobol_.row(row % 2 == 0 ? sobol_.row_a(row / 2) : sobol_.row_b(row / 2)));
+  return joint_.values(row < morris_.rows() ? morris_.row(row) : sobol_.row(row - morris_.rows()));
 }
+
+std::size_t GlobalPlan::fair_row(std::size_t k) const {
+  if (joint_.correlated()) return k;
+  return morris_.rows() + (k % 2 == 0 ? sobol_.row_a(k / 2) : sobol_.row_b(k / 2));
+}
+
+namespace {
+
+/// Quantile of a sorted sample, between its order statistics (R. J. Hyndman and Y. Fan, 1996, definition 7).
+double quantile_of(const std::vector<double>& sorted, double p) {
+  const double at = p * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  return std::lerp(sorted[below], sorted[std::min(below + 1, sorted.size() - 1)], at - static_cast<double>(below));
+}
+
+std::optional<OutputBand> band_of(std::vector<double> answers) {
+  if (answers.size() < answers_of_a_band) return std::nullopt;
+  std::ranges::sort(answers);
+  return OutputBand{quantile_of(answers, 0.025), quantile_of(answers, 0.5), quantile_of(answers, 0.975),
+                    answers.size()};
+}
+
+/// Answers in the fair rows: that a loop hunts, and the band of the output.
+Probability look_at_fair_rows(const GlobalPlan& plan, const std::vector<std::optional<double>>& numbers,
+                              OutputSensitivity& one) {
+  std::size_t yes = 0, no = 0;
+  std::vector<double> answers;
+  for (std::size_t k = 0; k < plan.fair_rows(); ++k) {
+    const auto& number = numbers[plan.fair_row(k)];
+    if (!number) continue;
+    ++(*number > 0.5 ? yes : no);
+    answers.push_back(*number);
+  }
+  const Probability fair = probability(yes, no, plan.fair_rows() - yes - no);
+  one.share_without_answer = static_cast<double>(fair.undecided) / static_cast<double>(plan.fair_rows());
+  if (one.output != HuntingAnswer::names[0]) one.band = band_of(std::move(answers));
+  return fair;
+}
+
+}  // namespace
 
 GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std::optional<HuntingAnswer>> answers,
                                      double noise) {
@@ -43,20 +85,23 @@ GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std
   for (std::size_t output = 0; output < HuntingAnswer::numbers; ++output) {
     std::vector<std::optional<double>> numbers;
     for (const auto& answer : answers) numbers.push_back(number_of_answer(answer, output));
+    OutputSensitivity one;
+    one.output = HuntingAnswer::names[output];
+    const Probability fair = look_at_fair_rows(plan, numbers, one);
+    if (output == 0) result.hunting = fair;
+    if (plan.correlated()) {
+      result.outputs.push_back(std::move(one));
+      continue;
+    }
     const auto for_morris = std::span<const std::optional<double>>(numbers).first(plan.morris().rows());
     const auto for_sobol = std::span<const std::optional<double>>(numbers).subspan(plan.morris().rows());
     SobolOptions options;
     options.seed = plan.spread().seed;
     options.noise = noise_of(output, numbers, noise);
-    OutputSensitivity one;
-    one.output = HuntingAnswer::names[output];
-    const Probability fair = probability(plan.sobol(), for_sobol);
-    one.share_without_answer = static_cast<double>(fair.undecided) / static_cast<double>(2 * plan.sobol().samples());
     one.morris = morris_effects(plan.morris(), for_morris, options.resamples, options.seed);
     one.sobol = sobol_indices(plan.sobol(), for_sobol, options);
     one.convergence = sobol_convergence(plan.sobol(), for_sobol, options);
     if (output == 0) {
-      result.hunting = probability(plan.sobol(), for_sobol);
       const auto order = one.sobol.by_total();
       if (!order.empty() && one.sobol.parameters[order.front()].total.known) result.matters_most = order.front();
     }

@@ -70,23 +70,39 @@ struct ParameterChange {
   MapPoint found;
 };
 
-/// Global indices of one output.
+/// Quantiles of an output over the loops that have an answer.
+struct OutputBand {
+  double low = 0.0, median = 0.0, high = 0.0;  ///< at 2.5, 50 and 97.5 %
+  std::size_t answers = 0;
+};
+
+/// The least number of answers that show the ends of a band.
+inline constexpr std::size_t answers_of_a_band = 80;
+
+/// Global indices of one output; without Morris's and Sobol's if the parameters are correlated.
 struct OutputSensitivity {
   std::string output;  ///< "hunts", "amplitude", "period"
   double share_without_answer = 0.0;
+  std::optional<OutputBand> band;  ///< of amplitude and period, from Sobol's points A and B
   MorrisResult morris;
   SobolIndices sobol;
   std::vector<SobolIndices> convergence;
 };
 
-/// The rows of a global study: first those of Morris, then those of Sobol. Row k is one point of the spread.
+/// The rows of a global study: first those of Morris, then those of Sobol. Row k is one point of the spread. If
+/// parameters are correlated, no share of a variance belongs to one of them, and the rows are Sobol's A and B alone.
 class GlobalPlan {
  public:
   GlobalPlan(const ParameterSpread& spread, std::size_t trajectories, std::size_t samples, bool second_order);
 
-  std::size_t size() const { return morris_.rows() + sobol_.rows(); }
+  std::size_t size() const { return joint_.correlated() ? fair_rows() : morris_.rows() + sobol_.rows(); }
   /// Values of the parameters, in the order of the spread. Throws std::out_of_range.
   std::vector<double> values(std::size_t row) const;
+
+  bool correlated() const { return joint_.correlated(); }
+  /// Rows that are a fair sample of the spread, Sobol's A and B, and the number of each.
+  std::size_t fair_rows() const { return 2 * sobol_.samples(); }
+  std::size_t fair_row(std::size_t k) const;
 
   const ParameterSpread& spread() const { return spread_; }
   const MorrisDesign& morris() const { return morris_; }
@@ -94,6 +110,7 @@ class GlobalPlan {
 
  private:
   ParameterSpread spread_;
+  JointSpread joint_;
   MorrisDesign morris_;
   SobolDesign sobol_;
 };

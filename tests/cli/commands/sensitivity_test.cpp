@@ -65,6 +65,50 @@ TEST_CASE("sensitivity: derivatives, changes, indices and the share of loops wit
   CHECK(scratch.get("s.csv").starts_with("kind,name,output,value"));
 }
 
+TEST_CASE("sensitivity: correlated numbers have bands and a probability, but no shares of the variance") {
+  const Scratch scratch;
+  const auto asked = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"sensitivity",
+                                   with_spread(scratch),
+                                   "--json",
+                                   "-",
+                                   "--quiet",
+                                   "--samples",
+                                   "128",
+                                   "--html",
+                                   scratch.file("c.html"),
+                                   "--csv",
+                                   scratch.file("c.csv"),
+                                   "--set",
+                                   "sensitivity.parameters=[{path=\"loop.friction.Fs\",from=1.3,to=1.7},"
+                                   "{path=\"loop.controller.kp\",factor=1.5}]"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = run(words);
+    REQUIRE(ran.code == 0);
+    return Json::parse(ran.out);
+  };
+  const Json alone = asked({});
+  CHECK(alone["correlations"].empty());
+  CHECK(alone["bands"].size() == 2);
+  const Json joint =
+      asked({"--set", "sensitivity.correlation=[{between=[\"loop.friction.Fs\",\"loop.controller.kp\"],value=0.9}]"});
+  CHECK(joint["morris"].empty());
+  CHECK(joint["sobol"].empty());
+  CHECK(joint["correlations"][0]["value"] == 0.9);
+  REQUIRE(joint["bands"].size() == 2);
+  for (const auto& band : joint["bands"]) CHECK((band["low"] < band["median"] && band["median"] < band["high"]));
+  CHECK(joint["robustness"]["matters_most"].is_null());
+  // A stiffer loop with more stiction: amplitude rises with Fs and falls with kp, so that the band becomes narrower.
+  const auto width = [](const Json& document) {
+    for (const auto& band : document["bands"])
+      if (band["output"] == "amplitude") return band["high"].get<double>() - band["low"].get<double>();
+    return 0.0;
+  };
+  CHECK(width(joint) < 0.8 * width(alone));
+  CHECK(scratch.get("c.csv").find("\nband,,period,") != std::string::npos);
+  CHECK(scratch.get("c.html").find("95 % of the loops lie between") != std::string::npos);
+}
+
 TEST_CASE("sensitivity: the same for any number of threads, and from a store") {
   const Scratch scratch;
   const std::string from = with_spread(scratch), count = std::to_string(8 * limcycle::test::samples(8));

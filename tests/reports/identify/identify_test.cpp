@@ -61,6 +61,14 @@ TEST_CASE("identify report: the fitted law takes the place of the one in the cas
   CHECK_THAT(fitted, Contains("[loop.controller]") && Contains("[search]\namplitude = [1.0, 2.0]\n"));
   CHECK_THAT(fitted, !Contains("lugre") && !Contains("identify") && !Contains("samples = 4"));
   CHECK_THAT(fitted, Contains("path = \"loop.friction.sigma2\"") && !Contains("path = \"loop.friction.Fs\""));
+  IdentifiedLaw joint = report.laws.front();
+  joint.correlated = {"Fc", "sigma2", "other"};
+  joint.correlations = (Eigen::MatrixXd(3, 3) << 1.0, -0.25, 0.5, -0.25, 1.0, 0.1, 0.5, 0.1, 1.0).finished();
+  CHECK_THAT(
+      fitted_case(text, "t", joint),
+      Contains("[sensitivity]\ncorrelation = [\n  {between = [\"loop.friction.Fc\", \"loop.friction.sigma2\"], value "
+               "= -0.250000},\n]\n[[sensitivity.parameters]]") &&
+          !Contains("other"));
   IdentifiedLaw at_bound = report.laws.front();
   at_bound.numbers.back().value = 0.0;
   at_bound.numbers.back().low = 0.0;

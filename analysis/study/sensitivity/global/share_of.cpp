@@ -34,17 +34,4 @@ Probability probability(std::size_t yes, std::size_t no, std::size_t undecided) 
           .high = share_of(yes + undecided, all).high};
 }
 
-Probability probability(const SobolDesign& design, RowAnswers answers) {
-  if (answers.size() != design.rows())
-    throw std::invalid_argument("a probability over a design needs an answer, or none, for each of its " +
-                                std::to_string(design.rows()) + " rows, got " + std::to_string(answers.size()));
-  std::size_t yes = 0, no = 0, undecided = 0;
-  for (std::size_t k = 0; k < design.samples(); ++k)
-    for (const auto row : {design.row_a(k), design.row_b(k)}) {
-      const auto& answer = answers[row];
-      ++(!answer || !std::isfinite(*answer) ? undecided : *answer > 0.5 ? yes : no);
-    }
-  return probability(yes, no, undecided);
-}
-
 }  // namespace limcycle

@@ -2,7 +2,6 @@
 #include <cstddef>
 
 #include "limcycle/analysis/study/sensitivity/global/estimate.hpp"
-#include "limcycle/analysis/study/sensitivity/global/sobol_design.hpp"
 
 namespace limcycle {
 
@@ -14,6 +13,8 @@ namespace limcycle {
 Estimate share_of(std::size_t yes, std::size_t samples);
 
 /// Probability of an event (that a loop hunts), from samples in which it occurred, did not, or could not be decided.
+/// The points of a Sobol sequence fill the space more evenly than independent ones, so for them the interval is rather
+/// too wide.
 struct Probability {
   std::size_t yes = 0, no = 0, undecided = 0;
   Estimate among_decided;  ///< share of yes among yes and no: valid if undecided samples are like the others
@@ -21,12 +22,5 @@ struct Probability {
          high = 1.0;  ///< for any outcome of the undecided ones: Wilson's ends with all of them no, all of them yes
 };
 Probability probability(std::size_t yes, std::size_t no, std::size_t undecided);
-
-/// The same from the answers in the rows A and B of a design (the others repeat their coordinates, and are no samples
-/// of their own): yes above 0.5, no at 0.5 and below. The points of a Sobol sequence fill the space more evenly than
-/// independent ones, so the interval is rather too wide. For the parameters that decide between yes and no, use
-/// sobol_indices() of the same answers (1 and 0), by_total(). Throws std::invalid_argument if answers and rows differ
-/// in number.
-Probability probability(const SobolDesign& design, RowAnswers answers);
 
 }  // namespace limcycle

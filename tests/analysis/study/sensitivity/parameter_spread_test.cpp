@@ -3,8 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <stdexcept>
+
+#include "limcycle/analysis/study/sensitivity/global/random_stream.hpp"
 
 using namespace limcycle;
 
@@ -77,4 +80,54 @@ TEST_CASE("parameter spread: the middle and corners, balanced and independent of
       }
     }
   }
+}
+
+TEST_CASE("spread: correlated numbers keep their distributions and have the correlation asked for") {
+  ParameterSpread spread;
+  spread.parameters = {{.path = "a",
+                        .distribution = Distribution::normal,
+                        .low = -infinity,
+                        .high = infinity,
+                        .mean = 5.0,
+                        .deviation = 2.0},
+                       {.path = "b", .distribution = Distribution::uniform, .low = 2.0, .high = 6.0},
+                       {.path = "c",
+                        .distribution = Distribution::normal,
+                        .low = -infinity,
+                        .high = infinity,
+                        .mean = -1.0,
+                        .deviation = 0.5}};
+  const JointSpread independent(spread);
+  CHECK_FALSE(independent.correlated());
+  CHECK(independent.values({0.5, 0.25, 0.5}) == std::vector<double>{5.0, 3.0, -1.0});
+  spread.correlations = {{0, 2, -0.8}, {1, 2, 0.5}};
+  const JointSpread joint(spread);
+  REQUIRE(joint.correlated());
+  const int n = 20000;
+  double mean[3] = {}, square[3] = {}, product = 0.0, b_below_3 = 0.0, scores = 0.0;
+  RandomStream random(1, "test");
+  for (int k = 0; k < n; ++k) {
+    const auto x = joint.values({random.uniform(), random.uniform(), random.uniform()});
+    for (int i = 0; i < 3; ++i) mean[i] += x[static_cast<std::size_t>(i)] / n;
+    for (int i = 0; i < 3; ++i) square[i] += x[static_cast<std::size_t>(i)] * x[static_cast<std::size_t>(i)] / n;
+    product += (x[0] - 5.0) * (x[2] + 1.0) / n;
+    b_below_3 += x[1] < 3.0 ? 1.0 / n : 0.0;
+    scores += (x[1] - 4.0) * (x[2] + 1.0) / n;
+  }
+  CHECK(mean[0] == Approx(5.0).margin(0.06));
+  CHECK(square[0] - mean[0] * mean[0] == Approx(4.0).epsilon(0.04));
+  CHECK(mean[2] == Approx(-1.0).margin(0.015));
+  CHECK(b_below_3 == Approx(0.25).margin(0.012));
+  CHECK(product / (2.0 * 0.5) == Approx(-0.8).margin(0.02));
+  // Of a uniform and a normal number with the score correlation r: r sqrt(3/pi).
+  CHECK(scores / (0.5 * 4.0 / std::sqrt(12.0)) == Approx(0.5 * std::sqrt(3.0 / std::numbers::pi)).margin(0.02));
+}
+
+TEST_CASE("spread: correlations that no distribution has are refused") {
+  ParameterSpread spread;
+  for (const char* path : {"a", "b", "c"}) spread.parameters.push_back({.path = path, .low = 0.0, .high = 1.0});
+  spread.correlations = {{0, 1, 0.9}, {1, 2, 0.9}, {0, 2, 0.7}};
+  CHECK_NOTHROW(JointSpread(spread));
+  spread.correlations[2].value = 0.6;  // 0.9^2 - (1 - 0.9^2) = 0.62
+  CHECK_THROWS_AS(JointSpread(spread), std::invalid_argument);
 }

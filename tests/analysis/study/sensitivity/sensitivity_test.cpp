@@ -216,3 +216,54 @@ TEST_CASE("local sensitivity: a dead zone that is not there spoils only its own 
   CHECK(local[2].why.empty());
   CHECK(local[2].period > 1.0);
 }
+
+TEST_CASE("a plan of correlated numbers: a fair sample alone, its bands, and no share of the variance") {
+  ParameterSpread spread = spread_of({});
+  for (const char* path : {"a", "b"}) {
+    SpreadParameter one = evenly(path, -100.0, 100.0);
+    one.distribution = Distribution::normal;
+    one.deviation = 1.0;
+    spread.parameters.push_back(one);
+  }
+  const auto study = [&](double correlation) {
+    ParameterSpread joint = spread;
+    if (correlation != 0.0) joint.correlations = {{0, 1, correlation}};
+    const GlobalPlan plan(joint, 10, 1024, true);
+    CHECK(plan.correlated() == (correlation != 0.0));
+    if (plan.correlated()) CHECK(plan.size() == 2048);
+    CHECK(plan.fair_rows() == 2048);
+    std::vector<std::optional<HuntingAnswer>> answers;
+    for (std::size_t k = 0; k < plan.size(); ++k) {
+      const auto x = plan.values(k);
+      answers.push_back(HuntingAnswer{x[0] > 1.0 ? 0.0 : 1.0, 10.0 + x[0] + x[1], x[0] > 1.0 ? NAN : 5.0});
+    }
+    return global_sensitivity(plan, answers, 1e-6);
+  };
+  for (const double correlation : {0.0, 0.8, -0.8}) {
+    INFO(correlation);
+    const GlobalSensitivity found = study(correlation);
+    CHECK(found.hunting.among_decided.value == Approx(0.8413).margin(0.005));
+    const double deviation = std::sqrt(2.0 + 2.0 * correlation);
+    const OutputSensitivity& amplitude = found.outputs[1];
+    REQUIRE(amplitude.band);
+    CHECK(amplitude.band->median == Approx(10.0).margin(0.05 * deviation));
+    CHECK(amplitude.band->low == Approx(10.0 - 1.96 * deviation).margin(0.1 * deviation));
+    CHECK(amplitude.band->high == Approx(10.0 + 1.96 * deviation).margin(0.1 * deviation));
+    CHECK(amplitude.band->answers == 2048);
+    CHECK_FALSE(found.outputs[0].band);
+    CHECK(found.outputs[2].share_without_answer == Approx(0.1587).margin(0.005));
+    CHECK(found.outputs[2].band->low == 5.0);
+    CHECK(amplitude.sobol.parameters.empty() == (correlation != 0.0));
+    CHECK(amplitude.morris.parameters.empty() == (correlation != 0.0));
+    CHECK(found.matters_most.has_value() == (correlation == 0.0));
+  }
+}
+
+TEST_CASE("a band needs enough loops that hunt") {
+  const GlobalPlan plan(spread_of({evenly("a", 0.0, 1.0)}), 4, 64, false);
+  std::vector<std::optional<HuntingAnswer>> answers(plan.size());
+  for (std::size_t k = 0; k < answers_of_a_band; ++k) answers[plan.fair_row(k)] = HuntingAnswer{1.0, 2.0, 3.0};
+  CHECK(global_sensitivity(plan, answers, 0.0).outputs[1].band);
+  answers[plan.fair_row(0)].reset();
+  CHECK_FALSE(global_sensitivity(plan, answers, 0.0).outputs[1].band);
+}

