@@ -7,11 +7,12 @@
 
 namespace limcycle {
 
-IdentifyReport ask_identify(const Case& from, const Asking& asking) {
+IdentifyReport ask_identify(const Case& from, bool plan, const Asking& asking) {
   IdentifyOptions options;
   options.stop = asking.stop;
   options.progress = asking.progress;
-  const IdentifyRequest request = identify_request(from);
+  IdentifyRequest request = identify_request(from);
+  request.plan = plan;
   try {
     return identify(request, options);
   } catch (const std::invalid_argument& unusable) {

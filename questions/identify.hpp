@@ -7,7 +7,8 @@ namespace limcycle {
 
 /// The laws of [identify], fitted to its records. Throws InputError if the case has no such section, or a file
 /// or a record cannot be used.
-IdentifyReport ask_identify(const Case& from, const Asking& asking);
+/// With `plan` also what one more record would tell.
+IdentifyReport ask_identify(const Case& from, bool plan, const Asking& asking);
 
 /// Text of the case with the fitted law, checked as it would be read from `file`. Throws NoAnswer if no law was chosen,
 /// or its numbers make no valid case there.

@@ -12,6 +12,7 @@ namespace limcycle {
 namespace {
 
 struct IdentifyFlags : CommonFlags {
+  bool plan = false;    ///< --plan
   std::string fitted;   ///< --fitted
   std::string picture;  ///< --svg
 };
@@ -40,7 +41,7 @@ int run(IdentifyFlags flags) {
   IdentifyReport report;
   {
     Progress progress(flags.quiet, flags.verbose);
-    report = ask_identify(from, asking_of(flags, progress));
+    report = ask_identify(from, flags.plan, asking_of(flags, progress));
   }
   const auto made = provenance(flags, &from);
   std::string fitted, no_fitted;
@@ -71,6 +72,7 @@ void add_identify(CLI::App& program, Action& action) {
                                   [flags] { return run(*flags); });
   command->add_option("--fitted", flags->fitted, "Write the case with the fitted law to FILE (so does -o FILE.toml)")
       ->type_name("FILE");
+  command->add_flag("--plan", flags->plan, "Also print how far one more record of each kind would narrow each number");
   command
       ->add_option("--svg", flags->picture,
                    "Write measured and fitted forces to FILE (so does -o FILE.svg or FILE.pdf)")

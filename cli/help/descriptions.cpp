@@ -152,11 +152,12 @@ std::vector<Description> enough() {
        "number with its 95 % interval, names those "
        "that the records do not determine, and chooses the simplest law that the records support. -o FILE.toml writes "
        "the case with the fitted law, for `predict`, `sensitivity` and `report`; -o FILE.svg draws measured and fitted "
-       "forces.",
+       "forces. --plan shows which further record would narrow which number most.",
        {{"limcycle identify cases/records/servo.toml -o fitted.toml",
          "fit three laws, and write the case with the best"},
         {"limcycle identify cases/records/carriage.toml", "the friction force was not measured, only the motion"},
-        {"limcycle identify cases/records/servo.toml -o fit.svg", "measured and fitted forces as a picture"}}},
+        {"limcycle identify cases/records/servo.toml -o fit.svg", "measured and fitted forces as a picture"},
+        {"limcycle identify cases/records/servo.toml --plan", "and what should be measured next"}}},
       {"synthesize",
        trust_group,
        "Writes records that a rig with the friction law of the case would give, with noise and other faults of "

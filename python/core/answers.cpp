@@ -351,8 +351,8 @@ Answer tune_answer(const Question& question, const TuneWishes& wishes) {
   return answer;
 }
 
-Answer identify_answer(const Question& question) {
-  const auto report = computed([&] { return ask_identify(*question.from, question.asking); });
+Answer identify_answer(const Question& question, bool plan) {
+  const auto report = computed([&] { return ask_identify(*question.from, plan, question.asking); });
   const Sheet sheet = sheet_of(question, report->status);
   Answer answer = documents(sheet, report, identify_json, identify_csv, identify_document);
   answer.picture = [=] { return identify_picture(*report); };

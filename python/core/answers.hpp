@@ -25,6 +25,6 @@ Answer sensitivity_answer(const Question& question, const SensitivityWishes& wis
 Answer dissipativity_answer(const Question& question, const DissipativityWishes& wishes);
 Answer remedy_answer(const Question& question, const RemedyWishes& wishes);
 Answer tune_answer(const Question& question, const TuneWishes& wishes);
-Answer identify_answer(const Question& question);
+Answer identify_answer(const Question& question, bool plan);
 
 }  // namespace limcycle::python

@@ -287,7 +287,8 @@ def tune(loop: Loop, vary: Mapping[str, Tuple[float, float]], *, minimise: str =
 
 
 @_explained
-def identify(case: Loop, *, time_limit: Optional[float] = None, progress: Progress = None) -> _results.Identification:
+def identify(case: Loop, *, plan: bool = False, time_limit: Optional[float] = None, progress: Progress = None) -> _results.Identification:
     """Friction laws fitted to measured records, as the section [identify] of a case names them: load() it, or give
-    Loop(identify={"law": [...], "record": [{"kind": ..., "file": ...}]})."""
-    return _results.Identification(_core.identify(_case_of(case), _work(time_limit, progress)))
+    Loop(identify={"law": [...], "record": [{"kind": ..., "file": ...}]}). `plan`: also how far one more record of each kind
+    would narrow each number."""
+    return _results.Identification(_core.identify(_case_of(case), _work(time_limit, progress), bool(plan)))

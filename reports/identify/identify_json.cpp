@@ -67,6 +67,20 @@ Json law_json(const IdentifiedLaw& law) {
           {"status", to_string(law.status)}};
 }
 
+Json plan_json(const IdentifiedLaw& law) {
+  if (!law.plan) return nullptr;
+  Json now = Json::array(), records = Json::array();
+  for (std::size_t i = 0; i < law.numbers.size(); ++i)
+    now.push_back({{"name", path_of(law.numbers[i].name)},
+                   {"unit", law.numbers[i].unit},
+                   {"value", number(law.plan->values[i])},
+                   {"half_width", number(law.plan->half_width[i])}});
+  for (const PlannedRecord& one : law.plan->records)
+    records.push_back({{"kind", to_string(one.kind)}, {"rows", one.rows}, {"half_widths", numbers(one.half_width)}});
+  return {
+      {"noise", law.plan->noise}, {"noise_is_assumed", law.plan->noise_is_assumed}, {"now", now}, {"records", records}};
+}
+
 }  // namespace
 
 std::string identify_json(const Provenance& provenance, const IdentifyReport& report) {
@@ -85,6 +99,7 @@ std::string identify_json(const Provenance& provenance, const IdentifyReport& re
                               {"largest_force", record.motion ? Json(nullptr) : number(record.largest_force)},
                               {"notes", record.notes}});
   top["shooting"] = report.shooting ? Json(to_string(*report.shooting)) : Json(nullptr);
+  top["plan"] = report.chosen ? plan_json(report.laws[*report.chosen]) : Json(nullptr);
   top["status"] = to_string(report.status);
   return json_document("identify", provenance, json_text(top));
 }

@@ -168,6 +168,51 @@ std::string details(const IdentifyReport& report, const IdentifiedLaw& law) {
   return notes_text(notes);
 }
 
+/// "1.2 %" of the value, or with the unit where that is 0.
+std::string width_text(double half_width, double value, const std::string& unit) {
+  if (!std::isfinite(half_width)) return "-";
+  return value != 0.0 ? with_digits(100.0 * half_width / std::abs(value), 2) + " %"
+                      : Units::attach(with_digits(half_width, 2), unit);
+}
+
+Table plan_table(const IdentifiedLaw& law) {
+  const IdentifyPlan& plan = *law.plan;
+  Table table{{{"number", "", Align::left}, {"now", ""}}, {}};
+  for (const PlannedRecord& one : plan.records) table.columns.push_back({"+ " + std::string(to_string(one.kind)), ""});
+  for (std::size_t i = 0; i < law.numbers.size(); ++i) {
+    std::vector<std::string> cells{law.numbers[i].name,
+                                   width_text(plan.half_width[i], plan.values[i], unit_of(law.numbers[i]))};
+    double least = infinite;
+    for (const PlannedRecord& one : plan.records) least = std::min(least, one.half_width[i]);
+    for (const PlannedRecord& one : plan.records)
+      cells.push_back(width_text(one.half_width[i], plan.values[i], unit_of(law.numbers[i])) +
+                      (std::isfinite(least) && one.half_width[i] <= least ? " *" : "  "));
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+/// What to measure next, for the number that is known least.
+std::string plan_sentence(const IdentifiedLaw& law) {
+  const IdentifyPlan& plan = *law.plan;
+  const auto share = [&](const std::vector<double>& widths, std::size_t i) {
+    return plan.values[i] == 0.0 ? 0.0 : widths[i] / std::abs(plan.values[i]);
+  };
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < law.numbers.size(); ++i)
+    if (share(plan.half_width, i) > share(plan.half_width, worst)) worst = i;
+  const auto best =
+      std::ranges::min_element(plan.records, {}, [&](const PlannedRecord& one) { return one.half_width[worst]; });
+  const std::string name = law.numbers[worst].name, unit = unit_of(law.numbers[worst]);
+  if (!std::isfinite(best->half_width[worst]))
+    return fmt::format("No further record of these kinds would determine {}.", name);
+  return fmt::format(
+      "The number that is known least is {}{}: a further record of the kind {} would narrow it most, to +-{}.", name,
+      std::isfinite(plan.half_width[worst]) ? ", to +-" + width_text(plan.half_width[worst], plan.values[worst], unit)
+                                            : "",
+      to_string(best->kind), width_text(best->half_width[worst], plan.values[worst], unit));
+}
+
 }  // namespace
 
 std::string record_label(const PreparedRecord& record) {
@@ -199,6 +244,14 @@ Document identify_document(const std::string& title, const IdentifyReport& repor
   if (const IdentifiedLaw* law = shown_law(report)) {
     out.add(fmt::format("Numbers of {}", law->law.kind()), number_table(*law));
     out.add("Records", record_table(report, *law));
+    if (law->plan) {
+      out.add("Half-width of the 95 % interval of each number, now and with one more record", plan_table(*law));
+      out += wrapped(plan_sentence(*law)) +
+             wrapped(fmt::format(
+                 "*: narrows it most. The records are those that limcycle synthesize makes for this law, with "
+                 "a noise of {} of the largest force{}.",
+                 as_percent(law->plan->noise), law->plan->noise_is_assumed ? " (assumed)" : ""));
+    }
     out += details(report, *law);
   }
   if (report.status != Status::converged) out += fmt::format("\nStatus: {}\n", to_string(report.status));

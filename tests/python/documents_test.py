@@ -106,6 +106,7 @@ class Documents(unittest.TestCase):
     def test_identify(self):
         file = case("records/servo")
         self.same(limcycle.identify(limcycle.load(file)), "identify", file)
+        self.same(limcycle.identify(limcycle.load(file), plan=True), "identify", file, "--plan")
 
     def test_what_a_time_limit_cut_short_says_so_first(self):
         sides = (("loop.controller.kd", 1.0, 50.0, 100), ("loop.controller.kp", 1.0, 50.0, 100))

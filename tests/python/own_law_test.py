@@ -28,6 +28,17 @@ class Dahl:
         return v - self.sigma0 * abs(v) * z[0] / self.Fc
 
 
+class ArrayDahl(Dahl):
+    """The same written for arrays of velocities and states."""
+
+    def output(self, v, z):
+        return self.sigma0 * np.asarray(z)[0]
+
+    def rate(self, v, z):
+        z = np.asarray(z)
+        return np.array([np.where(v == 0.0, 0.0, v - self.sigma0 * np.abs(v) * z[0] / self.Fc)])
+
+
 class Viscous:
     """F = c v + d v^3, no state."""
 
@@ -60,6 +71,13 @@ class OwnLaws(unittest.TestCase):
         grid = ([0.003, 0.02], [1.0, 5.0])
         own = limcycle.df(Dahl(), *grid).gain
         np.testing.assert_allclose(own, limcycle.df(limcycle.laws.dahl(Fc=1.0, sigma0=100.0), *grid).gain, rtol=1e-5)
+
+    def test_a_law_written_for_arrays(self):
+        gain = [limcycle.df(law(), [1e-3, 0.02], [1.0]).gain for law in (Dahl, ArrayDahl)]
+        np.testing.assert_allclose(gain[1], gain[0], rtol=1e-9)
+        loops = [servo(friction=law(), search={"amplitude": [1e-3, 1.0], "frequency": [0.1, 10.0]}) for law in (Dahl, ArrayDahl)]
+        runs = [limcycle.simulate(loop, 1.0, initial={"y": 0.1}, sample=0.25)["y"] for loop in loops]
+        np.testing.assert_allclose(runs[1], runs[0], rtol=1e-9)
 
     def test_runs_are_those_of_the_library(self):
         given = {"plant": {"kind": "belt", "mass": 1.0, "stiffness": 4.0, "damping": 0.2, "speed": 0.1}}

@@ -27,6 +27,8 @@ class LawFit {
   double held_out() const { return result_.status == Status::converged ? result_.held_out : NAN; }
   /// The fit with intervals: by profile likelihood, or linear ones, which cost little.
   IdentifiedLaw with_intervals(bool profiled);
+  /// See plan_records().
+  std::optional<IdentifyPlan> plan() const { return plan_records(misfit_now(), best_.u, stop_); }
 
  private:
   /// A fit with the noise that it leaves.

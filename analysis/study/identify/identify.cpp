@@ -87,6 +87,7 @@ IdentifyReport identify(const IdentifyRequest& request, const IdentifyOptions& o
     report.laws.push_back(one->with_intervals(fits.size() == 1 || one->held_out() <= far_worse * least));
   }
   if (!stop()) report.chosen = simplest(report.laws);
+  if (request.plan && report.chosen) report.laws[*report.chosen].plan = fits[*report.chosen]->plan();
   report.status = stop() ? Status::interrupted : report.chosen ? Status::converged : Status::stalled;
   return report;
 }

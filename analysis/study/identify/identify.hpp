@@ -7,6 +7,7 @@
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/identify/free/free_response.hpp"
 #include "limcycle/analysis/study/identify/parameter_space.hpp"
+#include "limcycle/analysis/study/identify/plan.hpp"
 #include "limcycle/analysis/study/identify/residuals.hpp"
 
 namespace limcycle {
@@ -17,6 +18,7 @@ struct IdentifyRequest {
   std::vector<FrictionRecord> records;
   FreeChoice choice;
   std::optional<FreeRig> rig = {};  ///< what moves in free motions
+  bool plan = false;                ///< say what one more record would tell
 };
 
 struct IdentifyOptions {
@@ -60,6 +62,7 @@ struct IdentifiedLaw {
   std::vector<Undetermined> undetermined = {};
   std::vector<RecordFit> records = {};
   double march_error = NAN;  ///< largest change of an entry when the steps are halved, over its record's noise
+  std::optional<IdentifyPlan> plan = {};  ///< of the chosen law, if it was asked for
   long evaluations = 0;
   Status status = Status::converged;
   std::vector<std::string> notes = {};

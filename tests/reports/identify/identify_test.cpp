@@ -47,6 +47,31 @@ TEST_CASE("identify report: a number that the records do not determine has no di
   CHECK_THAT(identify_csv(report), Contains("coulomb,true,") && Contains("loop.friction.Fs,N,,"));
 }
 
+TEST_CASE("identify report: what one more record would tell") {
+  IdentifyReport report = table_report();
+  IdentifiedLaw& law = report.laws.front();
+  CHECK(IdentifyJson::parse(identify_json({}, report))["plan"].is_null());
+  law.plan = IdentifyPlan{
+      .noise = 0.02,
+      .noise_is_assumed = true,
+      .values = {2.0, 1.5, 0.0},
+      .half_width = {0.1, infinite, 0.5},
+      .records = {{RecordKind::lag, 100, {0.05, infinite, 0.4}}, {RecordKind::break_away, 200, {0.08, 0.3, 0.5}}}};
+  const std::string text = identify_text("a rig", report);
+  CHECK_THAT(text, Contains("5.0 %") && Contains("2.5 % *") && Contains("4.0 %"));
+  CHECK_THAT(text, Contains("20 % *") && Contains("0.50 N s/m") && Contains("0.40 N s/m *"));
+  CHECK_THAT(
+      text,
+      Contains("The number that is known least is Fs: a further record of the kind break-away\nwould narrow it most"));
+  CHECK_THAT(text, Contains("2 % of the largest force (assumed)"));
+  const auto plan = IdentifyJson::parse(identify_json({}, report))["plan"];
+  CHECK(plan["now"][1]["half_width"].is_null());
+  CHECK(plan["now"][0]["name"] == "loop.friction." + law.numbers[0].name);
+  CHECK(plan["records"][1]["half_widths"][1] == 0.3);
+  law.plan->records[1].half_width[1] = infinite;
+  CHECK_THAT(identify_text("a rig", report), Contains("No further record of these kinds would determine Fs."));
+}
+
 TEST_CASE("identify report: the fitted law takes the place of the one in the case") {
   const IdentifyReport report = table_report();
   const std::string text =
