@@ -192,11 +192,11 @@ const claim = table('A claim of your own: quantity comparison formula', {
   ],
 });
 
-const identified = ['coulomb', 'stribeck', 'lugre', 'elasto-plastic', 'gms'];
+const identified = ['coulomb', 'stribeck', 'dahl', 'lugre', 'elasto-plastic', 'gms'];
 const column = (description) => ({ type: ['string', 'integer'], minimum: 1, maximum: 10_000, description });
 /// Single numbers of the laws that can be identified.
 const fitted_keys = [
-  'Fc', 'Fs', 'Fc_minus', 'Fs_minus', 'vs', 'delta', 'sigma0', 'sigma1', 'sigma2', 'vd', 'zba_ratio', 'C',
+  'Fc', 'Fs', 'Fc_minus', 'Fs_minus', 'vs', 'delta', 'sigma0', 'sigma1', 'sigma2', 'vd', 'zba_ratio', 'C', 'exponent',
 ];
 
 const record = table('A file of measured friction', {

@@ -8,6 +8,7 @@
 
 #include "limcycle/analysis/study/identify/friction_response.hpp"
 #include "limcycle/models/dual.hpp"
+#include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
@@ -18,7 +19,7 @@
 namespace limcycle {
 
 /// Kinds of laws that can be identified.
-using IdentifiedLaws = KindList<Coulomb, Stribeck, LuGre, ElastoPlastic, Gms>;
+using IdentifiedLaws = KindList<Coulomb, Stribeck, Dahl, LuGre, ElastoPlastic, Gms>;
 
 /// The law on dual numbers D, with `numbers` as its variables. Rows of the table that follow another one by default
 /// follow it, unless they are among `own_rows`.

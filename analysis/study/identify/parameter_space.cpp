@@ -184,12 +184,13 @@ std::vector<Bound> ParameterSpace::bounds() const {
   }
   for (const auto& [above, below] : {std::pair("Fs", "Fc"), std::pair("Fs_minus", "Fc_minus")}) {
     const auto high = source_of(above), low = source_of(below);
-    if (!high && !low) continue;
+    const auto at_above = kind_.number(key_behind(above)), at_below = kind_.number(key_behind(below));
+    if ((!high && !low) || !at_above || !at_below) continue;  // held, or a law without these levels
     Bound bound{high ? coordinate_of(*high) : -1, low ? coordinate_of(*low) : -1, 0.0,
                 std::string(above) + " comes out at its bound, " + below};
     constexpr double beyond_rounding = 1e-14;  // exp(log(Fc)) may be less than Fc
-    if (!high) bound.at = std::log(kind_.number(key_behind(above)).value()) - beyond_rounding;
-    if (!low) bound.at = std::log(kind_.number(key_behind(below)).value()) + beyond_rounding;
+    if (!high) bound.at = std::log(*at_above) - beyond_rounding;
+    if (!low) bound.at = std::log(*at_below) + beyond_rounding;
     const auto same = [&](const Bound& one) {
       return one.above == bound.above && one.below == bound.below && one.at == bound.at;
     };

@@ -40,9 +40,9 @@ struct Dahl {
 
   int states() const { return 1; }
   void rate(const Input<S>& in, Mode, std::span<const S> z, std::span<S> dz) const {
-    using std::abs;
     const S left = S(1.0) - sign(in.v) * sigma0 * z[0] / Fc;
-    dz[0] = in.v * sign(left) * power(abs(left), exponent);
+    const S side = sign(left);  // abs() would have no slope at 0, in steady sliding, where the rate relaxes
+    dz[0] = in.v * side * power(side * left, exponent);
   }
   S output(const Input<S>&, Mode, std::span<const S> z) const { return sigma0 * z[0]; }
   S storage(Mode, std::span<const S> z) const { return S(0.5) * sigma0 * z[0] * z[0]; }

@@ -174,5 +174,5 @@ TEST_CASE("friction response: a reversal behind steady sliding is that of small 
 }
 
 TEST_CASE("friction response: other laws are refused") {
-  CHECK_THROWS_AS(response_of(kind_named("dahl"), {}), std::invalid_argument);
+  CHECK_THROWS_AS(response_of(kind_named("bouc-wen"), {}), std::invalid_argument);
 }

@@ -50,7 +50,7 @@ Coverage coverage(const Element& truth, int repetitions) {
 }  // namespace
 
 TEST_CASE("identify: without noise the numbers come out exactly") {
-  for (const Element& truth : {coulomb_rig(), stribeck_rig(), lugre_rig()}) {
+  for (const Element& truth : {coulomb_rig(), stribeck_rig(), dahl_rig(), lugre_rig()}) {
     INFO(truth.kind());
     const auto report = identified(truth, {std::string(truth.kind())}, {.noise = 0.0}, 1);
     REQUIRE(report.chosen);
@@ -65,7 +65,7 @@ TEST_CASE("identify: without noise the numbers come out exactly") {
 }
 
 TEST_CASE("identify: 95 % intervals hold the true numbers as often as they say") {
-  for (const Element& truth : {coulomb_rig(), stribeck_rig()}) {
+  for (const Element& truth : {coulomb_rig(), stribeck_rig(), dahl_rig()}) {
     INFO(truth.kind());
     const Coverage found = coverage(truth, samples(20));
     CHECK(found.undetermined == 0);
@@ -184,7 +184,8 @@ TEST_CASE("identify: the simplest law that the records support is chosen") {
   const std::pair<Element, std::vector<std::string>> cases[] = {
       {coulomb_rig(), {"stribeck", "coulomb"}},
       {stribeck_rig(), {"coulomb", "lugre", "stribeck"}},
-      {lugre_rig(), {"elasto-plastic", "stribeck", "lugre"}},
+      {dahl_rig(), {"lugre", "stribeck", "dahl"}},
+      {lugre_rig(), {"elasto-plastic", "dahl", "lugre"}},
   };
   for (const auto& [truth, laws] : some_of(std::vector(std::begin(cases), std::end(cases)))) {
     INFO(truth.kind());

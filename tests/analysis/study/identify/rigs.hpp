@@ -33,6 +33,7 @@ inline Element law_with(const std::string& kind, const std::vector<std::pair<std
   return law.with(values);
 }
 
+inline Element dahl_rig() { return law_with("dahl", {{"Fc", 1.0}, {"sigma0", 1e5}}); }
 inline Element lugre_rig() {
   return law_with("lugre",
                   {{"Fs", 1.5}, {"Fc", 1.0}, {"vs", 1e-3}, {"sigma0", 1e5}, {"sigma1", 300.0}, {"sigma2", 20.0}});
