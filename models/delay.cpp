@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "limcycle/models/element/delayed_relay.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/delayed_relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/measured/plants_of_loop.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/models/diagram/on_clock.hpp"
-#include "limcycle/models/element/quantizer.hpp"
+#include "limcycle/models/element/memoryless/quantizer.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/sampled_response.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/models/element/clamped_pi.hpp"
-#include "limcycle/models/element/sampled.hpp"
+#include "limcycle/models/element/of_controllers/clamped_pi.hpp"
+#include "limcycle/models/element/of_controllers/sampled.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/loop.hpp"
 

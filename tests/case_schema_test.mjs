@@ -176,8 +176,9 @@ const is_leaf = (node) => node === null || typeof node !== 'object';
 const below = (node) => (is_leaf(node) ? [] : [node, ...Object.values(node).flatMap(below)]);
 const known = new Set(below(schema).flatMap((node) => Object.keys(node.properties ?? {})));
 const tried = new Set(below(valid.map(({ document }) => document)).flatMap(Object.keys));
-for (const file of readdirSync(join(root, 'cases/loader')).filter((name) => /^(read_.*|case)\.cpp$/.test(name)))
-  for (const [, keys] of readFileSync(join(root, 'cases/loader', file), 'utf8').matchAll(/allow\(\{([^}]*)\}/g))
+const readers = readdirSync(join(root, 'cases/loader/sections')).filter((name) => /^read_.*\.cpp$/.test(name));
+for (const file of ['loader/case.cpp', ...readers.map((name) => `loader/sections/${name}`)])
+  for (const [, keys] of readFileSync(join(root, 'cases', file), 'utf8').matchAll(/allow\(\{([^}]*)\}/g))
     for (const [, key] of keys.matchAll(/"([^"]+)"/g)) {
       expect(known.has(key), `the schema does not know the key ${key} of cases/${file}`);
       expect(tried.has(key), `tests/case_schema_forms.mjs has no form with the key ${key} of cases/${file}`);

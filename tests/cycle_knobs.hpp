@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/orbit/derivatives/cycle_derivatives.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/loops.hpp"
 

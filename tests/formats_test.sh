@@ -9,7 +9,7 @@ complain() {
   failed=true
 }
 
-keys=$(tr '\n' ' ' <<<"$(cat cases/loader/read_*.cpp)" | grep -oE 'allow\(\{[^}]*\}' | grep -oE '"[^"]+"' | tr -d '"' | sort -u)
+keys=$(tr '\n' ' ' <<<"$(cat cases/loader/sections/read_*.cpp)" | grep -oE 'allow\(\{[^}]*\}' | grep -oE '"[^"]+"' | tr -d '"' | sort -u)
 (($(wc -w <<<"$keys") > 30)) || complain "only these keys were found: $keys"
 for key in $keys; do
   grep -qE "[\`{. ]$key[\`,} ]|loop\\.$key\\]" docs/formats.md || complain "docs/formats.md does not name the key $key"

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <vector>
 
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/relay.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/models/friction/dry/stribeck.hpp"

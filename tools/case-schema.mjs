@@ -7,7 +7,7 @@ const laws = JSON.parse(readFileSync(0, 'utf8')).laws;
 const of_group = (group) => laws.filter((law) => law.group === group);
 const name_of = (law) => `${law.group.replace(' ', '-')}-${law.kind}`;
 
-/// As many entries as a list, or rows and columns as a matrix, may have: longest_list of cases/loader/parameters.hpp.
+/// As many entries as a list, or rows and columns as a matrix, may have: longest_list of cases/loader/sections/parameters.hpp.
 const longest = { maxItems: 201 };
 const longest_data = { maxItems: 100000 };
 

@@ -1,4 +1,4 @@
-// The sections of a case file as JSON Schema, for tools/case-schema.mjs: written out after cases/loader/read_*.cpp, as no
+// The sections of a case file as JSON Schema, for tools/case-schema.mjs: written out after cases/loader/sections/read_*.cpp, as no
 // table of the program lists them. tests/case_schema_test.mjs holds them against the program.
 
 const number = (description, more = {}) => ({ type: 'number', ...more, description });
@@ -46,7 +46,7 @@ export const by_kind = (description, kinds, meanings, type = 'object') => ({
   })),
 });
 
-// ---- signals of time: cases/loader/read_signal.cpp
+// ---- signals of time: cases/loader/sections/read_signal.cpp
 
 const start = number('before which it is 0, s', { minimum: 0, default: 0 });
 const rate = number('slope, 1/s');

@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/models/element/sampled.hpp"
+#include "limcycle/models/element/of_controllers/sampled.hpp"
 
 namespace limcycle {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "limcycle/analysis/motion/sampling.hpp"
-#include "limcycle/models/element/clamped_pi.hpp"
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/reset_integrator.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/of_controllers/clamped_pi.hpp"
+#include "limcycle/models/element/of_controllers/reset_integrator.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/transfer.hpp"
 

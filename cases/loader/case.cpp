@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "limcycle/cases/loader/sections.hpp"
+#include "limcycle/cases/loader/sections/sections.hpp"
 #include "limcycle/models/measured/plants_of_loop.hpp"
 
 namespace limcycle {

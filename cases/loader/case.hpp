@@ -10,7 +10,7 @@
 #include "limcycle/analysis/study/identify/identify.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/analysis/study/sensitivity/parameter_spread.hpp"
-#include "limcycle/cases/loader/csv_reader.hpp"
+#include "limcycle/cases/loader/data/csv_reader.hpp"
 #include "limcycle/cases/loader/input_error.hpp"
 #include "limcycle/models/loop.hpp"
 #include "limcycle/models/measured/curve_file.hpp"

@@ -6,7 +6,7 @@
 
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/owned_parts.hpp"
-#include "limcycle/cases/loader/sections.hpp"
+#include "limcycle/cases/loader/sections/sections.hpp"
 #include "limcycle/cases/loader/value.hpp"
 
 namespace limcycle {

@@ -2,7 +2,7 @@
 #include <complex>
 #include <optional>
 
-#include "limcycle/cases/loader/csv_reader.hpp"
+#include "limcycle/cases/loader/data/csv_reader.hpp"
 #include "limcycle/cases/loader/value.hpp"
 #include "limcycle/models/parameter.hpp"
 

@@ -1,8 +1,8 @@
 #include "limcycle/models/diagram/assemble.hpp"
 
 #include "limcycle/models/diagram/signal_rows.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
 
 namespace limcycle {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <stdexcept>
 
-#include "limcycle/models/element/output_rate.hpp"
+#include "limcycle/models/element/of_controllers/output_rate.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {

@@ -1,9 +1,9 @@
 #include "limcycle/models/diagram/controller_blocks.hpp"
 
-#include "limcycle/models/element/clamped_pi.hpp"
-#include "limcycle/models/element/reset_integrator.hpp"
-#include "limcycle/models/element/sampled.hpp"
-#include "limcycle/models/element/window.hpp"
+#include "limcycle/models/element/memoryless/window.hpp"
+#include "limcycle/models/element/of_controllers/clamped_pi.hpp"
+#include "limcycle/models/element/of_controllers/reset_integrator.hpp"
+#include "limcycle/models/element/of_controllers/sampled.hpp"
 #include "limcycle/models/linear/discrete.hpp"
 
 namespace limcycle {

@@ -3,7 +3,7 @@
 
 #include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/models/diagram/diagram.hpp"
-#include "limcycle/models/element/sampled.hpp"
+#include "limcycle/models/element/of_controllers/sampled.hpp"
 
 namespace limcycle {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "limcycle/models/element/compensation.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/of_controllers/compensation.hpp"
 
 namespace limcycle {
 

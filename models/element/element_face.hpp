@@ -2,8 +2,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "limcycle/models/element/differenced.hpp"
 #include "limcycle/models/element/element.hpp"
+#include "limcycle/models/element/of_controllers/differenced.hpp"
 
 /// Puts a class behind the face of an element. Included by the source of each law, which compiles that law once, and by
 /// own_law.hpp, for the laws of users.

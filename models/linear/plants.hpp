@@ -3,7 +3,7 @@
 #include <string>
 #include <variant>
 
-#include "limcycle/models/element/gravity.hpp"
+#include "limcycle/models/element/memoryless/gravity.hpp"
 #include "limcycle/models/linear/state_space.hpp"
 #include "limcycle/models/measured/measured_plant.hpp"
 #include "limcycle/models/parameter.hpp"

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "limcycle/models/element/valve_stiction.hpp"
+#include "limcycle/models/element/with_memory/valve_stiction.hpp"
 #include "limcycle/models/linear/plants.hpp"
 #include "limcycle/reports/case_files/case_format.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"

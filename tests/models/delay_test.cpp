@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/delayed_relay.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/with_memory/delayed_relay.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/tests/loops.hpp"
 

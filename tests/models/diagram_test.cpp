@@ -3,8 +3,8 @@
 
 #include "limcycle/models/delay.hpp"
 #include "limcycle/models/diagram/assemble.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/delayed_relay.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/with_memory/delayed_relay.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "limcycle/models/element/gravity.hpp"
+#include "limcycle/models/element/memoryless/gravity.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/plants.hpp"
 #include "limcycle/tests/loops.hpp"

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/laws.hpp"

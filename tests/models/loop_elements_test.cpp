@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/models/diagram/assemble.hpp"
-#include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/compensation.hpp"
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/output_rate.hpp"
-#include "limcycle/models/element/quantizer.hpp"
-#include "limcycle/models/element/valve_stiction.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/quantizer.hpp"
+#include "limcycle/models/element/of_controllers/compensation.hpp"
+#include "limcycle/models/element/of_controllers/output_rate.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
+#include "limcycle/models/element/with_memory/valve_stiction.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/models/element/compensation.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/delayed_relay.hpp"
-#include "limcycle/models/element/output_rate.hpp"
-#include "limcycle/models/element/quantizer.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/quantizer.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/of_controllers/compensation.hpp"
+#include "limcycle/models/element/of_controllers/output_rate.hpp"
+#include "limcycle/models/element/with_memory/delayed_relay.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/dry/stribeck.hpp"
 #include "limcycle/tests/loops.hpp"

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "limcycle/models/diagram/assemble.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/tests/gantry.hpp"
 #include "limcycle/tests/loops.hpp"
 

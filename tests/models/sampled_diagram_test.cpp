@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/models/diagram/assemble.hpp"
-#include "limcycle/models/element/sampled.hpp"
+#include "limcycle/models/element/of_controllers/sampled.hpp"
 #include "limcycle/models/sampled_response.hpp"
 #include "limcycle/tests/loops.hpp"
 

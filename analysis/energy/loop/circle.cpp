@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
 
 namespace limcycle {
 namespace {

@@ -7,7 +7,7 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/settle/linear_motion.hpp"
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 
 namespace limcycle {
 namespace {

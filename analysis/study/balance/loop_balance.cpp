@@ -16,9 +16,9 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/return_map.hpp"
 #include "limcycle/analysis/study/balance/quasi_linear.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/quantizer.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/quantizer.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {

@@ -6,9 +6,9 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
-#include "limcycle/models/element/clamped_pi.hpp"
-#include "limcycle/models/element/quantizer.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/quantizer.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/of_controllers/clamped_pi.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {

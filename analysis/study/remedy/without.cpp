@@ -4,11 +4,11 @@
 #include <cmath>
 #include <functional>
 
-#include "limcycle/models/element/clamped_pi.hpp"
-#include "limcycle/models/element/compensation.hpp"
-#include "limcycle/models/element/relay.hpp"
-#include "limcycle/models/element/saturation.hpp"
-#include "limcycle/models/element/valve_stiction.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/of_controllers/clamped_pi.hpp"
+#include "limcycle/models/element/of_controllers/compensation.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
+#include "limcycle/models/element/with_memory/valve_stiction.hpp"
 #include "limcycle/models/linear/integral_action.hpp"
 
 namespace limcycle {

@@ -4,9 +4,9 @@
 #include <random>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
-#include "limcycle/models/element/lookup.hpp"
-#include "limcycle/models/element/rate_limit.hpp"
-#include "limcycle/models/element/valve_stiction.hpp"
+#include "limcycle/models/element/memoryless/lookup.hpp"
+#include "limcycle/models/element/with_memory/rate_limit.hpp"
+#include "limcycle/models/element/with_memory/valve_stiction.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
 using namespace limcycle;

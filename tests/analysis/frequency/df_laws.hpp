@@ -4,10 +4,10 @@
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
-#include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/tests/loops.hpp"
 

@@ -3,9 +3,9 @@
 #include <numbers>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
-#include "limcycle/models/element/clamped_pi.hpp"
-#include "limcycle/models/element/reset_integrator.hpp"
-#include "limcycle/models/element/window.hpp"
+#include "limcycle/models/element/memoryless/window.hpp"
+#include "limcycle/models/element/of_controllers/clamped_pi.hpp"
+#include "limcycle/models/element/of_controllers/reset_integrator.hpp"
 #include "limcycle/models/friction/sliders/jenkins.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/models/element/reset_integrator.hpp"
+#include "limcycle/models/element/of_controllers/reset_integrator.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

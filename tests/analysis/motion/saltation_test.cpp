@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/analysis/motion/field/loop_field.hpp"
-#include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/delayed_relay.hpp"
-#include "limcycle/models/element/relay.hpp"
-#include "limcycle/models/element/reset_integrator.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/of_controllers/reset_integrator.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
+#include "limcycle/models/element/with_memory/delayed_relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/tests/analysis/motion/one_step.hpp"
 #include "limcycle/tests/loops.hpp"
 

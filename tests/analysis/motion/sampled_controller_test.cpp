@@ -1,4 +1,4 @@
-#include "limcycle/models/element/sampled.hpp"
+#include "limcycle/models/element/of_controllers/sampled.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>

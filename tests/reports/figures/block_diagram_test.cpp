@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <regex>
 
-#include "limcycle/models/element/quantizer.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/memoryless/quantizer.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/reports/figures/block_words.hpp"
 #include "limcycle/reports/table.hpp"

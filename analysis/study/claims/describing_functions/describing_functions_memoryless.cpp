@@ -2,11 +2,11 @@
 #include <numbers>
 
 #include "limcycle/analysis/study/claims/describing_functions/gain_claim.hpp"
-#include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
-#include "limcycle/models/element/relay.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 
 namespace limcycle {
 namespace {

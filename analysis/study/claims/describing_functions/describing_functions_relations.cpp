@@ -3,7 +3,7 @@
 
 #include "limcycle/analysis/study/claims/describing_functions/gain_claim.hpp"
 #include "limcycle/analysis/study/claims/friction/driven_law.hpp"
-#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/sliders/jenkins.hpp"
 

@@ -5,7 +5,7 @@
 #include "limcycle/analysis/frequency/describing_function/error_band.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/claims/claim_points.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
 
 namespace limcycle {
 namespace {

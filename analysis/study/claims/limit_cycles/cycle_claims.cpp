@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/models/friction/dry/stribeck.hpp"

@@ -5,7 +5,7 @@
 #include "limcycle/analysis/study/balance/df_roots.hpp"
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
 #include "limcycle/models/delay.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 
 namespace limcycle::cycle_claims {
 namespace {

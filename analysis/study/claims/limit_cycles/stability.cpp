@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/models/linear/dense.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/orbit/simulate/simulate.hpp"
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
-#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle::cycle_claims {

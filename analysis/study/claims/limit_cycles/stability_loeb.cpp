@@ -6,7 +6,7 @@
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
 #include "limcycle/analysis/study/balance/orbit_guess.hpp"
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 
 namespace limcycle::cycle_claims {
 namespace {

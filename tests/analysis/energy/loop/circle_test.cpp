@@ -6,8 +6,8 @@
 
 #include "limcycle/analysis/frequency/describing_function/error_band.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

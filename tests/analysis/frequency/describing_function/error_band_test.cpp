@@ -5,9 +5,9 @@
 #include <random>
 
 #include "limcycle/analysis/study/predict/predict.hpp"
-#include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/tests/analysis/predictions.hpp"
 #include "limcycle/tests/loops.hpp"
 

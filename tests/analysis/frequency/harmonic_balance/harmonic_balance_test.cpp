@@ -9,7 +9,7 @@
 #include "limcycle/analysis/orbit/cycle/shooting.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
-#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

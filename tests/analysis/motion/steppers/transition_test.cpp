@@ -6,7 +6,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "limcycle/analysis/motion/march.hpp"
-#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -7,7 +7,7 @@
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
 #include "limcycle/analysis/study/balance/orbit_guess.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

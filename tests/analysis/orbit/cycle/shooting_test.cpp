@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
-#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

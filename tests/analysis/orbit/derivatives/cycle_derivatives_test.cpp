@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "limcycle/models/element/cubic.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/tests/cycle_knobs.hpp"
 

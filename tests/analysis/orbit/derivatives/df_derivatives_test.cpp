@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
-#include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/relay.hpp"
-#include "limcycle/models/element/saturation.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"

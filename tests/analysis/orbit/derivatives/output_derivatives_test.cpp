@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "limcycle/analysis/motion/steppers/transition.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/tests/cycle_knobs.hpp"

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/tests/cycle_knobs.hpp"
 #include "limcycle/tests/share.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/bristle/non_drift.hpp"

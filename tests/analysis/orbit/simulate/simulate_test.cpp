@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "limcycle/models/element/rate_limit.hpp"
+#include "limcycle/models/element/with_memory/rate_limit.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

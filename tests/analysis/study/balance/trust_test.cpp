@@ -6,7 +6,7 @@
 
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
-#include "limcycle/models/element/cubic.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/tests/analysis/predictions.hpp"
 #include "limcycle/tests/loops.hpp"
 

@@ -8,7 +8,7 @@
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
 #include "limcycle/analysis/study/experiments/runs/froude.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
-#include "limcycle/models/element/gravity.hpp"
+#include "limcycle/models/element/memoryless/gravity.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/loops.hpp"
 

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
-#include "limcycle/models/element/backlash.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/models/friction/dry/awrejcewicz.hpp"
 #include "limcycle/tests/analysis/predictions.hpp"

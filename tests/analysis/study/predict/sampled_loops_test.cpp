@@ -7,7 +7,7 @@
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/delay.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -5,7 +5,7 @@
 #include "limcycle/analysis/orbit/cycle/return_map.hpp"
 #include "limcycle/analysis/orbit/settle/rest_watch.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/tests/loops.hpp"
 

@@ -7,7 +7,7 @@
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
-#include "limcycle/models/element/backlash.hpp"
+#include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "limcycle/analysis/study/remedy/without.hpp"
-#include "limcycle/models/element/clamped_pi.hpp"
+#include "limcycle/models/element/of_controllers/clamped_pi.hpp"
 #include "limcycle/models/friction/dry/stribeck_table.hpp"
 #include "limcycle/tests/analysis/study/remedy/over_compensated.hpp"
 #include "limcycle/tests/loops.hpp"

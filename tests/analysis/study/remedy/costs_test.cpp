@@ -5,7 +5,7 @@
 #include "limcycle/analysis/energy/loop/stuck_set.hpp"
 #include "limcycle/analysis/study/remedy/linear_costs.hpp"
 #include "limcycle/analysis/study/remedy/rest_range.hpp"
-#include "limcycle/models/element/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "limcycle/analysis/study/balance/df_roots.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/tests/cycle_knobs.hpp"
 
 using namespace limcycle;

@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/sensitivity/local_sensitivity.hpp"
-#include "limcycle/models/element/relay.hpp"
+#include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/cycle_knobs.hpp"
 #include "limcycle/tests/loops.hpp"
