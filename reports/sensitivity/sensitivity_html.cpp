@@ -9,9 +9,11 @@ namespace {
 
 std::string output_section(const SensitivityReport& report, const OutputSensitivity& output,
                            const std::string& heading) {
+  const bool correlated = output.sobol.parameters.empty();
+  if (correlated && output.share_without_answer == 0.0) return "";
   std::string out = html_tag(heading, "Global: " + output.output);
   out += html_tag("p", fmt::format("No answer from {} of the loops.", as_percent(output.share_without_answer)));
-  if (output.sobol.parameters.empty()) return out;  // of correlated numbers
+  if (correlated) return out;
   if (output.sobol.deviation == 0.0)
     return out + html_tag("p", "It is the same for every loop that answered: there is no variance to share out.");
   out += html_picture(indices_picture(report, output),

@@ -211,9 +211,11 @@ Document sensitivity_document(const std::string& title, const SensitivityReport&
     out.add("Where it hunts, 95 % of the loops lie between low and high", bands);
   if (report.global)
     for (const auto& output : report.global->outputs) {
+      const bool correlated = output.sobol.parameters.empty();
+      if (correlated && output.share_without_answer == 0.0) continue;
       out += fmt::format("\nOutput \"{}\": no answer from {} of the loops\n", output.output,
                          as_percent(output.share_without_answer));
-      if (output.sobol.parameters.empty()) continue;  // of correlated numbers
+      if (correlated) continue;
       if (output.sobol.deviation == 0.0) {
         out += wrapped(same_everywhere(output));
         continue;
