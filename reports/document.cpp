@@ -151,6 +151,7 @@ std::string Document::latex(std::string_view origin) const {
     out += "\\midrule\n";
     for (const auto& row : table.rows) {
       std::vector<std::string> cells;
+      cells.reserve(row.size());
       for (const auto& cell : row) cells.push_back(latex_cell(cell));
       out += latex_row(cells);
     }

@@ -90,7 +90,7 @@ CaseSection sensitivity() {
       "How the numbers are spread. A parameter is {path, factor}, {path, from, to}, or {path, mean, deviation}, with "
       "distribution = \"uniform\", \"log-uniform\" or \"normal\".",
       {{"parameters", "[]", "list of them, such as { path = \"loop.friction.Fs\", factor = 1.2 }", "", true},
-       {"correlation", "[]", "pairs of them, { between = [\"loop.friction.Fs\", \"loop.friction.Fc\"], value = 0.8 }",
+       {"correlation", "[]", R"(pairs of them, { between = ["loop.friction.Fs", "loop.friction.Fc"], value = 0.8 })",
         "none"},
        {"samples", "256", "base samples of the Sobol study", "256"},
        {"seed", "0", "of the samples", "0"}}};

@@ -88,6 +88,7 @@ SpreadCorrelation read_correlation(const Section& section, const std::vector<Spr
     const auto at = std::ranges::find(parameters, path, &SpreadParameter::path);
     if (at == parameters.end()) {
       std::vector<std::string> known;
+      known.reserve(parameters.size());
       for (const auto& one : parameters) known.push_back(one.path);
       throw place.error("is not in the list of parameters", suggest(path, known));
     }
