@@ -48,7 +48,7 @@ MatReader::MatReader(const Section& section) : key_(section.at("file", "a MAT-fi
   });
   auto* file = static_cast<mat_t*>(open_.get());
   std::size_t count = 0;
-  char** const names = file != nullptr ? Mat_GetDir(file, &count) : nullptr;
+  char* const* const names = file != nullptr ? Mat_GetDir(file, &count) : nullptr;  // older versions return char**
   if (names == nullptr || count == 0)
     throw error("is no MAT-file with variables: save('" + name + "', 'A', 'B', 'C') writes one");
   for (std::size_t i = 0; i < count; ++i)
