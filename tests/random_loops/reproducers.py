@@ -1,8 +1,8 @@
 """Reproducers: tests/reproducers/*.toml against what is known to be true of each (reproducers.json).
 
 `cycles` are [period, amplitude or null, stable]; `frequencies`: how near a prediction of a method comes to the first of
-them (relative); `some`: at least one start comes to one of these; `never`: none does; `answers`: other commands, with
-their flags, that have to give an answer.
+them (relative); `outcomes`: those of all starts in their order; `some`: at least one start comes to one of these;
+`never`: none does; `answers`: other commands, with their flags, that have to give an answer.
 """
 
 import json
@@ -26,6 +26,8 @@ def faults(document, truth):
         if not any(abs(frequency / wanted - 1.0) < within for frequency in said):
             found.append(f"{method}: none of {said} rad/s is within {within:g} of {wanted:.6g} rad/s")
     outcomes = [outcome["outcome"] for outcome in document["outcomes"]]
+    if truth.get("outcomes", outcomes) != outcomes:
+        found.append(f"the outcomes are {', '.join(outcomes)}")
     if "some" in truth and not set(truth["some"]) & set(outcomes):
         found.append(f"no start comes to {' or '.join(truth['some'])}")
     found += [f"a start comes to {kind}" for kind in truth.get("never", []) if kind in outcomes]

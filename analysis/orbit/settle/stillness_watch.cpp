@@ -30,7 +30,13 @@ StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, doubl
 std::optional<Stillness> StillnessWatch::look(double t, const State& x, const State& dx,
                                               const std::vector<Mode>& modes) {
   if (t < rest_.next() || loop_.continuous) return std::nullopt;
+  constexpr double for_ever = 1e6;  // slowest time constants
   const auto verdict = rest_.look(t, x, dx);
+  if (t - switched_at_ > for_ever * scale_.slow) {
+    LoopField stuck(loop_);
+    stuck.modes() = modes;
+    if (sticks(stuck)) return Stillness{Outcome::rest, "came to rest, but for a drift within rounding"};
+  }
   const bool algebra = ++looks_ >= patience && t >= next_algebra_;
   if (verdict == RestWatch::Verdict::moving && !algebra) return std::nullopt;
   LoopField field(loop_);

@@ -20,7 +20,9 @@ struct Stillness {
 /// only once the equations of the loop hold: a state of rest near the motion solves dx/dt = 0 with every set-valued
 /// output within its interval, and a steady slide keeps its rates (J dx = 0). A decay too slow for its rates to die out
 /// counts as rest once the motion can no longer leave the linear decay (see approach_from). A body that sticks, however
-/// near to the set-point, does not rest while an integrator winds up to its break-away.
+/// near to the set-point, does not rest while an integrator winds up to its break-away; but one that creeps to the
+/// set-point sticks at last by the error of the integration, and what winds it up is that error: it rests if it has
+/// stuck for a million of the loop's slowest time constants.
 class StillnessWatch {
  public:
   /// The loop must outlive the watch.
@@ -33,7 +35,10 @@ class StillnessWatch {
   /// changes of the state from one reading to the next; it rests once they fade, and slides once they are steady.
   std::optional<Stillness> read(double t, const State& x, const LoopField& field);
   /// After a switch: see RestWatch::switched.
-  void restart(double t) { rest_.switched(t); }
+  void restart(double t) {
+    rest_.switched(t);
+    switched_at_ = t;
+  }
   /// The same, with a look at it: the time of a switch, and the state and the rates after it. A body that creeps to
   /// rest at the edge of stiction finally sticks and breaks away by rounding: it rests once the rates vanish after many
   /// switches in a row. A body that trembles for ever within the tolerances, in loops too small for the return points
@@ -51,7 +56,7 @@ class StillnessWatch {
   LoopSizes scale_;
   RestWatch rest_;
   int looks_ = 0, idle_ = 0;
-  double next_algebra_ = 0.0;
+  double next_algebra_ = 0.0, switched_at_ = 0.0;
   State read_;  ///< the state at the last reading, and its time
   double read_at_ = 0.0;
   State about_;  ///< the state at the first of the last switches that left it there, its time, and their number
