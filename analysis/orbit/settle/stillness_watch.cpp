@@ -32,7 +32,7 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
   if (t < rest_.next() || loop_.continuous) return std::nullopt;
   constexpr double for_ever = 1e6;  // slowest time constants
   const auto verdict = rest_.look(t, x, dx);
-  if (t - switched_at_ > for_ever * scale_.slow) {
+  if (t - switched_at_ > for_ever * scale_.slow && rest_.rate(dx) <= rest_.noise()) {
     LoopField stuck(loop_);
     stuck.modes() = modes;
     if (sticks(stuck)) return Stillness{Outcome::rest, "came to rest, but for a drift within rounding"};

@@ -22,7 +22,7 @@ struct Stillness {
 /// counts as rest once the motion can no longer leave the linear decay (see approach_from). A body that sticks, however
 /// near to the set-point, does not rest while an integrator winds up to its break-away; but one that creeps to the
 /// set-point sticks at last by the error of the integration, and what winds it up is that error: it rests if it has
-/// stuck for a million of the loop's slowest time constants.
+/// stuck for a million of the loop's slowest time constants, and its rates are within that error.
 class StillnessWatch {
  public:
   /// The loop must outlive the watch.
