@@ -1,5 +1,6 @@
 #include "limcycle/reports/document.hpp"
 
+#include <algorithm>
 #include <cctype>
 
 namespace limcycle {
@@ -62,11 +63,14 @@ std::size_t number_length(std::string_view text) {
   return i;
 }
 
+/// 1.0e-08 as 1.0 \cdot 10^{-8}; exponents of a reader's own text may be longer than any number's.
 std::string latex_number(std::string_view number) {
   const auto e = number.find('e');
   if (e == std::string_view::npos) return std::string(number);
-  return std::string(number.substr(0, e)) + " \\cdot 10^{" +
-         std::to_string(std::stoi(std::string(number.substr(e + 1)))) + "}";
+  std::string_view exponent = number.substr(e + 1);
+  const std::string sign = exponent.front() == '-' ? "-" : "";
+  exponent.remove_prefix(std::min(exponent.find_first_not_of("+-0"), exponent.size() - 1));
+  return std::string(number.substr(0, e)) + " \\cdot 10^{" + sign + std::string(exponent) + "}";
 }
 
 /// A cell: numbers that stand by themselves as mathematics, which gives them their signs and powers.
@@ -134,7 +138,10 @@ void Document::add_untitled(const std::string& caption, const Table& table) {
 }
 
 std::string Document::latex(std::string_view origin) const {
-  std::string out = "% " + std::string(origin) + "\n% \\usepackage{booktabs}\n";
+  std::string comment(origin);  // of one line: titles and names of files may hold others
+  std::ranges::replace_if(
+      comment, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  std::string out = "% " + comment + "\n% \\usepackage{booktabs}\n";
   for (const auto& [caption, table] : tables_) {
     std::string places;
     std::vector<std::string> headings, units;

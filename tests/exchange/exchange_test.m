@@ -57,6 +57,14 @@ function loops (root)
   table = limcycle_df (struct ('loop', struct ('friction', loop.friction), ...
                                'df', struct ('amplitude', [1e-5, 1e-3], 'frequency', 2)));
   assert (numel (table.points), 2);
+  slipping = struct ('kind', 'gms', 'Fs', 1.5, 'Fc', 1, 'vs', 1e-3, 'k', [6e4, 4e4], 'alpha', [0.5, 0.5], 'C', 100);
+  gms = limcycle_df (struct ('loop', struct ('friction', slipping), 'df', struct ('amplitude', 1e-4, 'frequency', 2)));
+  assert (gms.points.status, 'converged');
+  w = logspace (-1, 2, 60)';
+  G = (1i * w + 1) .^ -3;
+  measured = struct ('plant', struct ('kind', 'frf', 'frequency', 'rad/s', 'format', 're-im', ...
+                                      'points', [w, real(G), imag(G)]), 'element', struct ('kind', 'relay', 'level', 1));
+  assert (limcycle_predict (measured).cycles.period, 3.67975, 1e-3);
   edge = limcycle_margin (loop, 'parameter', 'loop.controller.ki');
   assert (strcmp (edge.command, 'margin'));
   loop.title = 'a "quoted" name, a \ and Größe';

@@ -33,6 +33,15 @@ TEST_CASE("document: numbers, units and signs in LaTeX", "[document]") {
   CHECK_THAT(latex, Contains("-0.5..+1.5, e-mail, 1e5x, \\textasciitilde{}\\$ \\\\"));
 }
 
+TEST_CASE("document: what a reader wrote is no LaTeX and no number too large") {
+  Document document;
+  document.add("t", {{{"a", "", Align::left}}, {{"1e99999999999999999999"}, {"2e-000"}, {"3e+07"}}});
+  const std::string latex = document.latex("a title\n\\input{secret}\r\\end");
+  CHECK_THAT(latex, Contains("% a title \\input{secret} \\end\n% \\usepackage"));
+  CHECK_THAT(latex, Contains("$1 \\cdot 10^{99999999999999999999}$") && Contains("$2 \\cdot 10^{-0}$"));
+  CHECK_THAT(latex, Contains("$3 \\cdot 10^{7}$"));
+}
+
 TEST_CASE("document: without tables LaTeX has none", "[document]") {
   CHECK(Document("words").latex("x") == "% x\n% \\usepackage{booktabs}\n");
 }
