@@ -17,6 +17,7 @@
 #include "limcycle/cli/colour.hpp"
 #include "limcycle/cli/pdf.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
+#include "limcycle/cli/write_all.hpp"
 #include "limcycle/questions/provenance_of.hpp"
 #include "limcycle/questions/words.hpp"
 #include "limcycle/reports/export/hdf5.hpp"
@@ -57,13 +58,8 @@ class Draft {
   Draft& operator=(const Draft&) = delete;
 
   bool write(std::string_view document) const {
-    while (file_ >= 0 && !document.empty()) {
-      const auto written = ::write(file_, document.data(), document.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) return false;
-      document.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return file_ >= 0 && (fsync(file_) == 0 || errno == EINVAL || errno == EROFS);  // not every file system supports it
+    if (file_ < 0 || !write_all(file_, document)) return false;
+    return (fsync(file_) == 0 || errno == EINVAL || errno == EROFS);  // not every file system supports it
   }
 
   bool take_place() {

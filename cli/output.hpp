@@ -25,8 +25,7 @@ void take_picture(CommonFlags& flags, std::string& picture);
 
 /// Destinations of a command's documents, from its flags: the text to stdout or to --output, JSON, HDF5 and CSV to
 /// their files. With "-" for one of them stdout receives that document and nothing else; the text is then dropped
-/// unless
-/// --output names a file for it.
+/// unless --output names a file for it.
 ///
 /// The constructor checks before anything is computed that every file can be written and that none replaces another or
 /// an input of the command, under any name; it throws InputError otherwise. No file is created before its document is

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "limcycle/cli/write_all.hpp"
+
 namespace limcycle {
 namespace {
 
@@ -26,15 +28,7 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
   int id() const { return file_; }
 
-  bool fill(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const auto written = write(file_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return lseek(file_, 0, SEEK_SET) == 0;
-  }
+  bool fill(std::string_view bytes) const { return write_all(file_, bytes) && lseek(file_, 0, SEEK_SET) == 0; }
 
   std::string contents() const {
     std::string bytes;

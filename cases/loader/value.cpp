@@ -44,6 +44,11 @@ const Value* Value::find(std::string_view key) const {
   return found == table->end() ? nullptr : &found->value;
 }
 
+const std::string* Value::text(std::string_view key) const {
+  const Value* value = find(key);
+  return value != nullptr ? value->as<std::string>() : nullptr;
+}
+
 const Value* Value::at(std::string_view path) const {
   const Value* value = this;
   while (value != nullptr && !path.empty()) {

@@ -31,6 +31,8 @@ struct Value {
 
   /// Entry of a table, or null (also when this is not a table).
   const Value* find(std::string_view key) const;
+  /// Text of such an entry, or null (also when the entry is no text).
+  const std::string* text(std::string_view key) const;
   /// The value at a dotted path, or null.
   const Value* at(std::string_view path) const;
 };

@@ -34,6 +34,7 @@ class RestWatch {
     still_ = 0;
     next_ = std::min(next_, t + slow_);
   }
+  double since() const { return since_; }  ///< time of the last switch
   /// The largest of the rates, in sizes per slowest time constant.
   double rate(const State& dx) const;
   double rtol() const { return rtol_; }          ///< of the simulation

@@ -32,15 +32,12 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
   if (t < rest_.next() || loop_.continuous) return std::nullopt;
   constexpr double for_ever = 1e6;  // slowest time constants
   const auto verdict = rest_.look(t, x, dx);
-  if (t - switched_at_ > for_ever * scale_.slow && rest_.rate(dx) <= rest_.noise()) {
-    LoopField stuck(loop_);
-    stuck.modes() = modes;
-    if (sticks(stuck)) return Stillness{Outcome::rest, "came to rest, but for a drift within rounding"};
-  }
+  const bool waits = t - rest_.since() > for_ever * scale_.slow && rest_.rate(dx) <= rest_.noise();
   const bool algebra = ++looks_ >= patience && t >= next_algebra_;
-  if (verdict == RestWatch::Verdict::moving && !algebra) return std::nullopt;
+  if (verdict == RestWatch::Verdict::moving && !algebra && !waits) return std::nullopt;
   LoopField field(loop_);
   field.modes() = modes;
+  if (waits && sticks(field)) return Stillness{Outcome::rest, "came to rest, but for a drift within rounding"};
   if (verdict == RestWatch::Verdict::at_rest) return at_rest(field, x, dx);
   if (verdict == RestWatch::Verdict::steady && slides_steadily(field, x, dx, scale_))
     return Stillness{Outcome::sliding, "slides at constant speed"};

@@ -35,10 +35,7 @@ class StillnessWatch {
   /// changes of the state from one reading to the next; it rests once they fade, and slides once they are steady.
   std::optional<Stillness> read(double t, const State& x, const LoopField& field);
   /// After a switch: see RestWatch::switched.
-  void restart(double t) {
-    rest_.switched(t);
-    switched_at_ = t;
-  }
+  void restart(double t) { rest_.switched(t); }
   /// The same, with a look at it: the time of a switch, and the state and the rates after it. A body that creeps to
   /// rest at the edge of stiction finally sticks and breaks away by rounding: it rests once the rates vanish after many
   /// switches in a row. A body that trembles for ever within the tolerances, in loops too small for the return points
@@ -56,7 +53,7 @@ class StillnessWatch {
   LoopSizes scale_;
   RestWatch rest_;
   int looks_ = 0, idle_ = 0;
-  double next_algebra_ = 0.0, switched_at_ = 0.0;
+  double next_algebra_ = 0.0;
   State read_;  ///< the state at the last reading, and its time
   double read_at_ = 0.0;
   State about_;  ///< the state at the first of the last switches that left it there, its time, and their number

@@ -33,30 +33,24 @@ GlobalPlan::GlobalPlan(const ParameterSpread& spread, std::size_t trajectories, 
       sobol_(spread.parameters.size(), samples, second_order && !joint_.correlated(), spread.seed) {}
 
 std::vector<double> GlobalPlan::values(std::size_t row) const {
-  if (joint_.correlated())
-    return joint_.values(sobol_.row(row % 2 == 0 ? sobol_.row_a(row / 2) : sobol_.row_b(row / 2)));
+  if (joint_.correlated()) return joint_.values(sobol_.row(fair_row_of_sobol(row)));
   return joint_.values(row < morris_.rows() ? morris_.row(row) : sobol_.row(row - morris_.rows()));
 }
 
 std::size_t GlobalPlan::fair_row(std::size_t k) const {
-  if (joint_.correlated()) return k;
-  return morris_.rows() + (k % 2 == 0 ? sobol_.row_a(k / 2) : sobol_.row_b(k / 2));
+  return joint_.correlated() ? k : morris_.rows() + fair_row_of_sobol(k);
+}
+
+std::size_t GlobalPlan::fair_row_of_sobol(std::size_t k) const {
+  return k % 2 == 0 ? sobol_.row_a(k / 2) : sobol_.row_b(k / 2);
 }
 
 namespace {
 
-/// Quantile of a sorted sample, between its order statistics (R. J. Hyndman and Y. Fan, 1996, definition 7).
-double quantile_of(const std::vector<double>& sorted, double p) {
-  const double at = p * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  return std::lerp(sorted[below], sorted[std::min(below + 1, sorted.size() - 1)], at - static_cast<double>(below));
-}
-
 std::optional<OutputBand> band_of(std::vector<double> answers) {
   if (answers.size() < answers_of_a_band) return std::nullopt;
   std::ranges::sort(answers);
-  return OutputBand{quantile_of(answers, 0.025), quantile_of(answers, 0.5), quantile_of(answers, 0.975),
-                    answers.size()};
+  return OutputBand{percentile(answers, 0.025), percentile(answers, 0.5), percentile(answers, 0.975), answers.size()};
 }
 
 /// Answers in the fair rows: that a loop hunts, and the band of the output.

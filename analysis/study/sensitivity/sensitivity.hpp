@@ -109,6 +109,8 @@ class GlobalPlan {
   const SobolDesign& sobol() const { return sobol_; }
 
  private:
+  std::size_t fair_row_of_sobol(std::size_t k) const;
+
   ParameterSpread spread_;
   JointSpread joint_;
   MorrisDesign morris_;

@@ -79,12 +79,9 @@ CurveFile read_curve(const Document& document, Value& law, const std::string& pa
 
 /// True for a law over measured points that stand in a file.
 bool is_in_file(const Value& law) {
-  const auto text = [&](std::string_view key) {
-    const Value* value = law.find(key);
-    const auto* written = value != nullptr ? value->as<std::string>() : nullptr;
-    return written != nullptr ? *written : std::string();
-  };
-  return law.find("file") != nullptr && (text("curve") == "table" || text("kind").ends_with("-table"));
+  const auto *curve = law.text("curve"), *kind = law.text("kind");
+  return law.find("file") != nullptr &&
+         ((curve != nullptr && *curve == "table") || (kind != nullptr && kind->ends_with("-table")));
 }
 
 }  // namespace

@@ -36,23 +36,21 @@ class FrequencyRows {
   std::size_t next_ = 0;
 };
 
+bool has_uncertainty(const MeasuredPlant& plant) { return plant.uncertainty.index > 0; }
+
 /// Which columns of the file are read.
-struct Columns {
-  std::vector<CsvColumn> chosen;
-  bool has_uncertainty = false;
-};
+using Columns = std::vector<CsvColumn>;
 
 Columns columns_of(const Section& section, const MeasuredPlant& plant) {
   Columns columns;
-  columns.has_uncertainty = plant.uncertainty.index > 0;
-  const std::size_t count = columns.has_uncertainty ? 4 : 3;
+  const std::size_t count = has_uncertainty(plant) ? 4 : 3;
   if (!plant.columns.empty() && plant.columns.size() != count)
     throw section.error("columns", fmt::format("must be {} numbers{}", count,
-                                               columns.has_uncertainty ? ", the last that of the uncertainty" : ""));
+                                               has_uncertainty(plant) ? ", the last that of the uncertainty" : ""));
   for (std::size_t i = 0; i < count; ++i) {
     const double number = plant.columns.empty() ? static_cast<double>(i + 1) : plant.columns[i];
     if (number != std::floor(number) || number > 1e6) throw section.error("columns", "must be whole numbers from 1");
-    columns.chosen.emplace_back(static_cast<std::size_t>(number));
+    columns.emplace_back(static_cast<std::size_t>(number));
   }
   return columns;
 }
@@ -66,11 +64,11 @@ std::string lower(std::string text) {
 void check_header(const CsvReader& csv, const Columns& columns, const MeasuredPlant& plant) {
   if (csv.header().empty()) return;
   const auto has = [&](std::size_t i, std::string_view word) {
-    const std::string& name = csv.header()[std::get<std::size_t>(columns.chosen[i]) - 1];
+    const std::string& name = csv.header()[std::get<std::size_t>(columns[i]) - 1];
     return lower(name).find(word) != std::string::npos;
   };
   const auto refuse = [&](std::size_t i, const std::string& key, std::string_view written) {
-    const std::string& name = csv.header()[std::get<std::size_t>(columns.chosen[i]) - 1];
+    const std::string& name = csv.header()[std::get<std::size_t>(columns[i]) - 1];
     throw csv.error(
         fmt::format("is the name of a column that the case reads with {} = \"{}\"; change one of them", key, written),
         name);
@@ -135,7 +133,6 @@ void check_degrees(const FrequencyRows& rows, const MeasuredPlant& plant, const 
 
 FrequencyData data_in(FrequencyRows rows, const MeasuredPlant& plant) {
   FrequencyData data;
-  const bool has_uncertainty = plant.uncertainty.index > 0;
   double largest_phase = 0.0;
   for (std::vector<double> row; rows.next(row);) {
     const double frequency = plant.frequency.index == 0 ? row[0] : 2.0 * std::numbers::pi * row[0];
@@ -145,7 +142,8 @@ FrequencyData data_in(FrequencyRows rows, const MeasuredPlant& plant) {
     data.frequency.push_back(frequency);
     data.response.push_back(response_in(rows, plant, row[1], row[2]));
     largest_phase = std::max(largest_phase, std::abs(row[2]));
-    if (has_uncertainty) data.deviation.push_back(deviation_in(rows, plant, std::abs(data.response.back()), row[3]));
+    if (has_uncertainty(plant))
+      data.deviation.push_back(deviation_in(rows, plant, std::abs(data.response.back()), row[3]));
   }
   check_degrees(rows, plant, data, largest_phase);
   return data;
@@ -154,7 +152,7 @@ FrequencyData data_in(FrequencyRows rows, const MeasuredPlant& plant) {
 FrequencyData data_of_file(const Section& section, const MeasuredPlant& plant) {
   const Columns columns = columns_of(section, plant);
   DataFile opened(section, plant.file);
-  opened.csv.choose(columns.chosen);
+  opened.csv.choose(columns);
   check_header(opened.csv, columns, plant);
   FrequencyData data = data_in(FrequencyRows(opened.csv), plant);
   data.file = plant.file;

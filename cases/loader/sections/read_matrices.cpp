@@ -70,17 +70,12 @@ MatrixFile read_matrix_file(const Document& document, Value& part, const std::st
   return taken;
 }
 
-const std::string* text_at(const Value& part, std::string_view key) {
-  const Value* value = part.find(key);
-  return value != nullptr ? value->as<std::string>() : nullptr;
-}
-
 }  // namespace
 
 std::vector<MatrixFile> read_matrices(Document& document) {
   std::vector<MatrixFile> files;
   for_each_part(document, [&](Value& part, const std::string& path) {
-    const auto *kind = text_at(part, "kind"), *file = text_at(part, "file");
+    const auto *kind = part.text("kind"), *file = part.text("file");
     if (kind == nullptr || file == nullptr) return;
     if (*kind == MeasuredPlant::kind && !file->ends_with(".mat")) return;  // a file of columns
     if (const auto keys = matrix_keys(*kind); !keys.empty())

@@ -16,13 +16,6 @@ void draw(RandomStream& random, std::vector<double>& weights) {
   for (std::size_t k = 0; k < weights.size(); ++k) weights[random.below(weights.size())] += 1.0;
 }
 
-/// The value below which a share of the sorted values lies, by linear interpolation between neighbours.
-double percentile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place), above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
-}
-
 /// Share of the resamples that is cut off at either end.
 double tail(std::size_t units) {
   const auto u = static_cast<double>(units);
