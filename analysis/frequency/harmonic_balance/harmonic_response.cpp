@@ -11,8 +11,6 @@
 
 namespace limcycle {
 
-namespace {}  // namespace
-
 static_assert(ElementHarmonics::finest + 1 == static_cast<int>(quadrature_meshes.size()));
 
 namespace {

@@ -66,8 +66,9 @@ class CollocationPanel {
   void interpolate(double t, const ElementState& state, std::span<double> z) const {
     std::array<double, RadauIIA::most_stages + 1> weights;
     table_.interpolation(t, weights);
-    for (std::size_t p = 0; p < n_; ++p) {
-      z[p] = weights[0] * state.z[p];
+    std::ranges::copy(state.z, z.begin());
+    for (const std::size_t p : moving_) {
+      z[p] *= weights[0];
       for (std::size_t i = 0; i < s_; ++i) z[p] += weights[i + 1] * z_[i * n_ + p];
     }
   }
@@ -86,6 +87,7 @@ class CollocationPanel {
     if (n_ == 0) return true;
     sensitivities_ = state.sensitivity;
     find_used(state.mode);
+    find_depended(state);
     const double step = (to - from) / motion_.frequency();
     for (std::size_t i = 0; i < s_; ++i)
       for (std::size_t p = 0; p < n_; ++p) z_[i * n_ + p] = state.z[p];
@@ -144,6 +146,7 @@ class CollocationPanel {
     const bool holds = std::abs(end - start) <= 2e-13 * scale;  // ten times the tolerance of Newton
     if (!holds && !force) return false;
     for (std::size_t i = 0; i < s_; ++i) z_[i] = holds ? start : start + table_.c[i] * (end - start);
+    moving_.assign(1, 0);
     std::fill(sensitivities_.begin(), sensitivities_.end(), 0.0);
     return true;
   }
@@ -171,6 +174,14 @@ class CollocationPanel {
     std::fill(jacobians_.begin(), jacobians_.end(), 0.0);
   }
 
+  /// The initial states that a used state depends on: all other derivatives are 0.
+  void find_depended(const ElementState& state) {
+    depended_.clear();
+    for (std::size_t c = 0; c < n_; ++c)
+      if (std::ranges::any_of(used_, [&](std::size_t q) { return state.sensitivity[q * n_ + c] != 0.0; }))
+        depended_.push_back(c);
+  }
+
   /// The largest derivative of a rate.
   double steepest() const {
     double most = 0.0;
@@ -192,8 +203,9 @@ class CollocationPanel {
     const Input<double>& in = nodes_[i].in;
     const Input<Dual<Columns>> input{in.x, in.v, in.drive};
     auto& [z, rate] = std::get<Scratch<Columns>>(scratch_);
-    z.assign(&z_[i * n_], &z_[i * n_] + n_);
+    z.resize(n_);
     rate.resize(n_);
+    for (const std::size_t p : used_) z[p] = z_[i * n_ + p];
     for (std::size_t from = 0; from < used_.size(); from += Columns) {
       const std::size_t count = std::min<std::size_t>(used_.size() - from, Columns);
       for (std::size_t k = 0; k < count; ++k) z[used_[from + k]].d[k] = 1.0;
@@ -205,7 +217,7 @@ class CollocationPanel {
         for (const std::size_t p : used_) jacobians_[(i * n_ + p) * n_ + column] = rate[p].d[k];
       }
     }
-    for (std::size_t p = 0; p < n_; ++p) rates_[i * n_ + p] = rate[p].value;
+    for (const std::size_t p : used_) rates_[i * n_ + p] = rate[p].value;
   }
 
   void evaluate_rates(Mode mode) {
@@ -230,10 +242,14 @@ class CollocationPanel {
   /// rate of zero whatever the state is.
   void find_moving() {
     moving_.clear();
-    for (const std::size_t p : used_)
-      if (moves(p)) moving_.push_back(p);
+    moves_.assign(n_, 0);
+    for (const std::size_t p : used_) {
+      if (!has_rate(p)) continue;
+      moving_.push_back(p);
+      moves_[p] = 1;
+    }
   }
-  bool moves(std::size_t p) const {
+  bool has_rate(std::size_t p) const {
     for (std::size_t i = 0; i < s_; ++i) {
       if (rates_[i * n_ + p] != 0.0) return true;
       for (const std::size_t q : used_)
@@ -288,7 +304,7 @@ class CollocationPanel {
   }
 
   bool correct(double step, const ElementState& state, Wanted wanted) {
-    columns_ = wanted.derivatives ? 1 + n_ : 1;
+    columns_ = wanted.derivatives ? 1 + depended_.size() : 1;
     if (moves_as_one()) return correct_as_one(step, state, wanted);
     return find_order() ? correct_in_order(step, state, wanted) : correct_together(step, state, wanted);
   }
@@ -302,12 +318,14 @@ class CollocationPanel {
       const double* slope = &jacobians_[(j * n_ + first) * n_];
       double own = 0.0;
       for (const std::size_t q : moving_) own += slope[q];
-      for (std::size_t i = 0; i < s_; ++i) system_[i * length + j] = -step * table_.a[i * s_ + j] * own;
-      for (const std::size_t q : used_) {
-        if (slope[q] == 0.0) continue;
-        for (std::size_t i = 0; i < s_; ++i)
-          for (std::size_t c = 0; c + 1 < columns_; ++c)
-            system_[i * length + s_ + 1 + c] += step * table_.a[i * s_ + j] * slope[q] * state.sensitivity[q * n_ + c];
+      carried_.assign(columns_ - 1, 0.0);
+      for (const std::size_t q : used_)
+        for (std::size_t c = 0; slope[q] != 0.0 && c < carried_.size(); ++c)
+          carried_[c] += slope[q] * state.sensitivity[q * n_ + depended_[c]];
+      for (std::size_t i = 0; i < s_; ++i) {
+        const double part = step * table_.a[i * s_ + j];
+        system_[i * length + j] = -part * own;
+        for (std::size_t c = 0; c < carried_.size(); ++c) system_[i * length + s_ + 1 + c] += part * carried_[c];
       }
     }
     for (std::size_t i = 0; i < s_; ++i) {
@@ -319,7 +337,7 @@ class CollocationPanel {
     for (const std::size_t p : moving_) {
       for (std::size_t i = 0; wanted.states && i < s_; ++i) z_[i * n_ + p] += system_[i * length + s_];
       for (std::size_t c = 0; c + 1 < columns_; ++c)
-        sensitivities_[p * n_ + c] = state.sensitivity[p * n_ + c] + end[c];
+        sensitivities_[p * n_ + depended_[c]] = state.sensitivity[p * n_ + depended_[c]] + end[c];
     }
     return true;
   }
@@ -336,7 +354,7 @@ class CollocationPanel {
         for (std::size_t j = 0; j < s_; ++j) row[j] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + p];
         row[i] += 1.0;
         row[s_] = -residual(step, state, i, p);
-        std::copy_n(&state.sensitivity[p * n_], columns_ - 1, row + s_ + 1);
+        for (std::size_t c = 0; c + 1 < columns_; ++c) row[s_ + 1 + c] = state.sensitivity[p * n_ + depended_[c]];
         for (const std::size_t q : used_)
           if (depends_[p * n_ + q] != 0) add_coupling(step, i, p, q, state, row + s_);
       }
@@ -346,7 +364,7 @@ class CollocationPanel {
     }
     for (const std::size_t p : order_) {
       for (std::size_t i = 0; wanted.states && i < s_; ++i) z_[i * n_ + p] += corrections_[(i * n_ + p) * columns_];
-      std::copy_n(corrections_.data() + ((s_ - 1) * n_ + p) * columns_ + 1, columns_ - 1, &sensitivities_[p * n_]);
+      take_derivatives(p, corrections_.data() + ((s_ - 1) * n_ + p) * columns_ + 1);
     }
     return true;
   }
@@ -355,38 +373,48 @@ class CollocationPanel {
   /// or of its derivatives alone if it stands.
   void add_coupling(double step, std::size_t i, std::size_t p, std::size_t q, const ElementState& state,
                     double* right) const {
-    const bool stands = std::ranges::find(moving_, q) == moving_.end();
     for (std::size_t j = 0; j < s_; ++j) {
       const double factor = step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
-      if (stands) {
-        for (std::size_t c = 0; c + 1 < columns_; ++c) right[1 + c] += factor * state.sensitivity[q * n_ + c];
+      if (moves_[q] == 0) {
+        for (std::size_t c = 0; c + 1 < columns_; ++c)
+          right[1 + c] += factor * state.sensitivity[q * n_ + depended_[c]];
         continue;
       }
       for (std::size_t c = 0; c < columns_; ++c) right[c] += factor * corrections_[(j * n_ + q) * columns_ + c];
     }
   }
 
-  /// One step of Newton, all states together: the first column is the step of the stages, the further ones are their
-  /// derivatives by the initial state.
+  /// One step of Newton, all moving states together: the first column is the step of the stages, the further ones are
+  /// their derivatives by the initial state.
   bool correct_together(double step, const ElementState& state, Wanted wanted) {
-    const std::size_t m = s_ * n_, length = m + columns_;
+    const std::size_t count = moving_.size(), m = s_ * count, length = m + columns_;
     system_.assign(m * length, 0.0);
     for (std::size_t i = 0; i < s_; ++i) {
-      for (std::size_t p = 0; p < n_; ++p) {
-        double* row = &system_[(i * n_ + p) * length];
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t p = moving_[k];
+        double* row = &system_[(i * count + k) * length];
         for (std::size_t j = 0; j < s_; ++j)
-          for (std::size_t q = 0; q < n_; ++q)
-            row[j * n_ + q] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + q];
-        row[i * n_ + p] += 1.0;
+          for (std::size_t l = 0; l < count; ++l)
+            row[j * count + l] = -step * table_.a[i * s_ + j] * jacobians_[(j * n_ + p) * n_ + moving_[l]];
+        row[i * count + k] += 1.0;
         row[m] = -residual(step, state, i, p);
-        std::copy_n(&state.sensitivity[p * n_], columns_ - 1, row + m + 1);
+        for (std::size_t c = 0; c + 1 < columns_; ++c) row[m + 1 + c] = state.sensitivity[p * n_ + depended_[c]];
+        for (const std::size_t q : used_)
+          if (moves_[q] == 0) add_coupling(step, i, p, q, state, row + m);
       }
     }
     if (!eliminate(system_, m, columns_)) return false;
-    for (std::size_t r = 0; wanted.states && r < m; ++r) z_[r] += system_[r * length + m];
-    for (std::size_t p = 0; p < n_; ++p)
-      std::copy_n(system_.data() + ((s_ - 1) * n_ + p) * length + m + 1, columns_ - 1, &sensitivities_[p * n_]);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t i = 0; wanted.states && i < s_; ++i)
+        z_[i * n_ + moving_[k]] += system_[(i * count + k) * length + m];
+      take_derivatives(moving_[k], system_.data() + ((s_ - 1) * count + k) * length + m + 1);
+    }
     return true;
+  }
+
+  /// Derivatives of state p at the end of the panel, if there are any.
+  void take_derivatives(std::size_t p, const double* found) {
+    for (std::size_t c = 0; c + 1 < columns_; ++c) sensitivities_[p * n_ + depended_[c]] = found[c];
   }
 
   Element element_;
@@ -398,11 +426,11 @@ class CollocationPanel {
   double direction_ = 1.0;
   long evaluations_ = 0;
   std::vector<MotionNode> nodes_;
-  std::vector<double> z_, rates_, sensitivities_, jacobians_, system_, corrections_, trial_, trial_rate_;
+  std::vector<double> z_, rates_, sensitivities_, jacobians_, system_, carried_, corrections_, trial_, trial_rate_;
   Mode used_in_;
-  std::vector<std::size_t> used_, moving_, order_;
+  std::vector<std::size_t> used_, depended_, moving_, order_;
   std::size_t columns_ = 1;  ///< right-hand sides: the step of the states, and the derivatives where they are wanted
-  std::vector<char> depends_, placed_;
+  std::vector<char> moves_, depends_, placed_;
   static constexpr int width = 4;
   std::optional<ElementOn<Dual<width>>> wide_;
   template <int Columns>

@@ -269,6 +269,7 @@ class ElementMarch {
       dual_.next(input, old, reset_, guard);
       for (std::size_t p = 0; p < n_; ++p) {
         const double slope = reset_[p].d[0];
+        if (slope == 0.0) continue;
         for (std::size_t r = 0; r < n_; ++r) state.sensitivity[p * n_ + r] += slope * s_before[q * n_ + r];
         carried[p] += slope * rate_before[q];
       }

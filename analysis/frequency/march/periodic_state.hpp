@@ -125,7 +125,7 @@ class PeriodicStateSearch {
         last_but_one = result.state.mode;
         result.state = image;
         if (++foreign_modes > 20) break;
-        if (to_and_fro > 4 && k == foreign_modes - 1 && k % 2 == 1) {
+        if (to_and_fro > 0 && k == foreign_modes - 1 && k % 2 == 1) {
           result.status = Status::no_cycle;
           return result;
         }

@@ -59,7 +59,7 @@ RootSearch conclude(RootTree& tree) {
     collect(tree, out);
     out.status = out.roots.empty() ? Status::no_cycle : Status::converged;
     if (!blocks_agree || !whole_agrees || !out.near_misses.empty()) out.status = Status::incomplete;
-    if (!tree.any_defined()) out.status = Status::not_finite;
+    if (tree.nowhere_defined()) out.status = Status::not_finite;
   } catch (const RootBudgetExhausted&) {
     collect(tree, out);
     out.status = Status::max_iterations;

@@ -41,6 +41,8 @@ struct RootSearchOptions {
   std::vector<double> frequency_hints;  ///< rad/s, lightly damped poles and zeros of G; grid lines are placed there
   /// Called with the points that are evaluated next, so that they can be computed together (default: none).
   std::function<void(const std::vector<SearchPoint>& points, double accuracy)> prepare;
+  /// True if f is known to have no root in that part of the box, which is then not sampled (default: never known).
+  std::function<bool(const SearchBox& part)> rootless;
   std::function<bool()> interrupted;  ///< called once per cell; true ends the search (default: never)
   /// Called before each evaluation, for equations that take long; true ends the search (default: never).
   std::function<bool()> stop;

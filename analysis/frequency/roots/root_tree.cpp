@@ -24,17 +24,25 @@ RootTree::RootTree(const LoopEquation& f, const SearchBox& box, const RootSearch
   const std::int64_t unit = lattice_.unit();
   for (std::int64_t column = 0; column < lattice_.columns(); ++column) {
     for (std::int64_t row = 0; row < lattice_.rows(); ++row) {
-      queue_.push_back({blocks_.size(), {column * unit, row * unit, unit, unit}});
-      blocks_.push_back({queue_.back().place, 1, 1.0, {}, {}});
+      const LatticeCell place{column * unit, row * unit, unit, unit};
+      line_up({blocks_.size(), place});
+      blocks_.push_back({place, 1, 1.0, {}, {}});
     }
   }
+}
+
+void RootTree::line_up(const Cell& cell) {
+  const auto& [i, j, width, height] = cell.place;
+  const SearchBox part{lattice_.amplitude(lattice_.p(i)), lattice_.amplitude(lattice_.p(i + width)),
+                       lattice_.frequency(lattice_.q(j)), lattice_.frequency(lattice_.q(j + height))};
+  if (!options_.rootless || !options_.rootless(part)) queue_.push_back(cell);
 }
 
 bool RootTree::search_again(std::size_t k) {
   RootBlock& block = blocks_[k];
   if (block.min_depth + 1 >= options_.max_depth) return false;
   block = {block.place, block.min_depth + 1, 2.0 * block.caution, {}, {}};
-  queue_.push_back({k, block.place});
+  line_up({k, block.place});
   return true;
 }
 
@@ -76,7 +84,7 @@ bool RootTree::split(const Cell& cell, Directions along, int limit, const CellSa
         const double v = -1.0 + height * static_cast<double>(2 * up + static_cast<std::int64_t>(k / 3));
         child.predicted[k] = interpolate(*model, u, v);
       }
-      queue_.push_back(child);
+      line_up(child);
     }
   }
   return by_p || by_q;
@@ -86,6 +94,7 @@ void RootTree::process(Cell cell) {
   for (; cell.accuracy < lattice_.accuracies().size(); ++cell.accuracy) {
     const CellSamples values = gather(cell);
     const auto known = std::count_if(values.begin(), values.end(), defined);
+    any_sampled_ = true;
     any_defined_ = any_defined_ || known > 0;
     const int first = blocks_[cell.block].min_depth;
     if (split(cell, {true, true}, first, known == 9 ? &values : nullptr)) return;

@@ -49,7 +49,8 @@ class RootTree {
   RootLattice& lattice() { return lattice_; }
   const std::vector<RootBlock>& blocks() const { return blocks_; }
   const std::vector<FoundRoot>& roots() const { return roots_; }
-  bool any_defined() const { return any_defined_; }  ///< at any sample
+  /// f was sampled, and is defined at no sample.
+  bool nowhere_defined() const { return any_sampled_ && !any_defined_; }
 
  private:
   struct Cell {
@@ -65,6 +66,7 @@ class RootTree {
   };
 
   bool near_border(const FoundRoot& root, const LatticeCell& s) const;
+  void line_up(const Cell& cell);
   void process(Cell cell);
   void prepare() const;
   bool decided_by_jump(const Cell& cell, const CellKnowledge& knowledge);
@@ -89,7 +91,7 @@ class RootTree {
   std::vector<RootBlock> blocks_;
   std::deque<Cell> queue_;  // first in, first out, so that a limited search covers the box evenly
   std::vector<FoundRoot> roots_;
-  bool any_defined_ = false;
+  bool any_sampled_ = false, any_defined_ = false;
 };
 
 }  // namespace limcycle

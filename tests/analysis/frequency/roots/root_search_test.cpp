@@ -124,6 +124,22 @@ TEST_CASE("no cycle where the loop has none", "[root_search]") {
   CHECK(found.evaluations < 6000);
 }
 
+TEST_CASE("parts known to have no root are not sampled, and change no other") {
+  const auto plant = [](double w) { return 1.0 / (j * w * std::pow(1.0 + j * w, 2)); };
+  const auto all = find_roots(loop(relay, plant), default_box);
+  // |N G| < 1 beyond A = 4/(pi |w|), G being at most 1/w.
+  RootSearchOptions options;
+  options.rootless = [](const SearchBox& part) { return 4.0 / (pi * part.amplitude_min * part.frequency_min) < 1.0; };
+  const auto rest = find_roots(loop(relay, plant), default_box, options);
+  check_consistent(rest, Status::converged);
+  REQUIRE(rest.roots.size() == 1);
+  CHECK(rest.roots[0].amplitude == Approx(all.roots[0].amplitude).epsilon(1e-12));
+  CHECK(5 * rest.evaluations < 4 * all.evaluations);
+  options.rootless = [](const SearchBox&) { return true; };
+  const auto none = find_roots(loop(relay, plant), default_box, options);
+  check_consistent(none, Status::no_cycle);
+}
+
 TEST_CASE("a phase that only tends to -pi gives a long valley and no root", "[root_search]") {
   // phase -pi + atan(w) - atan(w/10): the distance from zero falls to 1e-6 with the frequency
   const auto plant = [](double w) { return -(1.0 + j * w) / (w * w * (1.0 + 0.1 * j * w)); };
