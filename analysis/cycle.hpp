@@ -35,9 +35,10 @@ struct Cycle {
   std::vector<std::complex<double>> multipliers;  ///< Floquet, of the full period, without the trivial 1, largest first
   /// Estimated absolute error of each multiplier; above 0.5 if they could not be determined, and none are given.
   double multiplier_error = 0.0;
-  /// States in which an element keeps part of its history (return points of an outer hysteresis loop) and which the
-  /// motion neither changes nor forgets: another history gives another cycle, close to this one. Their multipliers, all
-  /// 1, are not among those above, and `stable` is for a given history.
+  /// Numbers in which the loop keeps part of its history (return points of an outer hysteresis loop, the integral of a
+  /// sampled controller of a relay) and which the motion neither changes nor forgets: another history gives another
+  /// cycle, close to this one. Their multipliers, all 1, are not among those above, and `stable` is for a given
+  /// history.
   int remembered = 0;
   double sticking_fraction = 0.0;  ///< share of the period that is stuck
   std::string method;              ///< "shooting" or "exact"

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "limcycle/models/element/of_controllers/sampled.hpp"
 #include "limcycle/models/element/with_memory/delayed_relay.hpp"
 #include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/linear/dense.hpp"
@@ -49,17 +50,6 @@ void make_rates(Loop& loop) {
   }
 }
 
-Loop without_delay(Loop loop) {
-  loop.A += loop.A_delayed;
-  loop.A_delayed.setZero();
-  for (auto& port : loop.ports) {
-    port.C += port.C_delayed;
-    port.C_delayed.setZero();
-  }
-  loop.delay = 0.0;
-  return loop;
-}
-
 /// True for one element whose every way around the loop passes the delay once: it may then stand anywhere on that way.
 bool is_one_ring(const Loop& loop) {
   if (loop.elements.size() != 1) return false;
@@ -93,6 +83,48 @@ TimeDomainLoop delay_relay(const Loop& from, std::size_t i) {
   delayed.delay = from.delay;
   loop.elements[i] = delayed;
   make_rates(loop);
+  return {std::move(loop), 0, 0};
+}
+
+const Sampled<double>* clock_at(const Loop& loop, std::size_t i) { return loop.elements[i].as<Sampled<double>>(); }
+
+/// True if sampled controllers are all that reads past states, and read no present ones; their outputs to the rest are
+/// not read by one another.
+bool only_computers_read_late(const Loop& loop) {
+  if (!loop.A_delayed.isZero(0.0)) return false;
+  const std::size_t count = loop.elements.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Port& port = loop.ports[i];
+    const bool reads_late = !port.C_delayed.isZero(0.0);
+    if (clock_at(loop, i) == nullptr ? reads_late : !port.C.isZero(0.0)) return false;
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    if (clock_at(loop, j) == nullptr) continue;
+    bool by_computers = false, by_others = !loop.B.col(static_cast<Index>(j)).isZero(0.0);
+    for (std::size_t i = 0; i < count; ++i)
+      if (loop.ports[i].D(static_cast<Index>(j)) != 0.0)
+        (clock_at(loop, i) != nullptr ? by_computers : by_others) = true;
+    if (by_computers && by_others) return false;
+  }
+  return true;
+}
+
+/// The loop whose sampled controllers read without the dead time and put out behind it.
+TimeDomainLoop read_ahead(const Loop& from) {
+  Loop loop = without_delay(from);
+  for (std::size_t i = 0; i < loop.elements.size(); ++i) {
+    auto* sampled = loop.elements[i].as<Sampled<double>>();
+    if (sampled == nullptr) continue;
+    Port& port = loop.ports[i];
+    port.C_v = port.C * loop.A;
+    port.D_v = port.C * loop.B;
+    port.c_v = port.C * loop.E;
+    sampled->ahead = from.delay;
+    bool by_computers = false;
+    for (std::size_t k = 0; k < loop.elements.size(); ++k)
+      by_computers = by_computers || (clock_at(loop, k) != nullptr && loop.ports[k].D(static_cast<Index>(i)) != 0.0);
+    sampled->leaves = by_computers ? 0.0 : 1.0;
+  }
   return {std::move(loop), 0, 0};
 }
 
@@ -163,6 +195,17 @@ Loop with_pade(const Loop& from, const MatrixXd& signals, const StateSpace& pade
 
 }  // namespace
 
+Loop without_delay(Loop loop) {
+  loop.A += loop.A_delayed;
+  loop.A_delayed.setZero();
+  for (auto& port : loop.ports) {
+    port.C += port.C_delayed;
+    port.C_delayed.setZero();
+  }
+  loop.delay = 0.0;
+  return loop;
+}
+
 StateSpace pade_delay(double delay, int order) {
   check_order(order);
   if (!(delay > 0.0) || !std::isfinite(delay))
@@ -205,28 +248,33 @@ int pade_order_for(double w, double delay) {
 }
 
 TimeDomainLoop in_time_domain(const Loop& loop, int pade_order) {
-  if (loop.sampled) return {with_fits(*loop.sampled), 0, 0};
+  if (loop.sampled) return in_time_domain(*loop.sampled, pade_order);
   if (!loop.measured.empty()) return in_time_domain(with_fits(loop), pade_order);
   if (!(loop.delay > 0.0)) return {loop, 0, 0};
   const MatrixXd rows = delayed_rows(loop);
   if (rows.isZero(0.0)) return {without_delay(loop), 0, 0};
+  if (loop.continuous && only_computers_read_late(loop)) return read_ahead(loop);
   if (const auto relay = relay_before_plant(loop)) return delay_relay(loop, *relay);
   const StateSpace pade = pade_delay(loop.delay, pade_order);
   const MatrixXd signals = independent_signals(rows);
   return {with_pade(loop, signals, pade), pade_order, signals.rows() * pade.states()};
 }
 
-Eigen::VectorXd with_constant_history(const TimeDomainLoop& from, const Eigen::VectorXd& X) {
-  const Index more = from.delay_states, n = from.loop.states() - more;
-  if (X.size() != n)
-    throw std::invalid_argument("history: " + std::to_string(X.size()) + " states given, the loop without delay has " +
-                                std::to_string(n));
+Eigen::VectorXd with_constant_history(const Loop& loop, const Eigen::VectorXd& X) {
+  const Index n = X.size(), more = loop.states() - n;
   Eigen::VectorXd all(n + more);
   all.head(n) = X;
   if (more > 0)
-    all.tail(more) =
-        solve(MatrixXd(from.loop.A.bottomRightCorner(more, more)), -from.loop.A.bottomLeftCorner(more, n) * X);
+    all.tail(more) = solve(MatrixXd(loop.A.bottomRightCorner(more, more)), -loop.A.bottomLeftCorner(more, n) * X);
   return all;
+}
+
+Eigen::VectorXd with_constant_history(const TimeDomainLoop& from, const Eigen::VectorXd& X) {
+  const Index n = from.loop.states() - from.delay_states;
+  if (X.size() != n)
+    throw std::invalid_argument("history: " + std::to_string(X.size()) + " states given, the loop without delay has " +
+                                std::to_string(n));
+  return with_constant_history(from.loop, X);
 }
 
 }  // namespace limcycle

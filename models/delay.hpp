@@ -15,8 +15,12 @@ struct TimeDomainLoop {
 inline constexpr int lowest_pade_order = 1, highest_pade_order = 60;
 
 /// Converts the loop to a form that the time domain can treat:
-///  - a loop with a sampled controller becomes Loop::sampled, which is exact;
+///  - a loop with a sampled controller becomes Loop::sampled, which is then treated like any other;
 ///  - a loop without delay, or one that does not use its delayed signals, is unchanged;
+///  - a loop in which sampled controllers are all that reads delayed signals is converted exactly: they read without
+///  the
+///    dead time, and their outputs come that much later (see Sampled). A controller is then ahead of the plant by the
+///    delay;
 ///  - a loop whose plant is driven through a relay is converted exactly. A DelayedRelay delays the relay's output
 ///    instead of the plant's, so that the states of the plant, y included, are those of `delay` before; external forces
 ///    that vary in time (not the load) then act on it `delay` late. Not possible with friction compensation, which
@@ -29,10 +33,15 @@ inline constexpr int lowest_pade_order = 1, highest_pade_order = 60;
 /// approximation makes depend on the element's own output.
 TimeDomainLoop in_time_domain(const Loop& loop, int pade_order);
 
+/// The loop as if it had no dead time: its delayed signals are the present ones.
+Loop without_delay(Loop loop);
+
 /// The lowest order whose error is at most 1e-9 up to frequency w (rad/s), or the highest.
 int pade_order_for(double w, double delay);
 
-/// Linear states of the time-domain loop for states X of the original loop that have been constant for all past time.
+/// Linear states of the time-domain loop, its last ones those of the approximation, for states X of the original loop
+/// that have been constant for all past time.
+Eigen::VectorXd with_constant_history(const Loop& loop, const Eigen::VectorXd& X);
 Eigen::VectorXd with_constant_history(const TimeDomainLoop& from, const Eigen::VectorXd& X);
 
 /// The diagonal Pade approximation (m, m) of exp(-s delay), m = order, realised without roots: (1 - T)/(1 + T) with T

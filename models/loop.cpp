@@ -93,7 +93,7 @@ std::optional<BrokenRule> validate_error(const LoopParts& parts, double D_rate) 
                                               (jumps ? ", which jumps" : " on the error, whose rate is not known")};
 }
 
-std::optional<BrokenRule> validate_sampling(const LoopParts& parts, const PlantModel& plant) {
+std::optional<BrokenRule> validate_sampling(const LoopParts& parts) {
   const Sampling& sampling = sampling_of(parts.controller);
   if (auto broken = sampling.broken_together()) return BrokenRule{"loop.controller." + broken->key, broken->rule};
   if (!sampling.is_on()) return std::nullopt;
@@ -104,7 +104,6 @@ std::optional<BrokenRule> validate_sampling(const LoopParts& parts, const PlantM
   if (sampling.velocity_window > 0.0 && !differences)
     return BrokenRule{"loop.controller.velocity_window", "is for pid and cascade: another takes no velocity"};
   if (parts.reference_rate != 0.0) return refuse("cannot stand beside a ramp yet: the reference must be constant");
-  if (plant.delay > 0.0) return refuse("cannot stand beside a dead time of the plant yet");
   if (!has_differences(parts.controller)) return refuse("must not be the inverse of a pole of the controller");
   return std::nullopt;
 }
@@ -132,7 +131,7 @@ std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
   if (const auto* pid = std::get_if<Pid>(&parts.controller)) together = pid->broken_together();
   if (together) return BrokenRule{"loop.controller." + together->key, together->rule};
   if (auto broken = validate_error(parts, controller.D_rate)) return broken;
-  return validate_sampling(parts, plant);
+  return validate_sampling(parts);
 }
 
 std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {
@@ -162,13 +161,6 @@ std::optional<BrokenRule> validate_sampled_diagram(const LoopParts& parts) {
   if (!parts.diagram || !is_sampled(*parts.diagram)) return std::nullopt;
   if (parts.reference_rate != 0.0)
     return BrokenRule{"diagram.reference", "a ramp cannot stand beside a sample_time yet: it must be constant"};
-  for (const Block& block : parts.diagram->blocks) {
-    const auto* plant = std::get_if<Plant>(&block.what);
-    const auto* linear = std::get_if<LinearBlock>(&block.what);
-    const bool late = (plant != nullptr && model_of(*plant).delay > 0.0) ||
-                      (linear != nullptr && std::holds_alternative<DelayBlock>(*linear));
-    if (late) return BrokenRule{block.path + ".delay", "a dead time cannot stand beside a sample_time yet"};
-  }
   return std::nullopt;
 }
 

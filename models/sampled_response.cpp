@@ -77,6 +77,7 @@ class SampledEquations {
     const Complex scale = by_rate ? 1.0 / s_ : 1.0;
     RowVectorXcd row = RowVectorXcd::Zero(left_.cols());
     row.head(loop_.states()) = scale * (by_rate ? port.C_v : port.C).cast<Complex>();
+    if (!by_rate) row.head(loop_.states()) += std::exp(-s_ * loop_.delay) * port.C_delayed.cast<Complex>();
     for (std::size_t j = 0; j < loop_.elements.size(); ++j) {
       const double direct = (by_rate ? port.D_v : port.D)(static_cast<Index>(j));
       if (direct != 0.0) row(output(j)) = scale * direct * (clock(k) && clock(j) ? reading(*clock(k), *clock(j)) : 1.0);

@@ -115,7 +115,9 @@ class March {
   Status land(std::size_t guard, double tried);
   Status land_by_clock(double tried);
   Status wait_for_clock(double due);
-  bool release(SwitchSlopes& first);
+  std::vector<std::vector<double>> guards_by_element();
+  std::optional<std::size_t> passed_by_jump(const std::vector<std::vector<double>>& before);
+  bool release(SwitchSlopes& first, std::vector<std::vector<double>> before);
 
   /// The range of rubbing velocities, |v| < edge, in which a friction law changes about rest.
   struct Layer {

@@ -105,19 +105,39 @@ double March::locate(std::size_t guard, double from, double to) {
   return just_beyond(by_step, now, found, last, 2e-16 * std::max(last, std::abs(step_.t0)));
 }
 
-/// Lets go at once the bodies that can no longer be held after a switch: the jump of one force broke them away. For the
-/// derivative these switches happen on the surface of the first one, whose time they have, and not on their own: that
-/// of a neighbour is passed by a jump, not by its motion. False if there is no derivative.
-bool March::release(SwitchSlopes& first) {
+/// The guards of each element at the present state.
+std::vector<std::vector<double>> March::guards_by_element() {
+  std::vector<double> values;
+  field_.guards(x_, t_, values);
+  std::vector<std::vector<double>> all(field_.modes().size());
+  for (std::size_t k = 0; k < values.size(); ++k) all[field_.owner(k)].push_back(values[k]);
+  return all;
+}
+
+/// The guard of a switch that a jump has made necessary, if there is one: of a body that can no longer be held, or of
+/// an element whose input jumped across where it switches, of guards that were positive `before`. Elements that have
+/// switched since are left out of `before`.
+std::optional<std::size_t> March::passed_by_jump(const std::vector<std::vector<double>>& before) {
+  const auto now = guards_by_element();
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    for (std::size_t j = 0; j < now[i].size(); ++j, ++k)
+      if (now[i][j] < 0.0 && (field_.holds(i) || (j < before[i].size() && before[i][j] > 0.0))) return k;
+  return std::nullopt;
+}
+
+/// Lets follow at once the switches that the jump of the first one causes. For the derivative they happen on the
+/// surface of the first one, whose time they have, and not on their own: that of a neighbour is passed by a jump, not
+/// by its motion. False if there is no derivative.
+bool March::release(SwitchSlopes& first, std::vector<std::vector<double>> before) {
   const std::size_t most = 2 * field_.modes().size();
+  before[*step_.switched].clear();
   for (std::size_t count = 0; count < most; ++count) {
-    std::vector<double> values;
-    field_.guards(x_, t_, values);
-    std::size_t k = 0;
-    while (k < values.size() && !(values[k] < 0.0 && field_.holds(field_.owner(k)))) ++k;
-    if (k == values.size()) return true;
+    const auto k = passed_by_jump(before);
+    if (!k) return true;
+    before[field_.owner(*k)].clear();
     SwitchSlopes next;
-    field_.fire(x_, t_, k, next);
+    field_.fire(x_, t_, *k, next);
     first.reset = next.reset * first.reset;
     first.after = next.after;
     first.saltation = first.reset + (first.after - first.reset * first.before) * first.guard / first.crossing;
@@ -166,7 +186,8 @@ Status March::land(std::size_t guard, double tried) {
     dt_ = 0.125 * tried;
   if (tracks_) {
     SwitchSlopes slopes;
-    if (field_.fire(x_, t_, guard, slopes) && release(slopes))
+    auto before = guards_by_element();
+    if (field_.fire(x_, t_, guard, slopes) && release(slopes, std::move(before)))
       step_.transition = slopes.saltation * step_.transition;
     else
       step_.transition.resize(0, 0);

@@ -5,6 +5,7 @@
 
 #include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/models/delay.hpp"
 #include "limcycle/models/element/of_controllers/sampled.hpp"
 
 namespace limcycle {
@@ -74,6 +75,21 @@ Shares shares_of(const Loop& loop, const Values& X) {
   return shares;
 }
 
+/// The sizes of the linear states, and behind them those of what approximates a dead time: the state of each delayed
+/// signal, the row of which the last state of its approximation has, has the size of that signal.
+State with_delayed_sizes(const Loop& loop, State sizes) {
+  const auto n = std::ssize(sizes);
+  const Eigen::VectorXd known = Eigen::Map<const Eigen::VectorXd>(sizes.data(), n);
+  sizes.resize(static_cast<std::size_t>(loop.states()));
+  double size = 0.0;
+  for (Eigen::Index i = loop.states() - 1; i >= n; --i) {
+    const Eigen::RowVectorXd signal = loop.A.row(i).head(n);
+    if (signal.norm() > 0.0) size = (signal.cwiseAbs() * known).value() / signal.norm();
+    sizes[static_cast<std::size_t>(i)] = size;
+  }
+  return sizes;
+}
+
 }  // namespace
 
 double sample_time(const Loop& loop) {
@@ -92,7 +108,7 @@ double repetition_time(const Loop& loop) {
 
 State sampled_sizes(const Loop& loop, const State& continuous) {
   Shares shares = shares_of(loop, continuous);
-  State result = shares.plant;
+  State result = with_delayed_sizes(loop, shares.plant);
   const Eigen::VectorXd X = Eigen::Map<const Eigen::VectorXd>(result.data(), loop.states());
   Eigen::VectorXd outputs = Eigen::VectorXd::Zero(std::ssize(loop.elements));
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
@@ -122,8 +138,8 @@ State sampled_sizes(const Loop& loop, const State& continuous) {
 
 LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X) {
   Shares shares = shares_of(loop, X);
-  LoopState state =
-      without_history(loop, Eigen::Map<const Eigen::VectorXd>(shares.plant.data(), std::ssize(shares.plant)));
+  const Eigen::Map<const Eigen::VectorXd> plant(shares.plant.data(), std::ssize(shares.plant));
+  LoopState state = without_history(loop, with_constant_history(loop, plant));
   LoopField field(loop);
   field.modes() = state.modes;
   bool read = false;  // elements behind a reading begin at its output

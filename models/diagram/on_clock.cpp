@@ -132,8 +132,24 @@ void add_lags(Diagram& diagram, const Diagram& given, bool dead_time_in_plants) 
   diagram.blocks.insert(diagram.blocks.end(), added.begin(), added.end());
 }
 
+/// True if the dead times that the diagram has of itself are the same in all its plants, so that more can stand there.
+bool same_in_all_plants(const Diagram& diagram) {
+  std::optional<double> own;
+  for (const Block& block : diagram.blocks) {
+    if (const auto* linear = std::get_if<LinearBlock>(&block.what))
+      if (std::holds_alternative<DelayBlock>(*linear)) return false;
+    const auto* plant = std::get_if<Plant>(&block.what);
+    if (plant == nullptr) continue;
+    const double delay = limcycle::model_of(*plant).delay;
+    if (own && *own != delay) return false;
+    own = delay;
+  }
+  return true;
+}
+
 /// The dead time of all sampled controllers that the continuous part reads, if it can stand in the plants.
 std::optional<double> shared_dead_time(const Diagram& diagram) {
+  if (!same_in_all_plants(diagram)) return std::nullopt;
   std::optional<double> shared;
   for (const Block& block : diagram.blocks) {
     const Sampling* sampling = clock_of(block);

@@ -1,3 +1,4 @@
+#include "limcycle/models/delay.hpp"
 #include "limcycle/models/diagram/controller_blocks.hpp"
 #include "limcycle/models/diagram/expand.hpp"
 #include "limcycle/models/diagram/on_clock.hpp"
@@ -59,7 +60,8 @@ Loop assemble(const LoopParts& parts) {
       parts.diagram ? is_sampled(*parts.diagram) : sampling_of(parts.controller).is_on() && uses_error(parts);
   if (!on_computer) return form(parts, Clock::continuous);
   Loop sampled = form(parts, Clock::sampled), loop = form(parts, Clock::averaged);
-  sampled.continuous = std::make_shared<const Loop>(form(with_linear_integral(parts), Clock::continuous));
+  sampled.continuous =
+      std::make_shared<const Loop>(without_delay(form(with_linear_integral(parts), Clock::continuous)));
   loop.sampled = std::make_shared<const Loop>(std::move(sampled));
   return loop;
 }

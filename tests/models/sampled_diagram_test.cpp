@@ -215,7 +215,5 @@ TEST_CASE("sampled diagram: rules") {
   LoopParts late_plant = axis_under({named_block("pid", Controller(fast), error)});
   late_plant.diagram->blocks.push_back(named_block("wait", LinearBlock(DelayBlock{0.1}), {{1.0, "axis", "y"}}));
   late_plant.diagram->blocks[2].inputs = {{{-1.0, "wait", ""}}};
-  const auto broken = validate(late_plant);
-  REQUIRE(broken);
-  CHECK(broken->key == "diagram.wait.delay");
+  CHECK_FALSE(validate(late_plant));
 }

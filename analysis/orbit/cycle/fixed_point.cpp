@@ -209,6 +209,24 @@ Status FixedPoint::compare_anew(double loose, double& difference) {
   return status;
 }
 
+VectorXd FixedPoint::neutral() const {
+  constexpr double close = 1e-6;
+  const Eigen::Index n = jacobian_.rows();
+  VectorXd found;
+  double least = close;
+  for (const double to : {1.0, -1.0}) {
+    if (to < 0.0 && !map_.half()) continue;
+    MatrixXd matrix = MatrixXd::Zero(n + kept_.cols(), n);
+    matrix.topRows(n) = jacobian_ - to * MatrixXd::Identity(n, n);
+    matrix.bottomRightCorner(kept_.cols(), kept_.rows()) = kept_.transpose();
+    const auto svd = singular_values(MatrixXd(matrix.transpose()));
+    if (svd.values.size() == 0 || !(svd.values(svd.values.size() - 1) < least)) continue;
+    least = svd.values(svd.values.size() - 1);
+    found = chart_->scale.cwiseProduct(chart_->basis * svd.U.col(svd.values.size() - 1));
+  }
+  return found;
+}
+
 /// Finds the combinations of element states that the map keeps for any state, and for a half map those that it
 /// reverses (a whole period keeps them): left eigenvectors of its derivative on element states alone.
 void FixedPoint::find_kept() {

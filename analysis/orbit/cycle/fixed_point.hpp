@@ -33,6 +33,9 @@ class FixedPoint {
   /// True if the derivative is already known, at this tolerance and close enough. (A Jacobian that was too old is
   /// discarded, and at a grazed switch there is none.)
   bool is_linear_at(double rtol) const;
+  /// Change of the state that the map neither reduces nor, but for states of which this is known (see remembered()),
+  /// enlarges; empty if there is none.
+  Eigen::VectorXd neutral() const;
   /// See Cycle::remembered; states that are zero and stay so remember nothing.
   int remembered() const;
   /// Multipliers of the (half) map, from the factors of its derivative, without those of kept combinations (see

@@ -65,6 +65,8 @@ void judge(FixedPoint& point, ShootingResult& result, bool exact, double rtol) {
   const double largest = cycle.multipliers.empty() ? 0.0 : std::abs(cycle.multipliers.front());
   if (result.trivial_error < 0.1 && std::abs(largest - 1.0) > 4.0 * result.multiplier_error)
     cycle.stable = largest < 1.0;
+  else
+    result.neutral = point.neutral();
 }
 
 /// Solves at rtol and, if an accuracy is wanted, with ever tighter tolerances until the estimate reaches it. On return

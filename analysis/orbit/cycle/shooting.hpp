@@ -35,6 +35,7 @@ struct ShootingResult {
   long steps = 0;                 ///< of the integrator, in all of them
   double multiplier_error = 0.0;  ///< estimated absolute error of the Floquet multipliers of the map
   double trivial_error = 0.0;     ///< deviation of the trivial multiplier from 1
+  Eigen::VectorXd neutral;  ///< change of the state whose multiplier cannot be told from 1; empty if there is none
 };
 
 /// Section through a trace on which the loop returns transversally: y at 27 % of its swing above the middle (off the

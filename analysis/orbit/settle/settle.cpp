@@ -22,6 +22,8 @@ namespace {
 
 /// Step limit of shooting before a motion is decided: this constant, plus a multiple of the motion's own steps.
 constexpr long steps_of_tries = 200'000, tries_per_step = 3;
+/// The same for a sampled loop, most cycles of which are not locked: this constant, plus a part of its steps.
+constexpr long steps_of_sampled_tries = 10'000, sampled_steps_per_try = 8;
 constexpr double settled_change = 1e-3;  ///< relative change of the swings of a motion that has all but settled
 constexpr long most_readings = 5'000'000, most_sampled_steps = 4'000'000;
 constexpr double large_swing =
@@ -68,7 +70,10 @@ class Settling {
     const bool by_clock = march_.last().by_clock;
     if (!by_clock) append(result_.trace, field_, march_);
     field_.rate(march_.x(), dx_, march_.t());
-    if (by_clock && !waits()) append(result_.trace, field_, march_.x(), dx_, march_.t());
+    if (!by_clock || waits()) return;
+    const bool bends = field_.y_rate(dx_) != field_.y_rate(march_.last().dx1);
+    if (bends) append(result_.trace, field_, march_.x(), march_.last().dx1, march_.t());
+    append(result_.trace, field_, march_.x(), dx_, march_.t());
   }
 
   /// True if nothing moved since the last reading of a sampled controller: a trace of every sample is long.
@@ -293,8 +298,9 @@ class Settling {
 
   /// `change`: see largest_change().
   bool try_cycle(Swings& swings, std::size_t order, double change) {
-    if (tried_ > (loop_.continuous ? march_.steps() / 8 : steps_of_tries + tries_per_step * march_.steps()))
-      return false;
+    const long most = loop_.continuous ? steps_of_sampled_tries + march_.steps() / sampled_steps_per_try
+                                       : steps_of_tries + tries_per_step * march_.steps();
+    if (tried_ > most) return false;
     const std::size_t turns = swings.turning.points().size();
     swings.next_try = turns + turns / 2 + 1;
     const Trace period = recent(swings.turning, order);
@@ -337,7 +343,9 @@ class Settling {
     }
     if (!shot.cycle.stable && mismatch < 0.01) {
       Surroundings around(loop_, shot.cycle, section, shooting, options_.rtol);
-      if (around.attracts())
+      if (contracts_but_once(shot) && around.has_twins(shot.neutral))
+        keep_one(shot.cycle);
+      else if (around.attracts())
         shot.cycle.stable = true;
       else if (around.has_neighbour(half))
         decide(Outcome::family, "periodic, one of a family of periodic motions whose size depends on the start");
@@ -357,6 +365,22 @@ class Settling {
     result_.shot = std::move(shot);
     decide(Outcome::cycle, nearer ? "approaches a cycle, confirmed by shooting" : "periodic, confirmed by shooting");
     return true;
+  }
+
+  /// True if all multipliers but the largest, which is 1 as far as is known, are less than 1.
+  static bool contracts_but_once(const ShootingResult& shot) {
+    constexpr double clearly = 1e-3;
+    const auto& multipliers = shot.cycle.multipliers;
+    return shot.neutral.size() > 0 && !multipliers.empty() &&
+           std::all_of(multipliers.begin() + 1, multipliers.end(),
+                       [](std::complex<double> one) { return std::abs(one) < 1.0 - clearly; });
+  }
+
+  /// The cycle is stable but for a number that it keeps, whose multiplier is left out.
+  static void keep_one(Cycle& cycle) {
+    cycle.multipliers.erase(cycle.multipliers.begin());
+    ++cycle.remembered;
+    cycle.stable = true;
   }
 
   const Loop& loop_;

@@ -12,7 +12,7 @@ namespace limcycle {
 
 Surroundings::Surroundings(const Loop& loop, const Cycle& cycle, const Section& section, const ShootingOptions& options,
                            double rtol)
-    : loop_(loop), cycle_(cycle), section_(section), options_(options), rtol_(rtol) {
+    : loop_(loop), cycle_(cycle), section_(section), options_(options), rtol_(rtol), sizes_(typical_sizes(loop)) {
   middle_ = opposite().x;
   for (std::size_t i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * (middle_[i] + cycle.start.x[i]);
 }
@@ -36,30 +36,69 @@ LoopState Surroundings::farther_out(double factor) const {
   return moved;
 }
 
+/// Largest difference of two states, in units of their typical sizes.
+double Surroundings::distance(const State& one, const State& other) const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < one.size(); ++i) largest = std::max(largest, std::abs(one[i] - other[i]) / sizes_[i]);
+  return largest;
+}
+
 bool Surroundings::attracts() {
   constexpr double aside = 0.01, left = 0.05;
   constexpr int periods = 24;
-  const State sizes = typical_sizes(loop_);
-  const auto distance = [&](const State& x) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i)
-      largest = std::max(largest, std::abs(x[i] - cycle_.start.x[i]) / sizes[i]);
-    return largest;
-  };
   ReturnMap map(
       loop_, section_, std::nullopt,
       {rtol_, options_.max_steps_per_map, options_.stop, false, infinite, returns_of(section_, cycle_.trace)});
   bool back = true;
   for (const double side : {1.0 + aside, 1.0 - aside}) {
     const LoopState other = farther_out(side);
-    const double before = distance(other.x);
+    const double before = distance(other.x, cycle_.start.x);
     auto at = map.approach(other);
-    const auto is_back = [&] { return distance(at.state.x) < left * before; };
+    const auto is_back = [&] { return distance(at.state.x, cycle_.start.x) < left * before; };
     for (int k = 0; k < periods && at.status == Status::converged && !is_back(); ++k) at = map(at.state);
     back = back && at.status == Status::converged && is_back();
   }
   steps_ += map.steps();
   return back;
+}
+
+bool Surroundings::has_twins(const Eigen::VectorXd& neutral) {
+  constexpr double farthest = 1e-2, nearest = 1e-5, by = 0.1, above_tolerance = 1e4;
+  double size = 0.0;
+  for (std::size_t i = 0; i < sizes_.size(); ++i)
+    size = std::max(size, std::abs(neutral(static_cast<Eigen::Index>(i))) / sizes_[i]);
+  const auto beside = [&](double way) {
+    LoopState moved = cycle_.start;
+    Eigen::Map<Eigen::VectorXd>(moved.x.data(), neutral.size()) += way / size * neutral;
+    return moved;
+  };
+  // Where a sample is taken just before a switch the family ends close by.
+  const bool exact = choose_stepper(loop_, rtol_) == StepperKind::exact;
+  const double least = exact ? nearest : std::max(nearest, above_tolerance * rtol_);
+  for (double aside = farthest; aside > 0.5 * least; aside *= by)
+    if (has_twin(beside(aside)) && has_twin(beside(-aside))) return true;
+  return false;
+}
+
+bool Surroundings::has_twin(const LoopState& beside) {
+  constexpr int periods = 100;
+  constexpr double still = 1e-4;
+  const double equal = std::max(1e-6, 10.0 * rtol_), before = distance(beside.x, cycle_.start.x);
+  ReturnMap map(
+      loop_, section_, std::nullopt,
+      {rtol_, options_.max_steps_per_map, options_.stop, false, infinite, returns_of(section_, cycle_.trace)});
+  map.set_extremes(true);
+  auto at = map.approach(beside);
+  double moved = infinite;
+  for (int k = 0; k < periods && at.status == Status::converged && !(moved <= still * before); ++k) {
+    const State last = at.state.x;
+    at = map(at.state);
+    moved = distance(at.state.x, last);
+  }
+  steps_ += map.steps();
+  return at.status == Status::converged && moved <= still * before &&
+         distance(at.state.x, cycle_.start.x) > 0.5 * before && std::abs(at.time / cycle_.period - 1.0) <= equal &&
+         std::abs(map.amplitude(at) / cycle_.amplitude - 1.0) <= equal;
 }
 
 bool Surroundings::has_neighbour(bool half) {

@@ -18,10 +18,16 @@ class Surroundings {
   /// True if another periodic motion lies close: shooting from 2 % farther out, or nearer, finds it. `half`: by half
   /// periods.
   bool has_neighbour(bool half);
+  /// True if motions that begin aside along `neutral`, on either side, by 1 % or less of the typical sizes, are or come
+  /// to other periodic ones of the same period and size: the cycle keeps a number of what was before, as the integral
+  /// of a sampled controller of a relay does.
+  bool has_twins(const Eigen::VectorXd& neutral);
   /// Steps of all marches so far.
   long steps() const { return steps_; }
 
  private:
+  bool has_twin(const LoopState& beside);
+  double distance(const State& one, const State& other) const;
   LoopState farther_out(double factor) const;
   LoopState opposite() const;
 
@@ -30,7 +36,7 @@ class Surroundings {
   const Section& section_;
   const ShootingOptions& options_;
   double rtol_;
-  State middle_;
+  State sizes_, middle_;
   long steps_ = 0;
 };
 

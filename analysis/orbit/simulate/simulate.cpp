@@ -244,6 +244,9 @@ class Running {
 };
 
 std::string note_of_delay(const TimeDomainLoop& made, double delay, double up_to) {
+  if (made.pade_order == 0 && made.loop.continuous)
+    return "the dead time is exact: the controller reads the plant's state of " + short_number(delay) +
+           " s before, and its own states are those of that later time";
   if (made.pade_order == 0)
     return "the dead time is exact: the relay acts " + short_number(delay) +
            " s after it decides, and the states of a controller are those of the decision";

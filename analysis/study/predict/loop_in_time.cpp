@@ -13,17 +13,22 @@ bool exact_in_time(const Loop& loop) {
 }
 
 LoopInTime loop_in_time(const Loop& loop, double highest) {
-  if (loop.sampled)
-    return {in_time_domain(loop, lowest_pade_order),
-            "the controller reads and writes at its sample instants in every simulation; the describing functions see "
-            "its pulse transfer function, hold and computation delay, without aliases and without its quanta"};
+  if (loop.sampled) {
+    LoopInTime made = loop_in_time(*loop.sampled, highest);
+    made.note =
+        "the controller reads and writes at its sample instants in every simulation; the describing functions see "
+        "its pulse transfer function, hold and computation delay, without aliases and without its quanta" +
+        (made.note.empty() ? "" : "; " + made.note);
+    return made;
+  }
   if (loop.delay == 0.0) return {{loop, 0, 0}, {}};
   const double up_to = std::min(highest > 0.0 ? 7.0 * highest : 7.0 / loop.delay, 40.0 / loop.delay);
   const int order = pade_order_for(up_to, loop.delay);
   LoopInTime made{in_time_domain(loop, order), {}};
   made.note =
       made.treated.pade_order == 0
-          ? "the delay is exact in the frequency domain and, acting on a relay's switches, in the time domain too"
+          ? std::string("the delay is exact in the frequency domain and, acting on ") +
+                (loop.continuous ? "the samples" : "a relay's switches") + ", in the time domain too"
           : "the delay is exact in the frequency domain; in the time domain it is a Pade approximation of order " +
                 std::to_string(order) + "/" + std::to_string(order) + ", off by at most " +
                 short_number(pade_error(up_to, loop.delay, order)) + " of the delayed signal up to " +
@@ -45,6 +50,7 @@ bool delays_output(const Loop& loop) {
 
 double delay_error(const Loop& loop, int pade_order, const Cycle& cycle) {
   if (pade_order == 0) return 0.0;
+  if (loop.sampled) return delay_error(*loop.sampled, pade_order, cycle);
   const Eigen::VectorXcd X = delays_output(loop) ? output_harmonics(cycle, 199) : input_harmonics(cycle, 199);
   double sum = 0.0;
   for (int n = 1; n < X.size(); ++n) sum += std::abs(X(n)) * pade_error(n * cycle.frequency(), loop.delay, pade_order);

@@ -242,8 +242,9 @@ class PredictionStudy {
     if (stopped() || starts_.empty()) return;
     Loop averaged = loop_;
     averaged.sampled.reset();
-    constexpr int order = 2;  // of the approximation of a dead time that is short against any motion of interest
-    const Loop in_time = in_time_domain(averaged, order).loop;
+    constexpr int order = 2;  // for the dead time of hold and computation, short against any motion of interest
+    const Loop in_time =
+        loop_.sampled->delay > 0.0 ? loop_in_time(averaged, 0.0).treated.loop : in_time_domain(averaged, order).loop;
     CycleHunt hunt(in_time, options_, box_);
     const auto moves_on = [&](const BetweenStarts::Start& start) {
       const Outcome outcome = hunt_->outcomes()[start.outcome].outcome;
@@ -265,7 +266,7 @@ class PredictionStudy {
   void note_memory() {
     for (std::size_t i = 0; i < report_.cycles.size(); ++i) {
       if (report_.cycles[i].remembered == 0) continue;
-      note("cycle " + std::to_string(i) + " is one of a family of neighbouring cycles: the law keeps " +
+      note("cycle " + std::to_string(i) + " is one of a family of neighbouring cycles: the loop keeps " +
            std::to_string(report_.cycles[i].remembered) + (report_.cycles[i].remembered == 1 ? " number" : " numbers") +
            " of its history, which the cycle neither changes nor forgets (their multipliers, 1, are left out; "
            "stability holds for a given history)");

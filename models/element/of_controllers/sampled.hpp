@@ -17,14 +17,18 @@ namespace limcycle {
 /// A, B, C: matrices of the order n in rows (n^2, n, n numbers); a quantum of 0 does not round. hold_back (n numbers,
 /// or none): what the limit takes off the states (back-calculation). The last `memory` of X are past inputs.
 ///
-/// State: time until the next tick (s), output in force, X (n); with every > 1 the ticks to let pass; with a
-/// computation delay also the time until the computed output comes out, and that output. The clock is part of the
-/// state, so that a motion that repeats itself does so together with its samples. Guards: the times. Mode 1: an output
-/// is pending.
+/// A dead time before all that a controller reads is as well one behind what it puts out: its clock runs `ahead` of the
+/// rest by the dead time, and the outputs that leave the controller (`leaves`) wait for as long. At the start it has
+/// read the input, as it is then, in each period of the dead time.
+///
+/// State: time until the next tick (s), output in force, X (n); with every > 1 the ticks to let pass; with outputs that
+/// wait also the time until the first of them comes out, and all that can be waiting at once, in their order. The clock
+/// is part of the state, so that a motion that repeats itself does so together with its samples. Guards: the times.
+/// Mode: number of outputs that wait.
 template <class S>
 struct Sampled {
   S sample_time{}, computation_delay{0.0}, input_quantum{0.0}, output_quantum{0.0}, limit{infinite}, every{1.0},
-      memory{0.0}, clamped{0.0}, D{};
+      memory{0.0}, clamped{0.0}, ahead{0.0}, leaves{0.0}, D{};
   std::vector<S> A, B, C, hold_back;
 
   static constexpr std::string_view kind = "sampled";
@@ -46,6 +50,8 @@ struct Sampled {
         {"every", "1", "ticks of the clock from one reading to the next", &Sampled::every, {1.0, infinite}, false},
         {"memory", "1", "past inputs among the states, the last of them", &Sampled::memory, not_negative, false},
         {"clamped", "1", "1: the states stand still at the limit", &Sampled::clamped, {0.0, 1.0}, false},
+        {"ahead", "s", "dead time by which the clock is ahead of the rest", &Sampled::ahead, not_negative, false},
+        {"leaves", "1", "1: the output waits for that time", &Sampled::leaves, {0.0, 1.0}, false},
         {"hold_back", "1", "change of the states by what the limit takes off", &Sampled::hold_back, any_number, false},
         {"D", "1", "feed-through", &Sampled::D, any_number},
         {"A", "1", "state matrix, row by row", &Sampled::A},
@@ -62,41 +68,51 @@ struct Sampled {
   }
 
   int order() const { return static_cast<int>(B.size()); }
-  bool delays() const { return computation_delay > 0.0; }
+  /// From a reading to its output.
+  S delay() const { return leaves > 0.0 ? computation_delay + ahead : computation_delay; }
+  bool delays() const { return delay() > 0.0; }
   bool counts() const { return every > 1.0; }
-  int states() const { return first_own + order() + (counts() ? 1 : 0) + (delays() ? 2 : 0); }
+  /// Outputs that can wait at once.
+  int places() const {
+    constexpr double rounding = 1e-9;
+    return delays() ? std::max(1, static_cast<int>(std::ceil(value_of(delay() / (sample_time * every)) - rounding)))
+                    : 0;
+  }
+  int states() const { return first_own + order() + (counts() ? 1 : 0) + (delays() ? 1 + places() : 0); }
 
   /// The clock runs down; the output waits for its time only while one is pending.
   void rate(const Input<S>&, Mode mode, std::span<const S>, std::span<S> dz) const {
     std::fill(dz.begin(), dz.begin() + states(), S(0.0));
     dz[0] = S(-1.0);
-    if (mode.value == 1) dz[wait()] = S(-1.0);
+    if (mode.value > 0) dz[wait()] = S(-1.0);
   }
   S output(const Input<S>&, Mode, std::span<const S> z) const { return z[1]; }
 
-  int guards(Mode mode) const { return mode.value == 1 ? 2 : 1; }
+  int guards(Mode mode) const { return mode.value > 0 ? 2 : 1; }
   /// The output comes before a reading at the same time.
   void guard(const Input<S>&, Mode mode, std::span<const S> z, std::span<S> g) const {
-    if (mode.value == 1) g[0] = z[wait()];
-    g[mode.value == 1 ? 1 : 0] = z[0];
+    if (mode.value > 0) g[0] = z[wait()];
+    g[mode.value > 0 ? 1 : 0] = z[0];
   }
   Mode next(const Input<S>& in, Mode mode, std::span<S> z, int fired) const {
-    if (mode.value == 1 && fired == 0) {
-      z[1] = z[wait() + 1];
-      z[wait()] = S(0.0);
-      return {0};
-    }
+    if (mode.value > 0 && fired == 0) return put_out(mode, z);
     z[0] = sample_time;
-    if (counts() && z[ticks()] > 0.5) {
-      z[ticks()] = z[ticks()] - S(1.0);
-      return {0};
-    }
-    return read(in.x, z);
+    return tick(in.x, mode, z);
   }
-  /// The first reading is at the start.
+  /// The first reading is at the start, or was ahead of it.
   Mode start(const Input<double>& in, std::span<double> z) const {
-    z[0] = value_of(sample_time);
-    return read(in.x, z);
+    constexpr double rounding = 1e-9;
+    const double period = value_of(sample_time), lead = value_of(ahead);
+    z[0] = period;
+    if (counts()) z[ticks()] = 0.0;
+    if (lead == 0.0) return tick(in.x, {0}, z);
+    Mode mode{0};
+    const int ticks_before = static_cast<int>(std::ceil(lead / period - rounding));
+    for (int k = 0; k < ticks_before; ++k) mode = tick(in.x, mode, z);
+    z[0] = std::max(0.0, ticks_before * period - lead);
+    while (mode.value > 0 && until_first(mode, z) <= rounding * period) mode = put_out(mode, z);
+    if (mode.value > 0) z[wait()] = until_first(mode, z);
+    return mode;
   }
 
   /// What is read of an input.
@@ -105,7 +121,7 @@ struct Sampled {
     return rounded(input, input_quantum);
   }
 
-  double due(Mode mode, std::span<const double> z) const { return mode.value == 1 ? std::min(z[0], z[wait()]) : z[0]; }
+  double due(Mode mode, std::span<const double> z) const { return mode.value > 0 ? std::min(z[0], z[wait()]) : z[0]; }
 
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return mode; }
@@ -136,9 +152,31 @@ struct Sampled {
     const T step = as<T>(quantum);
     return step * T(std::round(value_of(value / step)));
   }
+  /// Time until the first of the outputs that wait comes into force. It follows from the clock.
+  template <class T>
+  T until_first(Mode waiting, std::span<T> z) const {
+    const T to_reading = counts() ? z[0] + z[ticks()] * as<T>(sample_time) : z[0];
+    return as<T>(delay()) - T(static_cast<double>(waiting.value)) * as<T>(every * sample_time) + to_reading;
+  }
+  template <class T>
+  Mode put_out(Mode mode, std::span<T> z) const {
+    const auto left = static_cast<std::size_t>(mode.value) - 1;
+    z[1] = z[wait() + 1];
+    for (std::size_t k = 1; k <= left; ++k) z[wait() + k] = z[wait() + k + 1];
+    z[wait() + left + 1] = T(0.0);
+    mode.value -= 1;
+    z[wait()] = left == 0 ? T(0.0) : until_first(mode, z);
+    return mode;
+  }
+  template <class T>
+  Mode tick(const T& input, Mode mode, std::span<T> z) const {
+    if (!counts() || !(z[ticks()] > 0.5)) return read(input, mode, z);
+    z[ticks()] = z[ticks()] - T(1.0);
+    return mode;
+  }
   /// Reads the input, computes the output and the next state.
   template <class T>
-  Mode read(const T& input, std::span<T> z) const {
+  Mode read(const T& input, Mode mode, std::span<T> z) const {
     const T e = reading(input);
     const std::size_t n = B.size();
     T u = as<T>(D) * e;
@@ -158,9 +196,10 @@ struct Sampled {
       z[1] = u;
       return {0};
     }
-    z[wait()] = as<T>(computation_delay);
-    z[wait() + 1] = u;
-    return {1};
+    if (mode.value == places()) mode = put_out(mode, z);  // due now, but for a rounding
+    if (mode.value == 0) z[wait()] = as<T>(delay());
+    z[wait() + 1 + static_cast<std::size_t>(mode.value)] = u;
+    return {mode.value + 1};
   }
 };
 
