@@ -55,7 +55,9 @@ const LocalSensitivity* strongest(const SensitivityReport& report) {
 }
 
 std::string without_derivatives(const SensitivityReport& report) {
-  if (report.local.empty()) return "The derivatives of the limit cycle were not computed: this loop has a dead time.";
+  if (report.local.empty())
+    return "The derivatives of the limit cycle were not computed: they are not known with a dead time "
+           "or a sampled controller.";
   return "The limit cycle has no derivative with respect to any number: " + report.local.front().why + ".";
 }
 

@@ -18,7 +18,8 @@ LoopInTime loop_in_time(const Loop& loop, double highest) {
     made.note =
         "the controller reads and writes at its sample instants in every simulation; the describing functions see "
         "its pulse transfer function, hold and computation delay, without aliases and without its quanta" +
-        (made.note.empty() ? "" : "; " + made.note);
+        (made.note.empty() ? "" : "; " + made.note) +
+        (made.treated.pade_order > 0 ? ", which the ripple between two samples passes with a wrong phase" : "");
     return made;
   }
   if (loop.delay == 0.0) return {{loop, 0, 0}, {}};

@@ -54,7 +54,7 @@ class PredictionStudy {
     look_beside_unstable_cycles();
     balance_harmonics(share);
     look_beside_unstable_cycles();
-    if (time_.continuous) compare_with_continuous();
+    if (loop_.sampled) compare_with_continuous();
     finish();
     return std::move(report_);
   }
