@@ -74,6 +74,41 @@ export const forms = {
     kind = "coulomb"
     on = "axis"
     Fc = 1.0`.replace('{kind = "ramp", rate = 0.0}', '0.5'),
+  'a diagram with sampled blocks': () => `[diagram]
+    output = "axis.y"
+    [[diagram.block]]
+    name = "pd"
+    kind = "pid"
+    input = "r - axis.y"
+    kp = 30.0
+    kd = 6.0
+    sample_time = 0.002
+    [[diagram.block]]
+    name = "filter"
+    kind = "low-pass"
+    input = "pd"
+    time_constant = 0.01
+    sample_time = 0.002
+    computation_delay = 0.001
+    input_step = 0.0
+    output_step = 0.01
+    [[diagram.block]]
+    name = "shape"
+    kind = "transfer-function"
+    input = "filter"
+    numerator = [1.0]
+    denominator = [0.01, 1.0]
+    sample_time = 0.004
+    [[diagram.block]]
+    name = "axis"
+    kind = "mass"
+    mass = 1.0
+    input = "shape"
+    [[diagram.block]]
+    name = "guide"
+    kind = "coulomb"
+    on = "axis"
+    Fc = 1.0`,
   'friction between two plants': () => `[diagram]
     output = "b.y"
     [[diagram.block]]

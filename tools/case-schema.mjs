@@ -98,6 +98,12 @@ const compensation = {
 const in_diagram = new Map();
 for (const law of [...laws.filter(({ group, kind }) => group !== 'controller' || kind === 'pid'), compensation])
   if (law.parameters.length >= (in_diagram.get(law.kind)?.parameters.length ?? 0)) in_diagram.set(law.kind, law);
+// Linear blocks of one input and one output may run on a computer, with keys that pid has too. A transfer function
+// among them is the plant of that name, which a sample_time makes a part of the controller.
+const clock = ['sample_time', 'computation_delay', 'input_step', 'output_step'];
+const of_clock = laws.find(({ group, kind }) => group === 'controller' && kind === 'pid').parameters
+  .filter(({ key }) => clock.includes(key));
+const may_be_sampled = ['gain', 'integrator', 'low-pass', 'lead-lag', 'notch', 'transfer-function'];
 const block_definition = (law) => {
   const touches = law.group === 'friction' || law === compensation;
   const { input, on, between, name } = block_keys;
@@ -107,6 +113,7 @@ const block_definition = (law) => {
     ...kind_of(law),
     ...signals,
     ...keys_of(law),
+    ...(may_be_sampled.includes(law.kind) && Object.fromEntries(of_clock.map((p) => [p.key, parameter(p)]))),
   }, ['name', 'kind', ...(touches || law.kind === 'constant' ? [] : ['input']), ...required_of(law)],
   { ...rules_of(law), ...(touches && { oneOf: ['input', 'on', 'between'].filter((key) => key in signals).map((key) => ({ required: [key] })) }) });
 };

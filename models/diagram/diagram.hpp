@@ -40,6 +40,7 @@ struct Block {
   std::string on = {}, against = {};
   std::vector<std::string> states = {};  ///< names of its states; empty: those of its kind
   double late = 0.0;                     ///< all outputs of a plant are read that much later, s
+  Sampling sampling = {};                ///< of a linear block of one input and one output that runs on a computer
 };
 
 /// A loop of any structure: blocks that are joined by the names of their signals.

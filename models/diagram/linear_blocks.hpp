@@ -146,4 +146,7 @@ struct StateSpaceBlock {
 using LinearBlock = std::variant<Gain, SumBlock, Constant, Integrator, LowPass, LeadLag, Notch, DelayBlock,
                                  ProperTransferFunction, StateSpaceBlock>;
 
+/// The linear part of any of them; without states and zero for a constant and a delay.
+LinearModel model_of(const LinearBlock& block);
+
 }  // namespace limcycle

@@ -17,6 +17,24 @@ const Sampling* clock_of(const Block& block) {
   return &sampling_of(*controller);
 }
 
+/// The diagram with its sampled linear blocks as controllers.
+Diagram with_controllers(Diagram diagram) {
+  for (Block& block : diagram.blocks) {
+    const auto* linear = std::get_if<LinearBlock>(&block.what);
+    if (linear == nullptr || !block.sampling.is_on()) continue;
+    const LinearModel model = model_of(*linear);
+    StateSpaceController controller;
+    static_cast<Sampling&>(controller) = block.sampling;
+    controller.A = model.ss.A / model.time;
+    controller.B = model.ss.B / model.time;
+    controller.C = model.ss.C;
+    controller.D = model.ss.D;
+    block.what = Controller(controller);
+    block.sampling = {};
+  }
+  return diagram;
+}
+
 /// Time between two ticks of the clock that all share.
 double tick_of(const Diagram& diagram) {
   double shortest = infinite;
@@ -186,10 +204,12 @@ bool has_differences(const Controller& controller) {
 }
 
 bool is_sampled(const Diagram& diagram) {
-  return std::ranges::any_of(diagram.blocks, [](const Block& block) { return clock_of(block) != nullptr; });
+  return std::ranges::any_of(diagram.blocks,
+                             [](const Block& block) { return clock_of(block) != nullptr || block.sampling.is_on(); });
 }
 
-std::optional<BrokenRule> broken_clocks(const Diagram& diagram) {
+std::optional<BrokenRule> broken_clocks(const Diagram& given) {
+  const Diagram diagram = with_controllers(given);
   const double tick = tick_of(diagram);
   for (const Block& block : diagram.blocks) {
     const auto* controller = std::get_if<Controller>(&block.what);
@@ -212,9 +232,9 @@ std::optional<BrokenRule> broken_clocks(const Diagram& diagram) {
 Diagram on_clock(Diagram diagram, Clock clock) {
   switch (clock) {
     case Clock::sampled:
-      return sampled_form(std::move(diagram));
+      return sampled_form(with_controllers(std::move(diagram)));
     case Clock::averaged:
-      return averaged_form(std::move(diagram));
+      return averaged_form(with_controllers(std::move(diagram)));
     case Clock::continuous:
       break;
   }

@@ -19,19 +19,6 @@ const Kind* linear_in(const Block& block) {
   return linear != nullptr ? std::get_if<Kind>(linear) : nullptr;
 }
 
-LinearModel model_of(const LinearBlock& block) {
-  return std::visit(
-      []<class Kind>(const Kind& kind) {
-        if constexpr (requires { kind.model(); })
-          return kind.model();
-        else  // a constant, a delay: no states
-          return LinearModel{
-              .ss = {Eigen::MatrixXd(0, 0), Eigen::MatrixXd(0, 1), Eigen::MatrixXd(1, 0), Eigen::MatrixXd::Zero(1, 1)},
-              .state_names = {}};
-      },
-      block);
-}
-
 }  // namespace
 
 SignalRows::SignalRows(const Diagram& diagram) : diagram_(diagram) {

@@ -48,7 +48,7 @@ struct Sampling {
   std::optional<BrokenRule> broken_together() const;
 
   template <class Owner>
-  static void append_table(std::vector<Parameter<Owner, double>>& table) {
+  static void append_clock(std::vector<Parameter<Owner, double>>& table) {
     table.push_back({"sample_time", "s", "time between two readings of y; 0: continuous", &Owner::sample_time,
                      not_negative, false});
     table.push_back({"computation_delay", "s", "from a reading to its command, less than sample_time",
@@ -57,10 +57,24 @@ struct Sampling {
         {"input_step", "m", "y is read in multiples of it; 0: exactly", &Owner::input_step, not_negative, false});
     table.push_back({"output_step", "N", "the command comes in multiples of it; 0: exactly", &Owner::output_step,
                      not_negative, false});
+  }
+  template <class Owner>
+  static void append_table(std::vector<Parameter<Owner, double>>& table) {
+    append_clock(table);
     table.push_back({"velocity_window", "1", "samples over which the velocity is differenced; 0: measured",
                      &Owner::velocity_window, not_negative, false});
     table.push_back({"hold", "1", "the command between two readings", &Owner::hold, any_number, false, "", holds});
   }
+};
+
+/// The sampling of a block of a diagram that is no controller by its kind.
+struct BlockSampling : Sampling {
+  static std::vector<Parameter<BlockSampling, double>> parameters() {
+    std::vector<Parameter<BlockSampling, double>> table;
+    append_clock(table);
+    return table;
+  }
+  std::optional<BrokenRule> validate() const { return broken_together(); }
 };
 
 /// What any controller may have besides its equation.

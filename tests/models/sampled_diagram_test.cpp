@@ -174,6 +174,29 @@ TEST_CASE("sampled diagram: two PIDs of two rates are the cascade") {
   }
 }
 
+TEST_CASE("sampled diagram: linear blocks on a computer are their difference equations by backward Euler") {
+  const LeadLag lead{.lead = 0.4, .lag = 0.05, .gain = 2.0};
+  const Notch notch{.frequency = 30.0, .damping = 0.5, .depth = 0.1};
+  const Integrator integrator{.gain = 7.0, .leak = 0.3};
+  std::vector<Block> blocks{named_block("gain", LinearBlock(Gain{30.0}), error),
+                            named_block("lead", LinearBlock(lead), {{1.0, "gain", ""}}),
+                            named_block("integrator", LinearBlock(integrator), {{1.0, "lead", ""}}),
+                            named_block("notch", LinearBlock(notch), {{1.0, "integrator", ""}, {1.0, "lead", ""}})};
+  for (Block& block : blocks) block.sampling.sample_time = tick;
+  blocks.back().sampling.computation_delay = 0.4 * tick;
+  const LoopParts parts = axis_under(blocks);
+  REQUIRE_FALSE(validate(parts));
+  for (const Complex s : at_places) {
+    const Complex z = std::exp(s * tick), d = (1.0 - 1.0 / z) / tick;  // of the differences
+    const Complex lead_lag = 2.0 * (0.4 * d + 1.0) / (0.05 * d + 1.0), sum = 7.0 / (d + 0.3) + 1.0;
+    const Complex dip = (d * d + 3.0 * d + 900.0) / (d * d + 30.0 * d + 900.0);
+    const Complex C = hold(s, tick) * std::exp(-s * 0.4 * tick) * 30.0 * lead_lag * sum * dip;
+    CAPTURE(s);
+    const Complex H = friction_response(parts, s);
+    CHECK(std::abs(H * (2.0 * s * s + 0.5 * s + C) + 1.0) < 1e-9);
+  }
+}
+
 TEST_CASE("sampled diagram: where the dead time cannot stand in the plant, a low-pass stands for it to first order") {
   double last = 0.0;
   for (const double h : {0.02, 0.01, 0.005}) {

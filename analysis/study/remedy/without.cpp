@@ -19,7 +19,7 @@ struct PartChange {
   std::function<bool(Controller&)> controller = [](Controller&) { return false; };
   std::function<bool(Plant&)> plant = [](Plant&) { return false; };
   std::function<bool(Element&)> element = [](Element&) { return false; };
-  std::function<bool(BlockKind&)> block = [](BlockKind&) { return false; };
+  std::function<bool(Block&)> block = [](Block&) { return false; };
 };
 
 bool changed_slots(LoopParts& parts, const PartChange& change) {
@@ -36,7 +36,7 @@ bool changed_blocks(Diagram& diagram, const PartChange& change) {
     if (auto* controller = std::get_if<Controller>(&block.what)) any = change.controller(*controller) || any;
     if (auto* plant = std::get_if<Plant>(&block.what)) any = change.plant(*plant) || any;
     if (auto* element = std::get_if<Element>(&block.what)) any = change.element(*element) || any;
-    any = change.block(block.what) || any;
+    any = change.block(block) || any;
   }
   return any;
 }
@@ -138,8 +138,8 @@ std::optional<LoopParts> without_integral_action(LoopParts parts) {
     auto* clamped = element.as<ClampedPi<double>>();
     return clamped != nullptr && std::exchange(clamped->ki, 0.0) != 0.0;
   };
-  change.block = [](BlockKind& block) {
-    auto* linear = std::get_if<LinearBlock>(&block);
+  change.block = [](Block& block) {
+    auto* linear = std::get_if<LinearBlock>(&block.what);
     if (linear == nullptr) return false;
     if (auto* integrator = std::get_if<Integrator>(linear)) return set_members(*integrator, {&Integrator::gain}, 0.0);
     std::optional<Rational> rest;
@@ -186,9 +186,10 @@ std::optional<LoopParts> without_delay(LoopParts parts) {
     return true;
   };
   change.plant = end_delay;
-  change.block = [](BlockKind& block) {
-    auto* linear = std::get_if<LinearBlock>(&block);
-    if (linear == nullptr || !std::holds_alternative<DelayBlock>(*linear)) return false;
+  change.block = [](Block& block) {
+    const bool sampled = std::exchange(block.sampling, {}).is_on();
+    auto* linear = std::get_if<LinearBlock>(&block.what);
+    if (linear == nullptr || !std::holds_alternative<DelayBlock>(*linear)) return sampled;
     *linear = Gain{1.0};
     return true;
   };

@@ -36,12 +36,45 @@ bool has_kind(const std::string& kind) {
   return std::ranges::find(kinds, kind) != kinds.end();
 }
 
+Keys with(Keys keys, const Keys& more) {
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
+Keys clock_keys() {
+  Keys keys;
+  for (const ParameterRow& row : rows_of<BlockSampling>()) keys.emplace_back(row.key);
+  return keys;
+}
+
+/// True for linear blocks that may run on a computer: those with one input, one output and a response of their own.
+bool may_be_sampled(const BlockKind& what) {
+  const auto* linear = std::get_if<LinearBlock>(&what);
+  return linear != nullptr && !std::holds_alternative<SumBlock>(*linear) &&
+         !std::holds_alternative<Constant>(*linear) && !std::holds_alternative<DelayBlock>(*linear) &&
+         !std::holds_alternative<StateSpaceBlock>(*linear);
+}
+
+/// Reads the keys of a block that runs on a computer, if there are any.
+void read_sampling(const Section& section, Block& block) {
+  const Keys keys = clock_keys();
+  const auto first = std::ranges::find_if(keys, [&](const std::string& key) { return section.find(key).has_value(); });
+  if (first == keys.end()) return;
+  if (!may_be_sampled(block.what)) throw section.error(*first, "is not for this kind of block");
+  Keys others;
+  for (const auto& entry : section.table())
+    if (std::ranges::find(keys, entry.key) == keys.end()) others.push_back(entry.key);
+  block.sampling = read_owner<BlockSampling>(section, others);
+}
+
 /// A strictly proper transfer function is a plant, on which friction may act; a proper one passes its input straight
 /// on.
 BlockKind read_transfer_function(const Section& section, const Keys& keys) {
   TransferFunction plant;
   set_values(plant, read_values(section, rows_of<TransferFunction>(), values_of(plant), keys));
-  if (!plant.validate()) return Plant(plant);
+  if (!section.find("sample_time") && !plant.validate()) return Plant(plant);
+  if (section.find("sample_time") && plant.delay > 0.0)
+    throw section.error("delay", "cannot stand beside sample_time: let it be a block of its own");
   const ProperTransferFunction proper{plant.numerator, plant.denominator};
   if (const auto broken = proper.validate())
     throw broken_rule(section, *broken, rows_of<ProperTransferFunction>(), values_of(proper));
@@ -135,7 +168,7 @@ Block read_block(const Section& section, const std::string& name) {
   Keys keys{"kind"};
   keys.insert(keys.end(), signal_keys.begin(), signal_keys.end());
   if (kind == TransferFunction::kind)
-    block.what = read_transfer_function(section, keys);
+    block.what = read_transfer_function(section, with(keys, clock_keys()));
   else if (kind == StateSpacePlant::kind)
     block.what = read_state_space(section, keys);
   else if (has_kind<Plant>(kind))
@@ -143,9 +176,10 @@ Block read_block(const Section& section, const std::string& name) {
   else if (kind == Pid::kind)
     block.what = Controller(read_pid(section, keys));
   else if (has_kind<LinearBlock>(kind))
-    block.what = read_any<LinearBlock>(section, block_names, signal_keys);
+    block.what = read_any<LinearBlock>(section, block_names, with(signal_keys, clock_keys()));
   else
     block.what = read_element(section, elements, block_names, signal_keys);
+  if (kind != Pid::kind) read_sampling(section, block);
   read_inputs(section, block);
   return block;
 }
