@@ -148,8 +148,8 @@ LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X) {
     const auto* sampled = sampled_at(loop, k);
     read = read || sampled;
     if (!read || !element.has_modes()) continue;
-    State rates;
-    field.rate(state.x, rates, 0.0);
+    std::vector<double> guards;  // which need the inputs with their drives
+    field.guards(state.x, 0.0, guards);
     const std::span<double> z(state.x.data() + field.first_state(k), static_cast<std::size_t>(element.states()));
     if (sampled) {
       const auto own = z.subspan(Sampled<double>::first_own, static_cast<std::size_t>(sampled->order()));

@@ -124,11 +124,12 @@ TEST_CASE("relay with sampling and dead time: locked cycles of closed form, and 
   // Between two commands the plant tends to +-gain: y = gain tanh(period/(4 time_constant)) at its turns, the period
   // being an even number of samples. Deviations of y decay with the plant.
   for (const double ki : {0.0, 0.2})
-    for (const double delay : {0.0, 0.93, 1.0}) {
+    for (const auto& [delay, computation] : {std::pair(0.0, 0.0), {0.93, 0.0}, {1.0, 0.0}, {0.0, 0.07}, {0.93, 0.07}}) {
       Process of;
       of.ki = ki;
       of.delay = delay;
-      INFO("ki " << ki << ", delay " << delay);
+      of.computation_delay = computation;
+      INFO("ki " << ki << ", delay " << delay << ", computation " << computation);
       const PredictReport report = predict(loop_of(of, relay(1.0)), {});
       REQUIRE_FALSE(report.cycles.empty());
       for (const OutcomeOfStart& one : report.outcomes) CHECK(one.outcome == Outcome::cycle);
