@@ -50,6 +50,17 @@ void make_rates(Loop& loop) {
   }
 }
 
+Loop without_delay(Loop loop) {
+  loop.A += loop.A_delayed;
+  loop.A_delayed.setZero();
+  for (auto& port : loop.ports) {
+    port.C += port.C_delayed;
+    port.C_delayed.setZero();
+  }
+  loop.delay = 0.0;
+  return loop;
+}
+
 /// True for one element whose every way around the loop passes the delay once: it may then stand anywhere on that way.
 bool is_one_ring(const Loop& loop) {
   if (loop.elements.size() != 1) return false;
@@ -194,17 +205,6 @@ Loop with_pade(const Loop& from, const MatrixXd& signals, const StateSpace& pade
 }
 
 }  // namespace
-
-Loop without_delay(Loop loop) {
-  loop.A += loop.A_delayed;
-  loop.A_delayed.setZero();
-  for (auto& port : loop.ports) {
-    port.C += port.C_delayed;
-    port.C_delayed.setZero();
-  }
-  loop.delay = 0.0;
-  return loop;
-}
 
 StateSpace pade_delay(double delay, int order) {
   check_order(order);

@@ -18,8 +18,7 @@ inline constexpr int lowest_pade_order = 1, highest_pade_order = 60;
 ///  - a loop with a sampled controller becomes Loop::sampled, which is then treated like any other;
 ///  - a loop without delay, or one that does not use its delayed signals, is unchanged;
 ///  - a loop in which sampled controllers are all that reads delayed signals is converted exactly: they read without
-///  the
-///    dead time, and their outputs come that much later (see Sampled). A controller is then ahead of the plant by the
+///    delay, and their outputs come that much later (see Sampled). A controller is then ahead of the plant by the
 ///    delay;
 ///  - a loop whose plant is driven through a relay is converted exactly. A DelayedRelay delays the relay's output
 ///    instead of the plant's, so that the states of the plant, y included, are those of `delay` before; external forces
@@ -32,9 +31,6 @@ inline constexpr int lowest_pade_order = 1, highest_pade_order = 60;
 /// std::invalid_argument for an order out of range where one is needed, or if an element needs a rate that the
 /// approximation makes depend on the element's own output.
 TimeDomainLoop in_time_domain(const Loop& loop, int pade_order);
-
-/// The loop as if it had no dead time: its delayed signals are the present ones.
-Loop without_delay(Loop loop);
 
 /// The lowest order whose error is at most 1e-9 up to frequency w (rad/s), or the highest.
 int pade_order_for(double w, double delay);

@@ -26,4 +26,12 @@ std::optional<std::size_t> find_block(const Diagram& diagram, std::string_view n
   return static_cast<std::size_t>(found - diagram.blocks.begin());
 }
 
+bool end_delay(Block& block) {
+  if (auto* plant = std::get_if<Plant>(&block.what)) return end_delay(*plant);
+  auto* linear = std::get_if<LinearBlock>(&block.what);
+  if (linear == nullptr || !std::holds_alternative<DelayBlock>(*linear)) return false;
+  *linear = Gain{1.0};
+  return true;
+}
+
 }  // namespace limcycle

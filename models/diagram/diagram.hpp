@@ -51,6 +51,9 @@ struct Diagram {
   bool prefixed_states = true;  ///< states are named "axis.y" instead of "y"
 };
 
+/// Takes the dead time of a plant or a delay away; false if the block has none.
+bool end_delay(Block& block);
+
 /// Number of inputs of a block.
 std::size_t inputs_of(const Block& block);
 

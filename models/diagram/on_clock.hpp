@@ -11,7 +11,7 @@ bool has_differences(const Controller& controller);
 
 /// The rule that the sampled controllers of a diagram break together: their sample times are whole multiples of the
 /// shortest, so that their clocks tick together.
-std::optional<BrokenRule> broken_clocks(const Diagram& diagram);
+std::optional<BrokenRule> broken_clocks(const Diagram& given);
 
 /// The diagram with what stands for its sampled controllers (see Clock): elements with a clock, read through an encoder
 /// where they have an input_step; or, on average, continuous blocks behind the dead time of hold and computation. That

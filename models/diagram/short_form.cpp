@@ -1,4 +1,3 @@
-#include "limcycle/models/delay.hpp"
 #include "limcycle/models/diagram/controller_blocks.hpp"
 #include "limcycle/models/diagram/expand.hpp"
 #include "limcycle/models/diagram/on_clock.hpp"
@@ -52,16 +51,17 @@ LoopParts with_linear_integral(LoopParts parts) {
 }  // namespace
 
 Loop assemble(const LoopParts& parts) {
-  const auto form = [](const LoopParts& of, Clock clock) {
-    const Diagram diagram = of.diagram ? on_clock(expanded(*of.diagram), clock) : short_form(of, clock);
-    return assemble(diagram, of.reference, of.load);
+  const auto diagram_of = [](const LoopParts& of, Clock clock) {
+    return of.diagram ? on_clock(expanded(*of.diagram), clock) : short_form(of, clock);
   };
+  const auto form = [&](const Diagram& diagram) { return assemble(diagram, parts.reference, parts.load); };
   const bool on_computer =
       parts.diagram ? is_sampled(*parts.diagram) : sampling_of(parts.controller).is_on() && uses_error(parts);
-  if (!on_computer) return form(parts, Clock::continuous);
-  Loop sampled = form(parts, Clock::sampled), loop = form(parts, Clock::averaged);
-  sampled.continuous =
-      std::make_shared<const Loop>(without_delay(form(with_linear_integral(parts), Clock::continuous)));
+  if (!on_computer) return form(diagram_of(parts, Clock::continuous));
+  Loop sampled = form(diagram_of(parts, Clock::sampled)), loop = form(diagram_of(parts, Clock::averaged));
+  Diagram prompt = diagram_of(with_linear_integral(parts), Clock::continuous);
+  for (Block& block : prompt.blocks) end_delay(block);
+  sampled.continuous = std::make_shared<const Loop>(form(prompt));
   loop.sampled = std::make_shared<const Loop>(std::move(sampled));
   return loop;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "limcycle/models/linear/rubbing.hpp"
 
@@ -189,6 +190,17 @@ PlantModel StateSpacePlant::model() const {
   const Eigen::MatrixXd forces = both_forces(B, B_friction);
   if (!is_rate_of(plant.C_v, plant.C_y, A, forces, typed)) plant.C_x = integral_of(plant.C_v, A, forces);
   return plant;
+}
+
+bool end_delay(Plant& plant) {
+  return std::visit(
+      []<class P>(P& one) {
+        if constexpr (requires { one.delay; })
+          return std::exchange(one.delay, 0.0) != 0.0;
+        else
+          return false;
+      },
+      plant);
 }
 
 }  // namespace limcycle

@@ -229,6 +229,9 @@ struct StateSpacePlant {
 using Plant = std::variant<Mass, TwoMass, ServoDrive, Belt, FroudePendulum, FirstOrder, SecondOrder, TransferFunction,
                            ZeroPoleGain, StateSpacePlant, MeasuredPlant>;
 
+/// Takes the dead time of a plant away; false if it has none.
+bool end_delay(Plant& plant);
+
 inline PlantModel model_of(const Plant& plant) {
   return std::visit([](const auto& p) { return p.model(); }, plant);
 }

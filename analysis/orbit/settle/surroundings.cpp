@@ -63,7 +63,7 @@ bool Surroundings::attracts() {
 }
 
 bool Surroundings::has_twins(const Eigen::VectorXd& neutral) {
-  constexpr double farthest = 1e-2, nearest = 1e-5, by = 0.1, above_tolerance = 1e4;
+  constexpr double above_tolerance = 1e4;
   double size = 0.0;
   for (std::size_t i = 0; i < sizes_.size(); ++i)
     size = std::max(size, std::abs(neutral(static_cast<Eigen::Index>(i))) / sizes_[i]);
@@ -74,10 +74,9 @@ bool Surroundings::has_twins(const Eigen::VectorXd& neutral) {
   };
   // Where a sample is taken just before a switch the family ends close by.
   const bool exact = choose_stepper(loop_, rtol_) == StepperKind::exact;
-  const double least = exact ? nearest : std::max(nearest, above_tolerance * rtol_);
-  for (double aside = farthest; aside > 0.5 * least; aside *= by)
-    if (has_twin(beside(aside)) && has_twin(beside(-aside))) return true;
-  return false;
+  return std::ranges::any_of(std::array{1e-2, 1e-3, 1e-4, 1e-5}, [&](double aside) {
+    return (exact || aside > above_tolerance * rtol_) && has_twin(beside(aside)) && has_twin(beside(-aside));
+  });
 }
 
 bool Surroundings::has_twin(const LoopState& beside) {

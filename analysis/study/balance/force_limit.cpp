@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "limcycle/models/linear/dense.hpp"
@@ -14,12 +15,11 @@ constexpr double least_damping = 0.1;
 constexpr double between_samples = 2.0;
 
 bool has_sharp_peak(const Loop& loop, const SearchBox& box) {
-  for (const auto& pole : eigenvalues(loop.A)) {
+  const Eigen::VectorXcd poles = eigenvalues(loop.A);
+  return std::any_of(poles.begin(), poles.end(), [&](std::complex<double> pole) {
     const double w = std::abs(pole.imag());
-    if (w > 0.5 * box.frequency_min && w < 2.0 * box.frequency_max && std::abs(pole.real()) < least_damping * w)
-      return true;
-  }
-  return false;
+    return w > 0.5 * box.frequency_min && w < 2.0 * box.frequency_max && std::abs(pole.real()) < least_damping * w;
+  });
 }
 
 }  // namespace

@@ -59,17 +59,6 @@ ControllerParts& own_parts(Controller& controller) {
   return std::visit([](auto& one) -> ControllerParts& { return one; }, controller);
 }
 
-bool end_delay(Plant& plant) {
-  return std::visit(
-      []<class P>(P& one) {
-        if constexpr (requires { one.delay; })
-          return std::exchange(one.delay, 0.0) != 0.0;
-        else
-          return false;
-      },
-      plant);
-}
-
 /// Lowers each number of the law to that of another key; true if one was larger.
 bool lower_to(Element& law, std::string_view key, std::string_view to) {
   const auto high = law.number(key), low = law.number(to);
@@ -185,13 +174,10 @@ std::optional<LoopParts> without_delay(LoopParts parts) {
     if (auto* cascade = std::get_if<Cascade>(&controller)) cascade->position_every = 1.0;
     return true;
   };
-  change.plant = end_delay;
+  change.plant = [](Plant& plant) { return end_delay(plant); };
   change.block = [](Block& block) {
     const bool sampled = std::exchange(block.sampling, {}).is_on();
-    auto* linear = std::get_if<LinearBlock>(&block.what);
-    if (linear == nullptr || !std::holds_alternative<DelayBlock>(*linear)) return sampled;
-    *linear = Gain{1.0};
-    return true;
+    return end_delay(block) || sampled;
   };
   return changed_parts(std::move(parts), change);
 }

@@ -42,8 +42,10 @@ Keys with(Keys keys, const Keys& more) {
 }
 
 Keys clock_keys() {
+  const auto rows = rows_of<BlockSampling>();
   Keys keys;
-  for (const ParameterRow& row : rows_of<BlockSampling>()) keys.emplace_back(row.key);
+  keys.reserve(rows.size());
+  for (const ParameterRow& row : rows) keys.emplace_back(row.key);
   return keys;
 }
 

@@ -99,12 +99,14 @@ struct Sampled {
     z[0] = sample_time;
     return tick(in.x, mode, z);
   }
-  /// The first reading is at the start, or was ahead of it.
+  /// The first reading is at the start, or was ahead of it; the readings before were the same.
   Mode start(const Input<double>& in, std::span<double> z) const {
     constexpr double rounding = 1e-9;
     const double period = value_of(sample_time), lead = value_of(ahead);
     z[0] = period;
     if (counts()) z[ticks()] = 0.0;
+    std::fill(z.begin() + (first_own + order() - static_cast<int>(value_of(memory))), z.begin() + (first_own + order()),
+              reading(in.x));
     if (lead == 0.0) return tick(in.x, {0}, z);
     Mode mode{0};
     const int ticks_before = static_cast<int>(std::ceil(lead / period - rounding));

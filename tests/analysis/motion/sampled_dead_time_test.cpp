@@ -145,6 +145,48 @@ TEST_CASE("relay with sampling and dead time: locked cycles of closed form, and 
     }
 }
 
+TEST_CASE("sampled PID: its derivative begins with the readings that the start stands for, behind a dead time too") {
+  // A mass without friction to speak of: exact between commands, which differences of the past y give.
+  constexpr double kp = 3.0, ki = 1.0, kd = 2.5, T = 0.05, y0 = 0.3;
+  for (const int late : {0, 3}) {
+    Pid controller = pid(kp, ki, kd);
+    controller.sample_time = T;
+    Diagram diagram;
+    diagram.output = {1.0, "axis", "y"};
+    diagram.blocks.push_back({"axis", "diagram.axis", Plant(Mass{1.0, 0.0, 0.0}), {{{1.0, "pid", ""}}}});
+    const std::string read = late > 0 ? "late" : "axis";
+    if (late > 0)
+      diagram.blocks.push_back({"late", "diagram.late", LinearBlock(DelayBlock{late * T}), {{{1.0, "axis", "y"}}}});
+    diagram.blocks.push_back({"pid", "diagram.pid", Controller(controller), {{{1.0, "r", ""}, {-1.0, read, ""}}}});
+    diagram.blocks.push_back({"friction", "diagram.friction", coulomb(1e-14, 1e-14), {}, Contact::opposes, "axis"});
+    LoopParts parts;
+    parts.diagram = diagram;
+    REQUIRE_FALSE(validate(parts));
+    double y = y0, v = 0.0, integral = 0.0, last = -y0;
+    std::deque<double> past(static_cast<std::size_t>(late) + 1, y0);  // the first is the one that is read
+    constexpr int steps = 40;
+    for (int k = 0; k < steps; ++k) {
+      past.back() = y;
+      const double e = -past.front();
+      integral += T * e;
+      const double u = kp * e + ki * integral + kd * (e - last) / T;
+      last = e;
+      past.pop_front();
+      past.push_back(0.0);
+      y += T * v + 0.5 * T * T * u;
+      v += T * u;
+    }
+    SimulateOptions options;
+    options.duration = options.sample = steps * T;
+    options.initial = {{"axis.y", y0}};
+    const Simulation run = simulate(build_loop(parts), options);
+    REQUIRE(run.status == Status::converged);
+    const auto column = std::ranges::find(run.columns, "y") - run.columns.begin();
+    INFO("late by " << late << " samples");
+    CHECK(run.rows.back()[static_cast<std::size_t>(column)] == Approx(y).margin(1e-9));
+  }
+}
+
 TEST_CASE("dead time before a sampled controller: in the plant or as a block of its own, the cycles are the same") {
   Process of;
   of.ki = 0.0;
