@@ -42,7 +42,7 @@ Keys with(Keys keys, const Keys& more) {
 }
 
 Keys clock_keys() {
-  const auto rows = rows_of<BlockSampling>();
+  const auto& rows = rows_of<BlockSampling>();
   Keys keys;
   keys.reserve(rows.size());
   for (const ParameterRow& row : rows) keys.emplace_back(row.key);
