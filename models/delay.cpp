@@ -99,6 +99,21 @@ TimeDomainLoop delay_relay(const Loop& from, std::size_t i) {
 
 const Sampled<double>* clock_at(const Loop& loop, std::size_t i) { return loop.elements[i].as<Sampled<double>>(); }
 
+/// True if a sampled controller, or a part of one, reads the output of element j.
+bool read_by_computers(const Loop& loop, std::size_t j) {
+  for (std::size_t i = 0; i < loop.ports.size(); ++i)
+    if (clock_at(loop, i) != nullptr && loop.ports[i].D(static_cast<Index>(j)) != 0.0) return true;
+  return false;
+}
+
+/// True if something else does: the plant, or another element.
+bool read_by_others(const Loop& loop, std::size_t j) {
+  if (!loop.B.col(static_cast<Index>(j)).isZero(0.0)) return true;
+  for (std::size_t i = 0; i < loop.ports.size(); ++i)
+    if (clock_at(loop, i) == nullptr && loop.ports[i].D(static_cast<Index>(j)) != 0.0) return true;
+  return false;
+}
+
 /// True if sampled controllers are all that reads past states, and read no present ones; their outputs to the rest are
 /// not read by one another.
 bool only_computers_read_late(const Loop& loop) {
@@ -109,14 +124,8 @@ bool only_computers_read_late(const Loop& loop) {
     const bool reads_late = !port.C_delayed.isZero(0.0);
     if (clock_at(loop, i) == nullptr ? reads_late : !port.C.isZero(0.0)) return false;
   }
-  for (std::size_t j = 0; j < count; ++j) {
-    if (clock_at(loop, j) == nullptr) continue;
-    bool by_computers = false, by_others = !loop.B.col(static_cast<Index>(j)).isZero(0.0);
-    for (std::size_t i = 0; i < count; ++i)
-      if (loop.ports[i].D(static_cast<Index>(j)) != 0.0)
-        (clock_at(loop, i) != nullptr ? by_computers : by_others) = true;
-    if (by_computers && by_others) return false;
-  }
+  for (std::size_t j = 0; j < count; ++j)
+    if (clock_at(loop, j) != nullptr && read_by_computers(loop, j) && read_by_others(loop, j)) return false;
   return true;
 }
 
@@ -131,10 +140,7 @@ TimeDomainLoop read_ahead(const Loop& from) {
     port.D_v = port.C * loop.B;
     port.c_v = port.C * loop.E;
     sampled->ahead = from.delay;
-    bool by_computers = false;
-    for (std::size_t k = 0; k < loop.elements.size(); ++k)
-      by_computers = by_computers || (clock_at(loop, k) != nullptr && loop.ports[k].D(static_cast<Index>(i)) != 0.0);
-    sampled->leaves = by_computers ? 0.0 : 1.0;
+    sampled->leaves = read_by_computers(loop, i) ? 0.0 : 1.0;
   }
   return {std::move(loop), 0, 0};
 }

@@ -32,10 +32,11 @@ RootTree::RootTree(const LoopEquation& f, const SearchBox& box, const RootSearch
 }
 
 void RootTree::line_up(const Cell& cell) {
+  if (!options_.rootless) return queue_.push_back(cell);
   const auto& [i, j, width, height] = cell.place;
   const SearchBox part{lattice_.amplitude(lattice_.p(i)), lattice_.amplitude(lattice_.p(i + width)),
                        lattice_.frequency(lattice_.q(j)), lattice_.frequency(lattice_.q(j + height))};
-  if (!options_.rootless || !options_.rootless(part)) queue_.push_back(cell);
+  if (!options_.rootless(part)) queue_.push_back(cell);
 }
 
 bool RootTree::search_again(std::size_t k) {

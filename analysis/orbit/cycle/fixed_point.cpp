@@ -189,11 +189,18 @@ void FixedPoint::improve_jacobian(const VectorXd& step, const VectorXd& change) 
   if (step.squaredNorm() > 0.0) jacobian_ += unexplained * step.transpose() / step.squaredNorm();
 }
 
-VectorXd FixedPoint::newton_step(const VectorXd& r) const {
-  // Kept combinations stay unchanged. In the chart the element states come last, as in the state.
-  MatrixXd matrix = MatrixXd::Zero(r.size() + kept_.cols(), r.size());
-  matrix.topRows(r.size()) = jacobian_ - MatrixXd::Identity(r.size(), r.size());
+/// The derivative less `multiplier` times 1 and, below it, the combinations that are kept, which stay unchanged: in the
+/// chart the element states come last, as in the state.
+MatrixXd FixedPoint::away_from(double multiplier) const {
+  const Eigen::Index n = jacobian_.rows();
+  MatrixXd matrix = MatrixXd::Zero(n + kept_.cols(), n);
+  matrix.topRows(n) = jacobian_ - multiplier * MatrixXd::Identity(n, n);
   matrix.bottomRightCorner(kept_.cols(), kept_.rows()) = kept_.transpose();
+  return matrix;
+}
+
+VectorXd FixedPoint::newton_step(const VectorXd& r) const {
+  const MatrixXd matrix = away_from(1.0);
   VectorXd right = VectorXd::Zero(matrix.rows());
   right.head(r.size()) = r;
   return -least_squares(matrix, right, 1e-7);
@@ -211,15 +218,11 @@ Status FixedPoint::compare_anew(double loose, double& difference) {
 
 VectorXd FixedPoint::neutral() const {
   constexpr double close = 1e-6;
-  const Eigen::Index n = jacobian_.rows();
   VectorXd found;
   double least = close;
-  for (const double to : {1.0, -1.0}) {
-    if (to < 0.0 && !map_.half()) continue;
-    MatrixXd matrix = MatrixXd::Zero(n + kept_.cols(), n);
-    matrix.topRows(n) = jacobian_ - to * MatrixXd::Identity(n, n);
-    matrix.bottomRightCorner(kept_.cols(), kept_.rows()) = kept_.transpose();
-    const auto svd = singular_values(MatrixXd(matrix.transpose()));
+  for (const double multiplier : {1.0, -1.0}) {
+    if (multiplier < 0.0 && !map_.half()) continue;
+    const auto svd = singular_values(MatrixXd(away_from(multiplier).transpose()));
     if (svd.values.size() == 0 || !(svd.values(svd.values.size() - 1) < least)) continue;
     least = svd.values(svd.values.size() - 1);
     found = chart_->scale.cwiseProduct(chart_->basis * svd.U.col(svd.values.size() - 1));

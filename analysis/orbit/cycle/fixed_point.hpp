@@ -55,6 +55,7 @@ class FixedPoint {
   Status find_jacobian(double rtol, Eigen::Index size);
   bool newton(ReturnMap::Result& image, Eigen::VectorXd& r, bool fresh);
   void improve_jacobian(const Eigen::VectorXd& step, const Eigen::VectorXd& change);
+  Eigen::MatrixXd away_from(double multiplier) const;
   Eigen::VectorXd newton_step(const Eigen::VectorXd& r) const;
   Status compare_anew(double loose, double& difference);
   void find_kept();

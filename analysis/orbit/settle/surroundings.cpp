@@ -43,12 +43,18 @@ double Surroundings::distance(const State& one, const State& other) const {
   return largest;
 }
 
+/// The return map over the whole period of the cycle.
+ReturnMap Surroundings::map_of_period() const {
+  return {loop_,
+          section_,
+          std::nullopt,
+          {rtol_, options_.max_steps_per_map, options_.stop, false, infinite, returns_of(section_, cycle_.trace)}};
+}
+
 bool Surroundings::attracts() {
   constexpr double aside = 0.01, left = 0.05;
   constexpr int periods = 24;
-  ReturnMap map(
-      loop_, section_, std::nullopt,
-      {rtol_, options_.max_steps_per_map, options_.stop, false, infinite, returns_of(section_, cycle_.trace)});
+  ReturnMap map = map_of_period();
   bool back = true;
   for (const double side : {1.0 + aside, 1.0 - aside}) {
     const LoopState other = farther_out(side);
@@ -83,9 +89,7 @@ bool Surroundings::has_twin(const LoopState& beside) {
   constexpr int periods = 100;
   constexpr double still = 1e-4;
   const double equal = std::max(1e-6, 10.0 * rtol_), before = distance(beside.x, cycle_.start.x);
-  ReturnMap map(
-      loop_, section_, std::nullopt,
-      {rtol_, options_.max_steps_per_map, options_.stop, false, infinite, returns_of(section_, cycle_.trace)});
+  ReturnMap map = map_of_period();
   map.set_extremes(true);
   auto at = map.approach(beside);
   double moved = infinite;

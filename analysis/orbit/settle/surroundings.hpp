@@ -27,6 +27,7 @@ class Surroundings {
 
  private:
   bool has_twin(const LoopState& beside);
+  ReturnMap map_of_period() const;
   double distance(const State& one, const State& other) const;
   LoopState farther_out(double factor) const;
   LoopState opposite() const;

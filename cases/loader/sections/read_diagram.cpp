@@ -167,8 +167,7 @@ Block read_block(const Section& section, const std::string& name) {
   }
   if (kind == compensation_kind) throw section.error("on", "is required: the plant whose velocity is compensated");
   const Keys signal_keys = kind == Constant::kind ? Keys{"name"} : Keys{"name", "input"};
-  Keys keys{"kind"};
-  keys.insert(keys.end(), signal_keys.begin(), signal_keys.end());
+  const Keys keys = with({"kind"}, signal_keys);
   if (kind == TransferFunction::kind)
     block.what = read_transfer_function(section, with(keys, clock_keys()));
   else if (kind == StateSpacePlant::kind)
