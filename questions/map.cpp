@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "limcycle/analysis/study/map/simulated_points.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/questions/argument_error.hpp"
 #include "limcycle/reports/number.hpp"
@@ -49,7 +50,10 @@ std::string flags_of(const HuntingMap& map, bool methods, int starts) {
                        axis.logarithmic ? ":log" : "");
   };
   std::string text = "--x " + side(map.x) + " --y " + side(map.y);
-  if (methods) text += fmt::format(" --methods {}", fmt::join(map.methods, ","));
+  if (map.methods.empty())
+    text += " --outcomes";
+  else if (methods)
+    text += fmt::format(" --methods {}", fmt::join(map.methods, ","));
   if (starts > 0) text += fmt::format(" --starts {}", starts);
   return text;
 }
@@ -70,6 +74,39 @@ MapPoint point_of(const HuntingMap& map, std::size_t k, const LoopVariation& var
   return point;
 }
 
+namespace {
+
+/// Points of one piece of work: with outcomes only, as many as fill the lanes, if the loop can be marched in them.
+std::size_t points_at_once(const Case& from, const HuntingMap& map) {
+  return map.methods.empty() && fits_lanes(build_loop(need_loop(from))) ? 32 : 1;
+}
+
+/// The points one by one, up to the one that was interrupted.
+std::vector<MapPoint> judged_points(const HuntingMap& map, std::span<const std::size_t> points,
+                                    const LoopVariation& variation, const PredictOptions& options) {
+  std::vector<MapPoint> found;
+  found.reserve(points.size());
+  for (const std::size_t k : points) {
+    MapPoint point = point_of(map, k, variation, options);
+    if (options.stop && options.stop()) break;
+    found.push_back(std::move(point));
+  }
+  return found;
+}
+
+std::vector<std::optional<Loop>> loops_of(const HuntingMap& map, std::span<const std::size_t> points,
+                                          const LoopVariation& variation) {
+  std::vector<std::optional<Loop>> loops;
+  loops.reserve(points.size());
+  for (const std::size_t k : points) {
+    const double values[] = {map.x_of(k), map.y_of(k)};
+    loops.push_back(variation.loop(values));
+  }
+  return loops;
+}
+
+}  // namespace
+
 Status ask_map(const Case& from, HuntingMap& map, const Methods& methods, int starts, const std::string& design,
                const Asking& asking, const SweepRunner& sweep) {
   PredictOptions options = map_options(from, methods, asking.stop);
@@ -77,14 +114,17 @@ Status ask_map(const Case& from, HuntingMap& map, const Methods& methods, int st
   const auto columns = map_columns(map.methods);
   const std::string paths[] = {map.x.path, map.y.path};
   const LoopVariation variation(from, "x, y", paths);
-  SweepTask task{map.size(), columns.size(), 1, {}};
-  task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) -> std::size_t {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const MapPoint point = point_of(map, points[i], variation, options);
-      if (asking.stopped()) return i;
-      std::ranges::copy(to_row(point), rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
-    }
-    return points.size();
+  const bool judged = !map.methods.empty();
+  SweepTask task{map.size(), columns.size(), points_at_once(from, map), {}};
+  const auto points_of = [&](std::span<const std::size_t> points) {
+    return judged ? judged_points(map, points, variation, options)
+                  : simulated_points(loops_of(map, points, variation), {options, asking.isa});
+  };
+  task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) {
+    const auto found = points_of(points);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      std::ranges::copy(to_row(found[i]), rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
+    return found.size();
   };
   const SweptRows swept = sweep(task, columns, design);
   map.points.assign(map.size(), std::nullopt);

@@ -11,6 +11,7 @@ namespace limcycle {
 
 /// The methods of these names, as a map judges them: the describing function alone if there are none, since with mass
 /// and friction as one element a point takes ten times as long. Throws InputError (of `argument`) for an unknown name.
+/// A map that judges no method, Methods{false, false, false}, has outcomes only: see simulated_points().
 Methods map_methods(const std::string& argument, const std::vector<std::string>& names);
 
 /// A map over two numbers of a case, with their units; its points are not computed yet. Throws InputError (of x or y,
@@ -21,7 +22,8 @@ MapReport map_over(const Case& from, const MapAxis& x, const MapAxis& y, const M
 /// Rejects (InputError) a map that would not fit into memory, with these documents beside it.
 void need_memory_for(const HuntingMap& map, const HeldDocuments& held, const std::string& dashes);
 
-/// Flags of the program that ask for this map. `methods`: they were named; `starts`: 0: not given.
+/// Flags of the program that ask for this map. `methods`: they were named; `starts`: 0: not given. A map without
+/// methods is one of outcomes.
 std::string flags_of(const HuntingMap& map, bool methods, int starts);
 
 /// Options for predicting a point of a map: no more accurate than its verdict needs.
@@ -30,7 +32,8 @@ PredictOptions map_options(const Case& from, const Methods& methods, const std::
 /// Point k; one without a loop (a number out of its range) contains the number of methods only.
 MapPoint point_of(const HuntingMap& map, std::size_t k, const LoopVariation& variation, const PredictOptions& options);
 
-/// Computes the points of a map. `starts`: 0: as the case says. `design`: as of SweepRunner.
+/// Computes the points of a map; those of outcomes only on `isa`. `starts`: 0: as the case says. `design`: as of
+/// SweepRunner.
 Status ask_map(const Case& from, HuntingMap& map, const Methods& methods, int starts, const std::string& design,
                const Asking& asking, const SweepRunner& sweep);
 

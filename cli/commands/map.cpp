@@ -22,6 +22,7 @@ namespace {
 struct MapFlags : SweepFlags {
   std::string x, y;                  ///< --x, --y PATH=FROM:TO:N[:log]
   std::vector<std::string> methods;  ///< --methods
+  bool outcomes = false;             ///< --outcomes
   int starts = 0;                    ///< --starts; 0: from the case
   std::string html, picture;         ///< --html, --svg
 };
@@ -29,8 +30,9 @@ struct MapFlags : SweepFlags {
 Status compute(const Case& from, HuntingMap& map, const MapFlags& flags, const Methods& methods) {
   Progress silent(true);  // the sweep shows its own
   const int starts = flags.starts > 0 ? flags.starts : from.predict.starts;
-  const std::string design = fmt::format("map {}; {}; starts {}", flags_of(map, !flags.methods.empty(), flags.starts),
-                                         fmt::join(map.methods, ", "), starts);
+  const std::string design =
+      fmt::format("map {}; {}; starts {}", flags_of(map, !flags.methods.empty(), flags.starts),
+                  flags.outcomes ? "outcomes" : fmt::format("{}", fmt::join(map.methods, ", ")), starts);
   return ask_map(from, map, methods, starts, design, asking_of(flags, silent),
                  [&](const auto& task, const auto& columns, const auto& text) {
                    return run_stored(task, columns, text, flags, from);
@@ -42,7 +44,7 @@ int run(MapFlags flags) {
   take_picture(flags, flags.picture);
   const Case from = load_case(flags);
   need_loop(from);
-  const Methods methods = map_methods("--methods", flags.methods);
+  const Methods methods = flags.outcomes ? Methods{false, false, false} : map_methods("--methods", flags.methods);
   MapReport report = map_of(from, flags.x, flags.y, methods);
   need_memory_for(report.map, {!flags.json.empty(), !flags.csv.empty()}, "--");
   Output output(flags, &from);
@@ -79,9 +81,14 @@ void add_map(CLI::App& program, Action& action) {
     command->add_option(name, *into, "A parameter and its values, such as loop.controller.kd=1:50:60:log")
         ->type_name("PATH=FROM:TO:N[:log]")
         ->required();
-  command->add_option("--methods", flags->methods, "Methods to judge (default: describing-function)")
-      ->type_name("NAME,...")
-      ->delimiter(',');
+  CLI::Option* methods =
+      command->add_option("--methods", flags->methods, "Methods to judge (default: describing-function)")
+          ->type_name("NAME,...")
+          ->delimiter(',');
+  command
+      ->add_flag("--outcomes", flags->outcomes,
+                 "Outcomes alone, by simulation from the starts: faster, judges no method")
+      ->excludes(methods);
   command->add_option("--starts", flags->starts, "Simulations from different initial states at each point")
       ->type_name("N")
       ->check(whole_in(1, 100));

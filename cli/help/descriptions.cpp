@@ -120,7 +120,8 @@ std::vector<Description> what_if() {
        change_group,
        "Computes the outcome, and whether each method predicts it, at every point of a grid over two numbers. With "
        "--store every point is saved as soon as it is known: Ctrl-C loses nothing, --resume continues, and under "
-       "mpirun many machines share the work.",
+       "mpirun many machines share the work. --outcomes simulates from the starts alone and judges no method: it is "
+       "faster, but finds no cycle that none of the starts reaches.",
        {{"limcycle map cases/relay-third-order.toml --x loop.element.dead_zone=0.05:0.1:5 "
          "--y loop.element.level=0.5:2:4 --store plane.db",
          "20 points, kept in a store"},

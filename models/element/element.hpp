@@ -70,6 +70,7 @@ struct ElementFace : Equations<double> {
   virtual bool arrests(Mode mode, int fired) const = 0;
   virtual double due(Mode mode, std::span<const double> z) const = 0;
   virtual bool has_storage() const = 0;
+  virtual bool is_passive() const = 0;
   virtual bool follows_position() const = 0;
   virtual std::optional<std::complex<double>> exact_describing_function(double A, double w, double bias) const = 0;
   virtual std::optional<double> exact_mean(double A, double bias) const = 0;
@@ -168,6 +169,9 @@ class ElementOn {
   /// Stored energy (J), if the element offers it; 0 if it does not or has no state.
   bool has_storage() const { return face_->has_storage(); }
   S storage(Mode mode, std::span<const S> z) const { return equations().storage(mode, z); }
+  /// True if the equations prove, for these parameters, that no motion takes more energy out of a friction law than was
+  /// put in (passive from v to F, see Features::passivity); false: not, or not known.
+  bool is_passive() const { return face_->is_passive(); }
   /// True if the output depends on the input itself, not only on its rate and the state.
   bool follows_position() const { return face_->follows_position(); }
 

@@ -163,6 +163,10 @@ class FaceOf final : public EquationsOf<Law, double, ElementFace> {
     if constexpr (requires { law_.has_storage(); }) return law_.has_storage();
     return HasStorage<Law, double>;
   }
+  bool is_passive() const override {
+    if constexpr (requires { law_.is_passive(); }) return law_.is_passive();
+    return false;
+  }
   bool follows_position() const override {
     if constexpr (requires { law_.follows_position(); }) return law_.follows_position();
     return follows_position_;

@@ -20,7 +20,7 @@ Answer continue_answer(const Question& question, const std::string& path, double
 Answer margin_answer(const Question& question, const std::vector<std::string>& paths, double factor,
                      const std::vector<Toward>& toward);
 Answer map_answer(const Question& question, const MapAxis& x, const MapAxis& y, const std::vector<std::string>& methods,
-                  int starts);
+                  bool outcomes, int starts);
 Answer sensitivity_answer(const Question& question, const SensitivityWishes& wishes);
 Answer dissipativity_answer(const Question& question, const DissipativityWishes& wishes);
 Answer remedy_answer(const Question& question, const RemedyWishes& wishes);

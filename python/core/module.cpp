@@ -156,8 +156,8 @@ MapAxis axis_of(const Side& side) {
 }
 
 Answer map_of(const Question& question, const Side& x, const Side& y, const std::vector<std::string>& methods,
-              int starts) {
-  return map_answer(question, axis_of(x), axis_of(y), methods, starts);
+              bool outcomes, int starts) {
+  return map_answer(question, axis_of(x), axis_of(y), methods, outcomes, starts);
 }
 
 Answer sensitivity_of(const Question& question, int samples, int trajectories, bool second_order,

@@ -183,13 +183,18 @@ def margin(loop: Loop, parameters: Union[str, Sequence[str]] = (), *, toward: Op
 
 
 @_explained
-def map(loop: Loop, x: Side, y: Side, *, methods: Union[str, Sequence[str]] = (), starts: Optional[int] = None,
-        threads: int = 0, time_limit: Optional[float] = None, progress: Progress = None) -> _results.Map:
-    """Outcomes over two parameters, each (path, start, stop, points) or (path, start, stop, points, "log")."""
+def map(loop: Loop, x: Side, y: Side, *, methods: Union[str, Sequence[str]] = (), outcomes: bool = False,
+        starts: Optional[int] = None, threads: int = 0, isa: str = "auto", time_limit: Optional[float] = None,
+        progress: Progress = None) -> _results.Map:
+    """Outcomes over two parameters, each (path, start, stop, points) or (path, start, stop, points, "log").
+
+    `outcomes`: by simulation from the starts alone, faster, without a verdict on any method."""
     count = 0 if starts is None else whole("starts", starts, 1, 100)
     names = words("methods", methods, "the name of a method")
-    return _results.Map(_core.map(_case_of(loop), _work(time_limit, progress, threads=threads), _side("x", x),
-                                  _side("y", y), names, count))
+    if outcomes and names:
+        raise CaseError("methods", repr(methods), "must be left out of a map of outcomes, which judges none")
+    return _results.Map(_core.map(_case_of(loop), _work(time_limit, progress, threads=threads, isa=isa), _side("x", x),
+                                  _side("y", y), names, bool(outcomes), count))
 
 
 def _side(name: str, side: Any) -> Tuple[str, float, float, int, bool]:

@@ -78,6 +78,8 @@ std::string map_answer(const MapReport& report) {
       : hunting == known ? "The loop can hunt everywhere on this map."
                          : "The loop can hunt on " + share(hunting, known) + " of this map.";
   if (uneven > 0) answer += " It moves for ever without a period on " + share(uneven, known) + " of it.";
+  if (report.map.methods.empty())
+    answer += " No method was judged, and a cycle that none of the starts reaches may be missing.";
   for (std::size_t m = 0; m < report.map.methods.size(); ++m) {
     const std::size_t missed = count(report.map, m, Worth::missed), wrong = count(report.map, m, Worth::wrong),
                       biased = count(report.map, m, Worth::biased);

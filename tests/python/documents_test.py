@@ -79,6 +79,10 @@ class Documents(unittest.TestCase):
                               ("loop.element.hysteresis", 0.0, 0.1, 2), methods="describing-function", starts=2)
         self.same(result, "map", file, "--x", "loop.element.level=0.5:2.0:3:log", "--y",
                   "loop.element.hysteresis=0.0:0.1:2", "--methods", "describing-function", "--starts", "2")
+        file = case("pid-lugre")
+        result = limcycle.map(limcycle.load(file), ("loop.controller.kd", 6.0, 20.0, 2),
+                              ("loop.controller.ki", 2.0, 4.0, 2), outcomes=True)
+        self.same(result, "map", file, "--x", "loop.controller.kd=6:20:2", "--y", "loop.controller.ki=2:4:2", "--outcomes")
 
     def test_sensitivity(self):
         file = case("relay-third-order")

@@ -74,6 +74,8 @@ class Wrong(unittest.TestCase):
         self.refused(lambda: limcycle.map(loop, ("loop.controller.kd", 1, 2, 1), ("loop.plant.mass", 1, 2, 2)), key="x")
         self.refused(lambda: limcycle.map(loop, ("loop.controller.kd", 1, 2, 2), ("loop.controller.kd", 1, 2, 2)), key="y")
         self.refused(lambda: limcycle.map(loop, ("loop.controller.kd", 1, 2, 2), ("loop.plant.mass", 1, 2, 2),
+                                          outcomes=True, methods="describing-function"), key="methods")
+        self.refused(lambda: limcycle.map(loop, ("loop.controller.kd", 1, 2, 2), ("loop.plant.mass", 1, 2, 2),
                                           methods=["describing"]), key="methods", value="describing")
         self.refused(lambda: limcycle.df(loop, [0.0], [1.0]), key="df.amplitude", value="[0.0]")
         self.refused(lambda: limcycle.df(loop, [1.0]), key="frequency")

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <vector>
 
 namespace limcycle {
 namespace {
@@ -22,9 +23,15 @@ VectorXd group_inverse(const Eigen::FullPivLU<MatrixXd>& lu, const VectorXd& r) 
   return c * inner.solve(inner.solve(f * r));
 }
 
-}  // namespace
+/// The states that the map changes, or would change from elsewhere: the others keep their values whatever the rest is.
+std::vector<Eigen::Index> changed_states(const MatrixXd& m, const VectorXd& right) {
+  std::vector<Eigen::Index> changed;
+  for (Eigen::Index p = 0; p < right.size(); ++p)
+    if (right(p) != 0.0 || !m.row(p).isZero(0.0)) changed.push_back(p);
+  return changed;
+}
 
-VectorXd indifferent_correction(const MatrixXd& m, const VectorXd& right, bool near, double& amplification) {
+VectorXd correction_of(const MatrixXd& m, const VectorXd& right, bool near, double& amplification) {
   const Eigen::Index n = right.size();
   Eigen::FullPivLU<MatrixXd> lu(n, n);
   lu.setThreshold(1e-11);
@@ -38,6 +45,16 @@ VectorXd indifferent_correction(const MatrixXd& m, const VectorXd& right, bool n
   }
   amplification = lu.inverse().cwiseAbs().rowwise().sum().maxCoeff();
   return lu.solve(right);
+}
+
+}  // namespace
+
+VectorXd indifferent_correction(const MatrixXd& m, const VectorXd& right, bool near, double& amplification) {
+  const std::vector<Eigen::Index> changed = changed_states(m, right);
+  VectorXd step = VectorXd::Zero(right.size());
+  amplification = 1.0;
+  if (!changed.empty()) step(changed) = correction_of(m(changed, changed), right(changed), near, amplification);
+  return step;
 }
 
 }  // namespace limcycle

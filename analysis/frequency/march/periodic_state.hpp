@@ -40,19 +40,22 @@ class PeriodicStateSearch {
   /// `visitor` is restarted before each pass that may be the last; `guess` (or null) is a state known to be close.
   template <class Visitor>
   PeriodicState find(Visitor& visitor, const PeriodicState* guess) {
-    ElementState virgin = march_.virgin();
-    NoVisitor nothing;
-    if (guess == nullptr || !(try_symmetric_ && guess->symmetric)) {
-      const Status status = march_.march(mesh_.virgin, virgin, nothing);
-      if (status != Status::converged) return {status, virgin, false, 0.0};
-    }
-    if (try_symmetric_) {
-      PeriodicState result = iterate(guess != nullptr && guess->symmetric ? guess->state : virgin, true, visitor);
+    const bool from_guess = try_symmetric_ && guess != nullptr && guess->symmetric;
+    if (from_guess) {
+      PeriodicState result = iterate(guess->state, true, visitor);
       if (result.status == Status::converged || result.status == Status::not_finite) return result;
-      if (guess != nullptr && guess->symmetric) return result;
-      if (result.status == Status::no_cycle) virgin = result.state;
     }
     // On a finer mesh start from the virgin state again: where many states are periodic, the guess may be another one.
+    ElementState virgin = march_.virgin();
+    NoVisitor nothing;
+    const Status status = march_.march(mesh_.virgin, virgin, nothing);
+    if (status != Status::converged) return {status, virgin, false, 0.0};
+    // What is not symmetric on a coarse mesh is not on a fine one.
+    if (try_symmetric_ && (guess == nullptr || from_guess)) {
+      PeriodicState result = iterate(virgin, true, visitor);
+      if (result.status == Status::converged || result.status == Status::not_finite) return result;
+      if (result.status == Status::no_cycle) virgin = result.state;
+    }
     return iterate(virgin, false, visitor);
   }
 
@@ -106,8 +109,27 @@ class PeriodicStateSearch {
     return step;
   }
 
-  /// Status no_cycle: a motion whose halves end in two modes in turn is not half-wave symmetric; the state is that
-  /// after some whole periods from the start.
+  /// Newton while it helps. Where it did not (a kink of the map, or a jump), the map itself once, twice, four times as
+  /// often before it is tried again, since the map of any sound law contracts.
+  class Turns {
+   public:
+    bool newton(bool gained) {
+      if (tried_ && !gained) {
+        maps_ = patience_;
+        patience_ = std::min(2 * patience_, 8);
+      }
+      tried_ = maps_ == 0;
+      if (!tried_) --maps_;
+      return tried_;
+    }
+
+   private:
+    bool tried_ = false;
+    int maps_ = 0, patience_ = 1;
+  };
+
+  /// Status no_cycle: a motion whose halves end in two modes in turn is not half-wave symmetric; the state is then the
+  /// start, or that after some whole periods from it.
   template <class Visitor>
   PeriodicState iterate(const ElementState& start, bool half, Visitor& visitor) {
     PeriodicState result{Status::converged, start, half, 0.0};
@@ -115,6 +137,9 @@ class PeriodicStateSearch {
     double best = infinite;
     int foreign_modes = 0, to_and_fro = 0, without_gain = 0;
     Mode last_but_one = start.mode;
+    ElementState whole = start;  // reached by the map alone, in whole periods
+    bool by_map_alone = true;
+    Turns turns;
     for (int k = 0; k < 200; ++k) {
       visitor.restart();
       ElementState image = result.state;
@@ -124,8 +149,10 @@ class PeriodicStateSearch {
         to_and_fro = half && image.mode == last_but_one ? to_and_fro + 1 : 0;
         last_but_one = result.state.mode;
         result.state = image;
+        if (by_map_alone && k % 2 == 1) whole = image;
         if (++foreign_modes > 20) break;
-        if (to_and_fro > 0 && k == foreign_modes - 1 && k % 2 == 1) {
+        if (to_and_fro > 1 || (to_and_fro > 0 && by_map_alone && k % 2 == 1)) {
+          result.state = whole;
           result.status = Status::no_cycle;
           return result;
         }
@@ -147,11 +174,12 @@ class PeriodicStateSearch {
       if (without_gain > 3 && distance <= 100.0 * tolerance_) return result;
       if (distance <= tolerance_ || (now >= 0.25 * before && distance <= 1e-11) || (indifferent && now <= 1e-14))
         return result;
-      // Newton as long as it helps; else (a kink of the map) the map itself, which contracts for any sound law.
-      const bool newton = size(step) > 0.0 && (now < 0.5 * before || k % 4 == 0);
+      const bool newton = turns.newton(now < 0.5 * before) && size(step) > 0.0;
       for (std::size_t p = 0; p < n_; ++p)
         result.state.z[p] = newton ? result.state.z[p] + step(static_cast<Eigen::Index>(p)) : image.z[p];
       result.state.mode = image.mode;
+      by_map_alone = by_map_alone && !newton;
+      if (by_map_alone && k % 2 == 1) whole = image;
       before = now;
     }
     result.status = Status::max_iterations;

@@ -75,8 +75,9 @@ class LaneRun {
   /// Fills an empty lane: values common to all lanes (the exponent, whether damping fades) are read from empty ones
   /// too.
   void leave_idle(int lane) {
-    const EnsembleMember& any = work_.member(group_.members.front());
-    write_lane(*any.loop, loop_weights(*any.loop, options_.rtol), any.start.x, rows_.get() + lane, lanes_);
+    const std::size_t first = group_.members.front();
+    const EnsembleMember& any = work_.member(first);
+    write_lane(*any.loop, loop_weights(*any.loop, work_.bounds(first).rtol), any.start.x, rows_.get() + lane, lanes_);
     number(lane, LaneRows::end) = infinite;
   }
 
@@ -87,14 +88,15 @@ class LaneRun {
       return;
     }
     const EnsembleMember& member = work_.member(*next);
-    write_lane(*member.loop, loop_weights(*member.loop, options_.rtol), member.start.x, rows_.get() + lane, lanes_);
+    const MotionBounds& bounds = work_.bounds(*next);
+    write_lane(*member.loop, loop_weights(*member.loop, bounds.rtol), member.start.x, rows_.get() + lane, lanes_);
     seat(lane).member = *next;
-    seat(lane).watch.emplace(watch_for(*member.loop, options_));
+    seat(lane).watch.emplace(watch_for(*member.loop, bounds, options_.accuracy));
     double y = 0.0;
     for (int i = 0; i < at_.n; ++i) y += number(lane, at_.C_y() + i) * number(lane, at_.state() + i);
     seat(lane).watch->begin(0.0, y);
     number(lane, LaneRows::end) = options_.duration;
-    number(lane, LaneRows::ceiling) = options_.amplitude_ceiling;
+    number(lane, LaneRows::ceiling) = bounds.amplitude_ceiling;
     number(lane, LaneRows::most_steps) = static_cast<double>(options_.max_steps);
     number(lane, LaneRows::level) = infinite;
     number(lane, LaneRows::active) = 1.0;
@@ -151,7 +153,8 @@ class LaneRun {
     result.in_lanes = true;
     // Friction alone has no family of periodic motions: only a motion that never repeats is passed to settle().
     if (!here.watch->decided() && leaves_open(result, *here.watch, options_))
-      ask_settle(result, work_.member(here.member), options_, [this] { return work_.stopped(); });
+      ask_settle(result, work_.member(here.member), work_.bounds(here.member), options_.max_steps,
+                 [this] { return work_.stopped(); });
     useful_ += result.steps + result.refused;
     --seated_;
     refill(lane);
@@ -176,14 +179,15 @@ class SingleRun {
  public:
   SingleRun(EnsembleWork& work, std::size_t index)
       : work_(work),
-        index_(index),
+        member_(work.member(index)),
+        bounds_(work.bounds(index)),
         options_(work.options()),
-        loop_(*work.member(index).loop),
+        loop_(*member_.loop),
         result_(work.results()[index]),
         field_(loop_),
-        march_(field_, StepperKind::automatic, loop_weights(loop_, options_.rtol)),
-        watch_(watch_for(loop_, options_)) {
-    const LoopState& start = work.member(index).start;
+        march_(field_, StepperKind::automatic, loop_weights(loop_, bounds_.rtol)),
+        watch_(watch_for(loop_, bounds_, options_.accuracy)) {
+    const LoopState& start = member_.start;
     field_.modes() = start.modes;
     march_.begin(start.x, 0.0);
     watch_.begin(0.0, field_.y(start.x));
@@ -197,7 +201,7 @@ class SingleRun {
     result_.time = march_.t();
     result_.steps = march_.steps();
     if (leaves_open(result_, watch_, options_))
-      ask_settle(result_, work_.member(index_), options_, [this] { return work_.stopped(); });
+      ask_settle(result_, member_, bounds_, options_.max_steps, [this] { return work_.stopped(); });
   }
 
  private:
@@ -207,7 +211,7 @@ class SingleRun {
     if (status == Status::not_finite) watch_.diverged();
     if (status != Status::converged) return status;
     look();
-    if (std::abs(field_.y(march_.x())) > options_.amplitude_ceiling) {
+    if (std::abs(field_.y(march_.x())) > bounds_.amplitude_ceiling) {
       watch_.diverged();
       return Status::converged;
     }
@@ -230,7 +234,8 @@ class SingleRun {
   }
 
   EnsembleWork& work_;
-  std::size_t index_;
+  const EnsembleMember& member_;
+  const MotionBounds& bounds_;
   const EnsembleOptions& options_;
   const Loop& loop_;
   EnsembleResult& result_;
@@ -244,14 +249,18 @@ void require(bool good, const std::string& what, double value) {
   if (!good) throw std::invalid_argument(what + ", got " + std::to_string(value));
 }
 
+void validate(const MotionBounds& bounds) {
+  require(bounds.rtol > 0.0 && bounds.rtol <= 0.1, "rtol must be in (0, 0.1]", bounds.rtol);
+  require(bounds.amplitude_floor >= 0.0, "amplitude_floor must be at least 0", bounds.amplitude_floor);
+  require(bounds.amplitude_ceiling > 0.0, "amplitude_ceiling must be more than 0", bounds.amplitude_ceiling);
+}
+
 void validate(std::span<const EnsembleMember> members, const EnsembleOptions& options) {
-  require(options.rtol > 0.0 && options.rtol <= 0.1, "rtol must be in (0, 0.1]", options.rtol);
+  validate(static_cast<const MotionBounds&>(options));
   require(options.duration > 0.0, "duration must be more than 0", options.duration);
   require(options.until_decided || options.duration < infinite, "duration must be finite unless until_decided",
           options.duration);
   require(options.max_steps > 0, "max_steps must be more than 0", static_cast<double>(options.max_steps));
-  require(options.amplitude_floor >= 0.0, "amplitude_floor must be at least 0", options.amplitude_floor);
-  require(options.amplitude_ceiling > 0.0, "amplitude_ceiling must be more than 0", options.amplitude_ceiling);
   require(options.accuracy > 0.0, "accuracy must be more than 0", options.accuracy);
   require(options.lanes >= 0, "lanes must be at least 0", options.lanes);
   require(options.threads >= 0 && options.threads <= 1024, "threads must lie in 0..1024", options.threads);
@@ -268,6 +277,7 @@ void validate(std::span<const EnsembleMember> members, const EnsembleOptions& op
             who + " must start with " + std::to_string(field.modes().size()) + " modes",
             static_cast<double>(start.modes.size()));
     if (!is_finite(start.x)) throw std::invalid_argument(who + " must start from finite numbers");
+    if (members[i].own) validate(*members[i].own);
   }
 }
 

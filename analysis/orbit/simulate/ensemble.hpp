@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,21 +9,26 @@
 
 namespace limcycle {
 
+/// Tolerance of a simulation, and the swings that count as motion.
+struct MotionBounds {
+  double rtol = 1e-8;              ///< in (0, 0.1], see loop_weights
+  double amplitude_floor = 1e-9;   ///< swings of y below this have died out
+  double amplitude_ceiling = 1e6;  ///< |y| beyond this has diverged
+};
+
 /// One member of an ensemble: a loop, which must outlive the run, and its initial state.
 struct EnsembleMember {
   const Loop* loop = nullptr;
   LoopState start;
+  std::optional<MotionBounds> own{};  ///< in place of those of all members
 };
 
-/// Length, accuracy and number of threads of an ensemble run.
-struct EnsembleOptions {
-  double rtol = 1e-8;              ///< in (0, 0.1], see loop_weights
-  double duration = infinite;      ///< s, of every member
-  long max_steps = 60000;          ///< of every member
-  bool until_decided = true;       ///< false: every member runs to the end of the duration, which must then be finite
-  double amplitude_floor = 1e-9;   ///< swings of y below this have died out
-  double amplitude_ceiling = 1e6;  ///< |y| beyond this has diverged
-  double accuracy = 1e-4;          ///< share by which the swings and the period of a cycle may still change
+/// Bounds of all members without their own, length and number of threads of an ensemble run.
+struct EnsembleOptions : MotionBounds {
+  double duration = infinite;  ///< s, of every member
+  long max_steps = 60000;      ///< of every member
+  bool until_decided = true;   ///< false: every member runs to the end of the duration, which must then be finite
+  double accuracy = 1e-4;      ///< share by which the swings and the period of a cycle may still change
   Isa isa = best_isa();
   int lanes = 0;               ///< members that a thread marches at once; 0: as many as the instruction set has lanes
   int threads = 1;             ///< 0: one per core

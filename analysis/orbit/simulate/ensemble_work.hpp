@@ -37,6 +37,7 @@ class EnsembleWork {
 
   const EnsembleMember& member(std::size_t i) const { return members_[i]; }
   const EnsembleOptions& options() const { return options_; }
+  const MotionBounds& bounds(std::size_t i) const { return members_[i].own ? *members_[i].own : options_; }
   std::vector<EnsembleGroup>& groups() { return groups_; }
   std::vector<EnsembleResult>& results() { return results_; }
 
@@ -72,8 +73,8 @@ class EnsembleWork {
   long useful_ = 0, tried_ = 0;
 };
 
-inline OutcomeWatch watch_for(const Loop& loop, const EnsembleOptions& options) {
-  return {loop, {options.rtol, options.amplitude_floor, options.accuracy}, typical_sizes(loop), slow_time(loop)};
+inline OutcomeWatch watch_for(const Loop& loop, const MotionBounds& bounds, double accuracy) {
+  return {loop, {bounds.rtol, bounds.amplitude_floor, accuracy}, typical_sizes(loop), slow_time(loop)};
 }
 
 inline void conclude(EnsembleResult& result, const OutcomeWatch& watch, Status status) {
@@ -87,16 +88,16 @@ inline void conclude(EnsembleResult& result, const OutcomeWatch& watch, Status s
 /// Passes a case that the watch leaves open to settle(), which uses shooting: a motion that repeated itself from the
 /// start (a cycle or one of a family), a motion that never repeats, and switching without end. Only for runs of
 /// unlimited duration.
-inline void ask_settle(EnsembleResult& result, const EnsembleMember& member, const EnsembleOptions& options,
+inline void ask_settle(EnsembleResult& result, const EnsembleMember& member, const MotionBounds& bounds, long max_steps,
                        const std::function<bool()>& stop) {
   SettleOptions settling;
-  settling.rtol = options.rtol;
-  settling.amplitude_floor = options.amplitude_floor;
-  settling.amplitude_ceiling = options.amplitude_ceiling;
-  settling.max_steps = options.max_steps;
-  settling.shooting.rtol = 0.1 * options.rtol;
-  settling.shooting.tolerance = 0.1 * options.rtol;
-  settling.shooting.derivative_rtol = options.rtol;
+  settling.rtol = bounds.rtol;
+  settling.amplitude_floor = bounds.amplitude_floor;
+  settling.amplitude_ceiling = bounds.amplitude_ceiling;
+  settling.max_steps = max_steps;
+  settling.shooting.rtol = 0.1 * bounds.rtol;
+  settling.shooting.tolerance = 0.1 * bounds.rtol;
+  settling.shooting.derivative_rtol = bounds.rtol;
   settling.stop = settling.shooting.stop = stop;
   const Settled settled = settle(*member.loop, member.start, settling);
   if (settled.outcome == Outcome::undecided) return;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/analysis/study/balance/force_limit.hpp"
+#include "limcycle/analysis/study/balance/rootless_parts.hpp"
 #include "limcycle/analysis/study/balance/within_data.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
@@ -95,8 +95,8 @@ class RootStudy {
       balance_.prepare(points, accuracy, options.interrupted);
     };
     if (speed == 0.0)
-      if (const auto limit = ForceLimit::of(loop_, box))
-        options.rootless = [=](const SearchBox& part) { return limit->forbids(part); };
+      if (const auto known = RootlessParts::of(loop_, box))
+        options.rootless = [=](const SearchBox& part) { return known->forbids(part); };
     std::vector<Root> roots;
     for (int branch = 0; branch < (balance_.has_second() ? AmplitudeBranches::most : 1); ++branch) {
       const auto f = [&](double A, double w, double accuracy) {

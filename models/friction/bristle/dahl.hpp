@@ -53,6 +53,7 @@ struct Dahl {
     return {in.v, sigma0 * abs(in.v) / Fc};
   }
   LinearOutput<S> linear_output(const Input<S>&) const { return {sigma0, S(0.0), S(0.0)}; }
+  static bool is_passive() { return true; }
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return mode; }
   Scales scales() const { return {.displacement = value_of(Fc / sigma0), .output = value_of(Fc)}; }

@@ -131,6 +131,7 @@ struct NonDrift : StribeckCurve<S> {
     return with_cap(mode, trial > most ? 1 : trial < -most ? -1 : 0);
   }
 
+  bool is_passive() const { return memory.index == 0; }
   /// |F - sigma2 v| <= Fs.
   std::optional<double> force_bound(double speed) const { return this->bound_with_viscous(sigma2, speed); }
   bool odd() const { return this->symmetric(); }

@@ -76,6 +76,7 @@ struct Kikuuwe : StribeckCurve<S> {
     return {force > cap(at, true) ? 1 : force < cap(at, false) ? -1 : 0};
   }
 
+  static bool is_passive() { return true; }
   bool odd() const { return this->symmetric(); }
   Mode mirror(Mode mode) const { return {-mode.value}; }
   Scales scales() const {

@@ -107,6 +107,7 @@ struct Iwan {
   }
   Mode start(const Input<double>& in, std::span<double> z) const { return Stack::start(in, z).in({}); }
 
+  static bool is_passive() { return true; }
   std::optional<double> force_bound(double) const { return value_of(Fs); }
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return Stack::mirror(mode); }

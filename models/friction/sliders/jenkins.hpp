@@ -67,6 +67,7 @@ struct Jenkins {
     return all_slipping(1, in.v > 0.0);
   }
 
+  static bool is_passive() { return true; }
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return mirrored_sliders(mode); }
   Scales scales() const { return {.displacement = value_of(Fc / k), .output = value_of(Fc)}; }

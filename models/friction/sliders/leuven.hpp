@@ -114,6 +114,10 @@ struct Leuven : StribeckCurve<S>, StopElements<S> {
     return mode;
   }
 
+  bool is_passive() const {
+    const double least = std::pow(this->highest_level() / this->lowest_level(), value_of(n)) - 1.0;
+    return value_of(sigma2) >= value_of(sigma1) * least;
+  }
   /// |F_h| <= Fs, as dz/dt reverses there, so that |dz/dt| <= |v| (1 + (Fs/Fc)^n).
   std::optional<double> force_bound(double speed) const {
     const double most = this->highest_level(), least = this->lowest_level();

@@ -54,6 +54,7 @@ struct MaxwellSlip : StopElements<S> {
     return all_slipping(this->states(), in.v > 0.0);
   }
 
+  static bool is_passive() { return true; }
   std::optional<double> force_bound(double) const { return this->sum_of_limits(); }
   bool odd() const { return true; }
   Mode mirror(Mode mode) const { return mirrored_sliders(mode); }

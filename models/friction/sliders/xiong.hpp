@@ -146,6 +146,7 @@ struct Xiong : StribeckCurve<S> {
     return mode;
   }
 
+  static bool is_passive() { return true; }
   /// |F - sigma2 v| <= Fs, which caps it.
   std::optional<double> force_bound(double speed) const { return this->bound_with_viscous(sigma2, speed); }
   std::vector<std::pair<double, double>> state_bounds() const {

@@ -50,6 +50,26 @@ TEST_CASE("map: what happens, and that the describing function misses the huntin
   CHECK(scratch.get("map.html").find("<svg") != std::string::npos);
 }
 
+TEST_CASE("map: outcomes alone are those of the whole map, without a method, and say what may be missing") {
+  const Scratch scratch;
+  const Ran whole = run(small_map({"--json", "-"})), ran = run(small_map({"--outcomes", "--json", "-"}));
+  REQUIRE(ran.code == 0);
+  const Json full = Json::parse(whole.out), document = Json::parse(ran.out);
+  REQUIRE(document["points"].size() == 9);
+  for (std::size_t k = 0; k < 9; ++k) {
+    CHECK(document["points"][k]["happens"] == full["points"][k]["happens"]);
+    CHECK(document["points"][k]["methods"].empty());
+  }
+  CHECK(document["points"][6]["period"].get<double>() == Approx(24.4368).epsilon(1e-4));
+  const Ran text = run(small_map({"--outcomes", "--threads", "1", "--html", scratch.file("map.html")}));
+  CHECK(text.out.find("No method was judged") != std::string::npos);
+  CHECK(text.out.find("Reliability") == std::string::npos);
+  CHECK(scratch.get("map.html").find("--outcomes") != std::string::npos);
+  const Ran both = run(small_map({"--outcomes", "--methods", "describing-function"}));
+  CHECK(both.code == 2);
+  CHECK(both.err.find("--methods excludes --outcomes") != std::string::npos);
+}
+
 TEST_CASE("map: the same bytes for any number of threads, and from a store that was begun and finished") {
   const Scratch scratch;
   const Ran one = run(small_map({"--threads", "1", "--json", "-"}));

@@ -1,8 +1,9 @@
-#include "limcycle/analysis/study/balance/force_limit.hpp"
+#include "limcycle/analysis/study/balance/rootless_parts.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/laws.hpp"
@@ -37,15 +38,15 @@ SearchBox random_part(const SearchBox& box) {
 
 }  // namespace
 
-TEST_CASE("force limit: |N G| < 1 in every part that it forbids, for every law that states its largest force") {
-  int laws = 0, parts = 0, forbidden = 0;
+TEST_CASE("rootless parts: too weak, or without energy, at every point, for every law that proves a bound") {
+  int laws = 0, parts = 0, forbidden = 0, starved = 0;
   FrictionLaws::for_each([&]<template <class> class Kind>() {
     for_some_samples<Kind>([&](const Kind<double>& law, const Sample& sample) {
       const Loop loop = random_servo(law);
       const SearchBox box = default_search_box(loop);
-      const auto limit = ForceLimit::of(loop, box);
+      const auto limit = RootlessParts::of(loop, box);
       if (!limit) return;
-      CHECK(Element(law).force_bound(1.0));
+      CHECK((Element(law).force_bound(1.0) || Element(law).is_passive()));
       ++laws;
       const LoopBalance balance(loop);
       for (int k = 0; k < samples(30); ++k) {
@@ -57,19 +58,26 @@ TEST_CASE("force limit: |N G| < 1 in every part that it forbids, for every law t
         const double w = between(part.frequency_min, part.frequency_max);
         INFO(Kind<double>::kind << ", " << sample.name << ", A = " << A << ", w = " << w);
         const auto f = balance(A, w, 1e-3);
-        if (std::isfinite(f.real())) CHECK(std::abs(f - 1.0) < 1.0);
+        if (!std::isfinite(f.real())) continue;
+        const auto H = loop.element_response(w)(0, 0), N = (1.0 - f) / H;
+        const bool weak = std::abs(f - 1.0) < 1.0;
+        const bool without_energy =
+            Element(law).is_passive() && (1.0 / H).imag() < 0.0 && N.imag() >= -1e-2 * std::abs(N);
+        CHECK((weak || without_energy));
+        starved += weak ? 0 : 1;
       }
     });
   });
   CHECK(laws > 5);
-  CHECK(6 * forbidden > parts);
+  CHECK(4 * forbidden > parts);
+  CHECK(20 * starved > parts);
 }
 
-TEST_CASE("force limit: for Coulomb friction the border lies within the factor left between samples") {
+TEST_CASE("rootless parts: for Coulomb friction the border of force lies within the factor left between samples") {
   // |N| = 4 Fc/(pi A) exactly, so that |N G| = 1 at A = (4/pi) Fc |G|.
   const Loop loop = loop_of(Mass{1.0, 0.0, 0.0}, pid(3.0, 4.0, 6.0), coulomb(1.0, 1.0));
   const SearchBox box{1e-6, 1e2, 1e-2, 1e2};
-  const auto limit = ForceLimit::of(loop, box);
+  const auto limit = RootlessParts::of(loop, box);
   REQUIRE(limit);
   for (const double w : {0.02, 0.3, 1.0, 7.0, 80.0}) {
     const double border = 4.0 / std::numbers::pi * std::abs(loop.element_response(w)(0, 0));
@@ -78,10 +86,47 @@ TEST_CASE("force limit: for Coulomb friction the border lies within the factor l
   }
 }
 
-TEST_CASE("force limit: none where G may have peaks between its samples, or where it is not of one friction alone") {
+TEST_CASE("rootless parts: a passive law has none where the controller takes energy out of the motion") {
+  // 1/H = m w^2 - kp + j(ki/w - kd w): no energy is supplied above w = sqrt(ki/kd), whatever the amplitude.
+  Jenkins<double> law;
+  law.k = 1e3;
+  law.Fc = 1e3;
+  const Loop loop = loop_of(Mass{1.0, 0.0, 0.0}, pid(3.0, 4.0, 6.0), Element(law));
+  const double border = std::sqrt(4.0 / 6.0);
+  const auto known = RootlessParts::of(loop, {1e-6, 1e2, 1e-2, 1e2});
+  REQUIRE(known);
+  CHECK_FALSE(known->forbids({1e-6, 1e-5, 0.5 * border, 0.99 * border}));
+  CHECK_FALSE(known->forbids({1e-6, 1e-5, 0.9 * border, 1.5 * border}));
+  CHECK(known->forbids({1e-6, 1e-5, 1.03 * border, 1.5 * border}));
+  CHECK(known->forbids({1.0, 1e2, 1.03 * border, 20.0 * border}));
+  const auto not_passive =
+      RootlessParts::of(loop_of(Mass{1.0, 0.0, 0.0}, pid(3.0, 4.0, 6.0), Element(lugre())), {1e-6, 1e2, 1e-2, 1e2});
+  CHECK_FALSE((not_passive && not_passive->forbids({1e-6, 1e-5, 1.03 * border, 1.5 * border})));
+}
+
+TEST_CASE("passive laws: no sinusoid takes energy out of one that states it") {
+  int tried = 0;
+  FrictionLaws::for_each([&]<template <class> class Kind>() {
+    for_some_samples<Kind>([&](const Kind<double>& law, const Sample& sample) {
+      const Element element(law);
+      if (!element.is_passive()) return;
+      const Scales scales = element.scales();
+      const double way = std::min(scales.displacement, 1.0), speed = std::min(scales.velocity, 1e3 * way);
+      for (int k = 0; k < samples(12); ++k, ++tried) {
+        const double A = way * between(1e-3, 1e3), w = speed / way * between(1e-4, 1e3);
+        INFO(Kind<double>::kind << ", " << sample.name << ", A = " << A << ", w = " << w);
+        const auto N = describing_function(element, {A, w, 0.0}, {.harmonics = 1, .accuracy = 1e-4});
+        if (N.status == Status::converged) CHECK(N.gain.imag() >= -2e-4 * std::abs(N.gain));
+      }
+    });
+  });
+  CHECK(tried > 20);
+}
+
+TEST_CASE("rootless parts: none where H may have peaks between its samples, or where it is not of one friction alone") {
   const SearchBox box{1e-6, 1e2, 1e-2, 1e2};
   const Element friction = coulomb(1.5, 1.0);
-  const auto limit = [&](const LoopParts& parts) { return ForceLimit::of(build_loop(parts), box); };
+  const auto limit = [&](const LoopParts& parts) { return RootlessParts::of(build_loop(parts), box); };
   LoopParts parts = servo_parts(friction);
   CHECK(limit(parts));
   LoopParts resonant = parts;
