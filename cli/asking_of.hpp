@@ -1,7 +1,7 @@
 #pragma once
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/progress.hpp"
-#include "limcycle/questions/asking.hpp"
+#include "limcycle/cli/output/progress.hpp"
+#include "limcycle/questions/asking/asking.hpp"
 
 namespace limcycle {
 

@@ -1,7 +1,7 @@
 #include "limcycle/cli/changed_case.hpp"
 
 #include "limcycle/cases/loader/with_overrides.hpp"
-#include "limcycle/questions/answer_of.hpp"
+#include "limcycle/questions/asking/answer_of.hpp"
 
 namespace limcycle {
 

@@ -13,10 +13,10 @@
 
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/option_values.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/output.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
 #include "limcycle/cli/time_limit.hpp"
-#include "limcycle/questions/provenance_of.hpp"
+#include "limcycle/questions/asking/provenance_of.hpp"
 
 namespace limcycle {
 

@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/lanes/isa.hpp"
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/questions/answer_of.hpp"
+#include "limcycle/questions/asking/answer_of.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace CLI {

@@ -10,13 +10,13 @@
 #include <new>
 
 #include "build_info.hpp"
-#include "limcycle/cases/loader/input_error.hpp"
-#include "limcycle/cli/colour.hpp"
+#include "limcycle/cases/loader/text/input_error.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/help/help.hpp"
 #include "limcycle/cli/interrupt.hpp"
 #include "limcycle/cli/option_values.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/colour.hpp"
+#include "limcycle/cli/output/output.hpp"
 #include "limcycle/cli/ranks/rank_job.hpp"
 #include "limcycle/cli/ranks/rank_sweep.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"

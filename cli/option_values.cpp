@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "limcycle/cases/loader/printable.hpp"
+#include "limcycle/cases/loader/text/printable.hpp"
 
 namespace limcycle {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <new>
 
-#include "limcycle/analysis/study/balance/nyquist.hpp"
+#include "limcycle/analysis/study/balance/roots/nyquist.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
 #include "limcycle/analysis/study/sensitivity/local_sensitivity.hpp"
 #include "limcycle/analysis/sweep.hpp"

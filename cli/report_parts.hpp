@@ -3,7 +3,7 @@
 
 #include "limcycle/cases/loader/case.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/output/progress.hpp"
 #include "limcycle/reports/page/report.hpp"
 
 namespace limcycle {

@@ -1,7 +1,7 @@
 #pragma once
 #include "limcycle/analysis/study/continuation/follow.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
-#include "limcycle/questions/asking.hpp"
+#include "limcycle/questions/asking/asking.hpp"
 
 namespace limcycle {
 

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/questions/asking.hpp"
-#include "limcycle/questions/need_memory.hpp"
+#include "limcycle/questions/asking/asking.hpp"
+#include "limcycle/questions/asking/need_memory.hpp"
 
 namespace limcycle {
 

@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "limcycle/questions/argument_error.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/questions/asking/argument_error.hpp"
+#include "limcycle/reports/format/number.hpp"
 
 namespace limcycle {
 namespace {

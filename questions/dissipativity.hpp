@@ -4,7 +4,7 @@
 
 #include "limcycle/analysis/study/dissipativity.hpp"
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/questions/asking.hpp"
+#include "limcycle/questions/asking/asking.hpp"
 
 namespace limcycle {
 

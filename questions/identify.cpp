@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "limcycle/questions/answer_of.hpp"
+#include "limcycle/questions/asking/answer_of.hpp"
 #include "limcycle/reports/identify/identify.hpp"
 
 namespace limcycle {

@@ -6,8 +6,8 @@
 
 #include "limcycle/analysis/study/map/simulated_points.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
-#include "limcycle/questions/argument_error.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/questions/asking/argument_error.hpp"
+#include "limcycle/reports/format/number.hpp"
 
 namespace limcycle {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "limcycle/cases/loader/loop_variation.hpp"
-#include "limcycle/questions/asking.hpp"
-#include "limcycle/questions/need_memory.hpp"
+#include "limcycle/questions/asking/asking.hpp"
+#include "limcycle/questions/asking/need_memory.hpp"
 #include "limcycle/reports/map/map.hpp"
 
 namespace limcycle {

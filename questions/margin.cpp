@@ -7,9 +7,9 @@
 
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
-#include "limcycle/questions/argument_error.hpp"
+#include "limcycle/questions/asking/argument_error.hpp"
 #include "limcycle/questions/threshold.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 
 namespace limcycle {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "limcycle/analysis/study/balance/nyquist.hpp"
+#include "limcycle/analysis/study/balance/roots/nyquist.hpp"
 #include "limcycle/analysis/study/predict/interest.hpp"
 #include "limcycle/analysis/study/remedy/cause.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/questions/asking.hpp"
+#include "limcycle/questions/asking/asking.hpp"
 
 namespace limcycle {
 

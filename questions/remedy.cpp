@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "limcycle/cases/loader/remedy_candidates.hpp"
-#include "limcycle/questions/answer_of.hpp"
-#include "limcycle/questions/argument_error.hpp"
+#include "limcycle/questions/asking/answer_of.hpp"
+#include "limcycle/questions/asking/argument_error.hpp"
 
 namespace limcycle {
 std::vector<RemedyCandidate> chosen_remedies(const Case& from, const std::string& argument,

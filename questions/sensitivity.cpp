@@ -10,7 +10,7 @@
 #include "limcycle/analysis/study/sensitivity/local_sensitivity.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
-#include "limcycle/questions/need_memory.hpp"
+#include "limcycle/questions/asking/need_memory.hpp"
 #include "limcycle/questions/threshold.hpp"
 
 namespace limcycle {

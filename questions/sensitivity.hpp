@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/study/sensitivity/sensitivity.hpp"
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/questions/asking.hpp"
+#include "limcycle/questions/asking/asking.hpp"
 
 namespace limcycle {
 

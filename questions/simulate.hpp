@@ -4,8 +4,8 @@
 #include "limcycle/analysis/energy/loop/audit.hpp"
 #include "limcycle/analysis/orbit/cycle/agreement.hpp"
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/questions/asking.hpp"
-#include "limcycle/questions/need_memory.hpp"
+#include "limcycle/questions/asking/asking.hpp"
+#include "limcycle/questions/asking/need_memory.hpp"
 
 namespace limcycle {
 

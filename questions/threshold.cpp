@@ -6,7 +6,7 @@
 
 #include "limcycle/analysis/study/continuation/margin.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
-#include "limcycle/questions/argument_error.hpp"
+#include "limcycle/questions/asking/argument_error.hpp"
 
 namespace limcycle {
 

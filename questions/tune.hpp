@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/study/tune/tune.hpp"
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/questions/asking.hpp"
+#include "limcycle/questions/asking/asking.hpp"
 
 namespace limcycle {
 

@@ -4,8 +4,8 @@
 #include <initializer_list>
 #include <stdexcept>
 
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/frame.hpp"
-#include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "limcycle/reports/json_values.hpp"
+#include "limcycle/reports/format/json_values.hpp"
 
 namespace limcycle {
 namespace {

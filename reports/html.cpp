@@ -1,7 +1,7 @@
 #include "limcycle/reports/html.hpp"
 
+#include "limcycle/reports/figures/drawing/plotly.hpp"
 #include "limcycle/reports/figures/figures.hpp"
-#include "limcycle/reports/figures/plotly.hpp"
 #include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/page/html_parts.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/frame.hpp"
-#include "limcycle/reports/json_values.hpp"
 
 namespace limcycle {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "limcycle/reports/figures/multipliers.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/in_units.hpp"
-#include "limcycle/reports/number.hpp"
 #include "limcycle/reports/predict/answer.hpp"
 
 namespace limcycle {

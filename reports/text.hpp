@@ -6,8 +6,8 @@
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/analysis/orbit/cycle/agreement.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
-#include "limcycle/reports/document.hpp"
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/document.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/units.hpp"
 
 namespace limcycle {

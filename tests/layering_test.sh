@@ -41,7 +41,7 @@ right analysis/study/predict/predict.cpp '#include "limcycle/analysis/frequency/
 right cases/load.cpp '#include <toml++/toml.h>'
 right reports/page.cpp '#include "limcycle/analysis/orbit/cycle/shooting.hpp"'
 right questions/predict.cpp '#include "limcycle/reports/text.hpp"'
-right questions/provenance_of.cpp '#include "build_info.hpp"'
+right questions/asking/provenance_of.cpp '#include "build_info.hpp"'
 right cli/main.cpp '#include "build_info.hpp"'
 right cli/commands/predict.cpp '#include "limcycle/cases/load.hpp"'
 right tests/analysis/root_test.cpp '#include <gsl/gsl_sf_ellint.h>'
@@ -73,8 +73,8 @@ wrong reports/a.cpp '#include "limcycle/cases/load.hpp"' "$arrow"
 wrong reports/a.cpp '#include "limcycle/cli/options.hpp"' "$arrow"
 wrong reports/a.cpp '#include <CLI/CLI.hpp>' 'not a library of reports'
 wrong reports/a.hpp '#include <nlohmann/json_fwd.hpp>' 'third-party header'
-wrong reports/a.hpp '#include "limcycle/reports/json_values.hpp"' 'third-party types'
-wrong cli/a.cpp '#include "limcycle/reports/json_values.hpp"' 'third-party types'
+wrong reports/a.hpp '#include "limcycle/reports/format/json_values.hpp"' 'third-party types'
+wrong cli/a.cpp '#include "limcycle/reports/format/json_values.hpp"' 'third-party types'
 wrong reports/a.cpp '#include "build_info.hpp"' 'spell it from the root'
 wrong cli/a.cpp '#include "limcycle/tests/reference.hpp"' "$arrow"
 wrong cli/a.cpp '#include "limcycle/bench/peer.hpp"' "$arrow"

@@ -11,7 +11,7 @@
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/analysis/study/sensitivity/parameter_spread.hpp"
 #include "limcycle/cases/loader/data/csv_reader.hpp"
-#include "limcycle/cases/loader/input_error.hpp"
+#include "limcycle/cases/loader/text/input_error.hpp"
 #include "limcycle/models/loop.hpp"
 #include "limcycle/models/measured/curve_file.hpp"
 #include "limcycle/models/measured/matrix_file.hpp"

@@ -7,7 +7,7 @@
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/owned_parts.hpp"
 #include "limcycle/cases/loader/sections/sections.hpp"
-#include "limcycle/cases/loader/value.hpp"
+#include "limcycle/cases/loader/text/value.hpp"
 
 namespace limcycle {
 namespace {

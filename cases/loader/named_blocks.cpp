@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "limcycle/cases/loader/value.hpp"
+#include "limcycle/cases/loader/text/value.hpp"
 
 namespace limcycle::case_file {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "limcycle/cases/loader/section.hpp"
+#include "limcycle/cases/loader/text/section.hpp"
 #include "limcycle/models/diagram/diagram.hpp"
 
 namespace limcycle::case_file {

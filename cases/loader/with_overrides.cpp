@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "limcycle/cases/loader/case_numbers.hpp"
-#include "limcycle/cases/loader/value.hpp"
+#include "limcycle/cases/loader/text/value.hpp"
 
 namespace limcycle {
 namespace {

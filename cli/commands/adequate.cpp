@@ -5,15 +5,15 @@
 #include "limcycle/cases/loader/loop_variation.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
-#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/option_values.hpp"
-#include "limcycle/cli/output.hpp"
-#include "limcycle/cli/progress.hpp"
-#include "limcycle/questions/units_of.hpp"
+#include "limcycle/cli/output/message.hpp"
+#include "limcycle/cli/output/output.hpp"
+#include "limcycle/cli/output/progress.hpp"
+#include "limcycle/questions/asking/units_of.hpp"
 #include "limcycle/reports/adequacy/adequate.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/largest_swing.hpp"
-#include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {

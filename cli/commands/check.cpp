@@ -5,10 +5,10 @@
 #include <CLI/CLI.hpp>
 
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/output.hpp"
 #include "limcycle/models/linear/dense.hpp"
-#include "limcycle/questions/units_of.hpp"
-#include "limcycle/reports/figures/block_diagram.hpp"
+#include "limcycle/questions/asking/units_of.hpp"
+#include "limcycle/reports/figures/blocks/block_diagram.hpp"
 #include "limcycle/reports/figures/fit_picture.hpp"
 #include "limcycle/reports/figures/staircase.hpp"
 

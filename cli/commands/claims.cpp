@@ -3,12 +3,12 @@
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
-#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/option_values.hpp"
-#include "limcycle/cli/output.hpp"
-#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/output/message.hpp"
+#include "limcycle/cli/output/output.hpp"
+#include "limcycle/cli/output/progress.hpp"
 #include "limcycle/reports/claims/claims.hpp"
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/table.hpp"
 
 namespace limcycle {
 namespace {

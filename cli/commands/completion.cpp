@@ -2,7 +2,7 @@
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/help/completion_script.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/output.hpp"
 
 namespace limcycle {
 namespace {

@@ -2,11 +2,11 @@
 
 #include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/option_values.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/message.hpp"
+#include "limcycle/cli/output/output.hpp"
+#include "limcycle/cli/output/progress.hpp"
 #include "limcycle/cli/parameter_range.hpp"
-#include "limcycle/cli/progress.hpp"
 #include "limcycle/questions/dissipativity.hpp"
 #include "limcycle/reports/dissipativity/dissipativity.hpp"
 

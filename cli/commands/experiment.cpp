@@ -3,9 +3,9 @@
 
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/interrupt.hpp"
-#include "limcycle/cli/message.hpp"
-#include "limcycle/cli/output.hpp"
-#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/output/message.hpp"
+#include "limcycle/cli/output/output.hpp"
+#include "limcycle/cli/output/progress.hpp"
 #include "limcycle/reports/experiments/experiment.hpp"
 
 namespace limcycle {

@@ -2,9 +2,9 @@
 
 #include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/message.hpp"
-#include "limcycle/cli/output.hpp"
-#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/output/message.hpp"
+#include "limcycle/cli/output/output.hpp"
+#include "limcycle/cli/output/progress.hpp"
 #include "limcycle/questions/identify.hpp"
 #include "limcycle/reports/identify/identify.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/output.hpp"
 
 namespace limcycle {
 namespace {

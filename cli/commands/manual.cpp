@@ -4,7 +4,7 @@
 #include "build_info.hpp"
 #include "limcycle/cli/command.hpp"
 #include "limcycle/cli/help/manual_page.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/output.hpp"
 
 namespace limcycle {
 namespace {

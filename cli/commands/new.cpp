@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/message.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/message.hpp"
+#include "limcycle/cli/output/output.hpp"
 #include "limcycle/models/linear/plants.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/reports/case_files/new_case.hpp"

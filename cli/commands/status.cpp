@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/output.hpp"
+#include "limcycle/cli/output/output.hpp"
 
 namespace limcycle {
 namespace {

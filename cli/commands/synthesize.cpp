@@ -6,10 +6,10 @@
 #include "limcycle/analysis/study/identify/free/synthesize_free.hpp"
 #include "limcycle/cli/asking_of.hpp"
 #include "limcycle/cli/command.hpp"
-#include "limcycle/cli/message.hpp"
 #include "limcycle/cli/option_values.hpp"
-#include "limcycle/cli/output.hpp"
-#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/output/message.hpp"
+#include "limcycle/cli/output/output.hpp"
+#include "limcycle/cli/output/progress.hpp"
 #include "limcycle/reports/identify/identify.hpp"
 #include "limcycle/reports/identify/synthesize.hpp"
 

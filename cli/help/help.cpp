@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/table.hpp"
 
 namespace limcycle {
 namespace {

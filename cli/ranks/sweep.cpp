@@ -1,12 +1,12 @@
 #include "limcycle/cli/ranks/sweep.hpp"
-#include "limcycle/cli/message.hpp"
+#include "limcycle/cli/output/message.hpp"
 
 #include <CLI/CLI.hpp>
 #include <limits>
 #include <optional>
 
 #include "limcycle/cli/interrupt.hpp"
-#include "limcycle/cli/progress.hpp"
+#include "limcycle/cli/output/progress.hpp"
 #include "limcycle/cli/ranks/rank_sweep.hpp"
 #include "limcycle/cli/ranks/ranks.hpp"
 

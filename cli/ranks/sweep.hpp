@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "limcycle/cli/command.hpp"
-#include "limcycle/questions/asking.hpp"
+#include "limcycle/questions/asking/asking.hpp"
 #include "limcycle/reports/store/store.hpp"
 
 namespace limcycle {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "limcycle/cases/loader/case.hpp"
-#include "limcycle/questions/asking.hpp"
+#include "limcycle/questions/asking/asking.hpp"
 
 namespace limcycle::python {
 

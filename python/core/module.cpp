@@ -9,8 +9,8 @@
 #include "limcycle/python/core/answers.hpp"
 #include "limcycle/python/core/own_law.hpp"
 #include "limcycle/python/core/work.hpp"
-#include "limcycle/questions/answer_of.hpp"
-#include "limcycle/questions/provenance_of.hpp"
+#include "limcycle/questions/asking/answer_of.hpp"
+#include "limcycle/questions/asking/provenance_of.hpp"
 #include "limcycle/reports/case_files/laws.hpp"
 #include "limcycle/reports/export/hdf5.hpp"
 

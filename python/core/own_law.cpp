@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "limcycle/cases/loader/input_error.hpp"
+#include "limcycle/cases/loader/text/input_error.hpp"
 #include "limcycle/models/friction/own_law.hpp"
 
 namespace limcycle::python {

@@ -2,9 +2,9 @@
 #include <string>
 
 #include "limcycle/analysis/study/adequacy/adequate.hpp"
-#include "limcycle/reports/document.hpp"
+#include "limcycle/reports/format/document.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/provenance.hpp"
-#include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
 
 namespace limcycle {

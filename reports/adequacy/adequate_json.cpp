@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "limcycle/reports/adequacy/adequate.hpp"
+#include "limcycle/reports/format/json_values.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/frame.hpp"
-#include "limcycle/reports/json_values.hpp"
-#include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limcycle/reports/adequacy/adequate.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/precision/precision.hpp"
 
 namespace limcycle {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "limcycle/reports/case_files/laws.hpp"
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/table.hpp"
 
 namespace limcycle {
 namespace {

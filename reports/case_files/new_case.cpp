@@ -13,8 +13,8 @@
 #include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/reports/case_files/laws.hpp"
 #include "limcycle/reports/case_files/typical_values.hpp"
-#include "limcycle/reports/number.hpp"
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/number.hpp"
+#include "limcycle/reports/format/table.hpp"
 
 namespace limcycle {
 namespace {

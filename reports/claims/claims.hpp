@@ -4,9 +4,9 @@
 
 #include "limcycle/analysis/status.hpp"
 #include "limcycle/analysis/study/claims/run_claims.hpp"
-#include "limcycle/reports/document.hpp"
+#include "limcycle/reports/format/document.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/provenance.hpp"
-#include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "limcycle/reports/continuation/continue.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {

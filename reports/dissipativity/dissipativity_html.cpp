@@ -3,7 +3,7 @@
 
 #include "limcycle/reports/dissipativity/dissipativity.hpp"
 #include "limcycle/reports/experiments/experiment.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "limcycle/reports/experiments/experiment.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/frame.hpp"
-#include "limcycle/reports/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "limcycle/reports/experiments/experiment.hpp"
-#include "limcycle/reports/figures/svg_axes.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/figures/drawing/svg_axes.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {

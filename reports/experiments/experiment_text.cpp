@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limcycle/reports/experiments/experiment.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 
 namespace limcycle {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "limcycle/reports/json_values.hpp"
+#include "limcycle/reports/format/json_values.hpp"
 
 namespace limcycle {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/reports/figures/drawing/thin.hpp"
 #include "limcycle/reports/figures/multipliers.hpp"
 #include "limcycle/reports/figures/nyquist_figure.hpp"
-#include "limcycle/reports/figures/thin.hpp"
-#include "limcycle/reports/json_values.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/json_values.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/text.hpp"
 
 namespace limcycle {

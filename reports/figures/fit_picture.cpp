@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/reports/figures/svg_parts.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/figures/drawing/svg_parts.hpp"
+#include "limcycle/reports/format/number.hpp"
 
 namespace limcycle {
 namespace {

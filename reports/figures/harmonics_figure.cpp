@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "limcycle/analysis/orbit/cycle/spectrum.hpp"
-#include "limcycle/reports/json_values.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/json_values.hpp"
+#include "limcycle/reports/format/number.hpp"
 
 namespace limcycle {
 namespace {

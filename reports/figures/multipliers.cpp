@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/json_values.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/json_values.hpp"
+#include "limcycle/reports/format/number.hpp"
 
 namespace limcycle {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limcycle/reports/figures/figures.hpp"
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/table.hpp"
 
 namespace limcycle {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "limcycle/reports/figures/drawn_blocks.hpp"
+#include "limcycle/reports/figures/blocks/drawn_blocks.hpp"
 
 namespace limcycle {
 namespace {

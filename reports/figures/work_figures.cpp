@@ -1,7 +1,7 @@
 #include "limcycle/reports/figures/work_figures.hpp"
 
 #include <cmath>
-#include "limcycle/reports/json_values.hpp"
+#include "limcycle/reports/format/json_values.hpp"
 
 namespace limcycle {
 namespace {}  // namespace

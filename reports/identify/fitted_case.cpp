@@ -5,8 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/identify/identify.hpp"
-#include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "limcycle/analysis/study/identify/identify.hpp"
-#include "limcycle/reports/document.hpp"
+#include "limcycle/reports/format/document.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace limcycle {

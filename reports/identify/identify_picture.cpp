@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/figures/svg_parts.hpp"
+#include "limcycle/reports/figures/drawing/svg_parts.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/identify/identify.hpp"
-#include "limcycle/reports/number.hpp"
 
 namespace limcycle {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/reports/format/number.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/identify/identify.hpp"
-#include "limcycle/reports/number.hpp"
-#include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
 #include "limcycle/reports/words.hpp"
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/identify/synthesize.hpp"
+#include "limcycle/analysis/study/identify/record/synthesize.hpp"
 #include "limcycle/reports/provenance.hpp"
 
 namespace limcycle {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <functional>
 
-#include "limcycle/reports/figures/svg_parts.hpp"
+#include "limcycle/reports/figures/drawing/svg_parts.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/map/map.hpp"
-#include "limcycle/reports/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/map/map.hpp"
-#include "limcycle/reports/number.hpp"
 #include "limcycle/reports/predict/answer.hpp"
 
 namespace limcycle {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "limcycle/reports/figures/figures.hpp"
-#include "limcycle/reports/json_values.hpp"
+#include "limcycle/reports/format/json_values.hpp"
 
 namespace limcycle {
 namespace {

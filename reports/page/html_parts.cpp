@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "limcycle/reports/figures/figures.hpp"
-#include "limcycle/reports/json_values.hpp"
+#include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/page/case_in_page.hpp"
 #include "limcycle/reports/page/page.hpp"
 

@@ -3,9 +3,9 @@
 #include <string_view>
 #include <vector>
 
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/page/page.hpp"
 #include "limcycle/reports/provenance.hpp"
-#include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 

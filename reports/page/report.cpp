@@ -6,10 +6,10 @@
 
 #include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/dissipativity/dissipativity.hpp"
-#include "limcycle/reports/figures/block_diagram.hpp"
+#include "limcycle/reports/figures/blocks/block_diagram.hpp"
+#include "limcycle/reports/figures/drawing/plotly.hpp"
 #include "limcycle/reports/figures/figures.hpp"
 #include "limcycle/reports/figures/harmonics_figure.hpp"
-#include "limcycle/reports/figures/plotly.hpp"
 #include "limcycle/reports/in_units.hpp"
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/page/html_parts.hpp"

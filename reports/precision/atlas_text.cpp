@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/precision/atlas.hpp"
 
 namespace limcycle {

@@ -2,10 +2,10 @@
 #include <string>
 
 #include "limcycle/analysis/study/precision/precision.hpp"
-#include "limcycle/reports/document.hpp"
 #include "limcycle/reports/figures/figures.hpp"
+#include "limcycle/reports/format/document.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/provenance.hpp"
-#include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
 
 namespace limcycle {

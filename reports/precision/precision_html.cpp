@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "limcycle/reports/figures/plotly.hpp"
+#include "limcycle/reports/figures/drawing/plotly.hpp"
 #include "limcycle/reports/figures/work_figures.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
 #include "limcycle/reports/precision/precision.hpp"

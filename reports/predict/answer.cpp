@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/study/predict/interest.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/words.hpp"
 
 namespace limcycle {

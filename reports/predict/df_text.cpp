@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/frequency/describing_function/drive_dependence.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/text.hpp"
 
 namespace limcycle {

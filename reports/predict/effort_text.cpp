@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/text.hpp"
 
 namespace limcycle {

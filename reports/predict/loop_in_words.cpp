@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "limcycle/models/diagram/assemble.hpp"
-#include "limcycle/reports/figures/block_diagram.hpp"
-#include "limcycle/reports/figures/block_words.hpp"
+#include "limcycle/reports/figures/blocks/block_diagram.hpp"
+#include "limcycle/reports/figures/blocks/block_words.hpp"
 #include "limcycle/reports/figures/staircase.hpp"
 
 namespace limcycle {

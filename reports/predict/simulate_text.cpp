@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/text.hpp"
 
 namespace limcycle {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limcycle/analysis/study/remedy/loop_costs.hpp"
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/units.hpp"
 
 namespace limcycle {

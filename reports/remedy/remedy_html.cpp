@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/figures/svg_axes.hpp"
-#include "limcycle/reports/figures/svg_parts.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/figures/drawing/svg_axes.hpp"
+#include "limcycle/reports/figures/drawing/svg_parts.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 

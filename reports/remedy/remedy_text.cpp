@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/remedy/costs.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 

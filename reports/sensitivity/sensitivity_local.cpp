@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 
 namespace limcycle {

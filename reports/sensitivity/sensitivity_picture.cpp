@@ -5,8 +5,8 @@
 #include <functional>
 #include <numeric>
 
-#include "limcycle/reports/figures/svg_parts.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/figures/drawing/svg_parts.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 
 namespace limcycle {

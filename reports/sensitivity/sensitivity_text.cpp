@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 
 namespace limcycle {

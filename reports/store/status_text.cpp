@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "limcycle/reports/format/number.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/frame.hpp"
-#include "limcycle/reports/number.hpp"
 #include "limcycle/reports/store/status.hpp"
-#include "limcycle/reports/table.hpp"
 
 namespace limcycle {
 namespace {

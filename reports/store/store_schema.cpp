@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "limcycle/reports/json_values.hpp"
+#include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/memory.hpp"
 
 namespace limcycle {

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "limcycle/analysis/study/tune/tune.hpp"
-#include "limcycle/reports/document.hpp"
+#include "limcycle/reports/format/document.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/provenance.hpp"
-#include "limcycle/reports/table.hpp"
 #include "limcycle/reports/units.hpp"
 
 namespace limcycle {

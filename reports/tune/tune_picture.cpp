@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "limcycle/reports/figures/svg_parts.hpp"
-#include "limcycle/reports/number.hpp"
+#include "limcycle/reports/figures/drawing/svg_parts.hpp"
+#include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/tune/tune.hpp"
 

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <string>
 
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/table.hpp"
 
 namespace limcycle::test {
 

@@ -1,7 +1,8 @@
 """The other commands on random loops: maps, margins, branches, derivatives, energy, remedies, against predict and simulation."""
 
-from . import check_branch, check_derivatives, check_map, check_margin, check_passivity, check_remedy, families, random_laws, report
-from .asked import Asked
+from . import families, random_laws, report
+from .checks import check_branch, check_derivatives, check_map, check_margin, check_passivity, check_remedy
+from .checks.asked import Asked
 
 COUNTS = {"cells": 100, "margins": 40, "branches": 20, "derivatives": 40, "dissipativity": 20, "remedies": 0}
 OFFSET = 2 * 10**6  # of the indices of the loops of each command, in steps of 10^6

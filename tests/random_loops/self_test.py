@@ -2,7 +2,8 @@
 
 import math
 
-from . import attractor, loop_model, planted
+from . import attractor, loop_model
+from .checks import planted
 from .motion import PiecewiseLoop
 from .truth import Truth, in_mode
 

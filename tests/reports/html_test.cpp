@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "limcycle/reports/figures/drawing/plotly.hpp"
 #include "limcycle/reports/figures/figures.hpp"
-#include "limcycle/reports/figures/plotly.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"

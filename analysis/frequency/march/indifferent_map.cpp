@@ -53,6 +53,9 @@ VectorXd indifferent_correction(const MatrixXd& m, const VectorXd& right, bool n
   const std::vector<Eigen::Index> changed = changed_states(m, right);
   VectorXd step = VectorXd::Zero(right.size());
   amplification = 1.0;
+  // Farther away the motion may still reach what is kept so far.
+  constexpr double close = 1e-2;
+  if (std::ssize(changed) < right.size() && right.cwiseAbs().maxCoeff() > close) return step;
   if (!changed.empty()) step(changed) = correction_of(m(changed, changed), right(changed), near, amplification);
   return step;
 }

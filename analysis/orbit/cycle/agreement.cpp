@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/orbit/settle/outcome_watch.hpp"
+#include "limcycle/analysis/orbit/settle/watch/outcome_watch.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {

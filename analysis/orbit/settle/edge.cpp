@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
-#include "limcycle/analysis/orbit/settle/turning_points.hpp"
+#include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
 
 namespace limcycle {
 namespace {

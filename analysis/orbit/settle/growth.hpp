@@ -2,7 +2,7 @@
 #include <functional>
 
 #include "limcycle/analysis/cycle.hpp"
-#include "limcycle/analysis/orbit/settle/turning_points.hpp"
+#include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {

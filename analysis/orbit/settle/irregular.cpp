@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-#include "limcycle/analysis/orbit/settle/outcome_watch.hpp"
+#include "limcycle/analysis/orbit/settle/watch/outcome_watch.hpp"
 
 namespace limcycle {
 namespace {

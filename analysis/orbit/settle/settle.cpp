@@ -14,8 +14,8 @@
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
 #include "limcycle/analysis/orbit/settle/known_cycle.hpp"
 #include "limcycle/analysis/orbit/settle/surroundings.hpp"
-#include "limcycle/analysis/orbit/settle/switching_watch.hpp"
-#include "limcycle/analysis/orbit/settle/turning_points.hpp"
+#include "limcycle/analysis/orbit/settle/watch/switching_watch.hpp"
+#include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
 
 namespace limcycle {
 namespace {

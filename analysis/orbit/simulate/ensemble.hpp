@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limcycle/analysis/lanes/isa.hpp"
-#include "limcycle/analysis/orbit/settle/outcome_watch.hpp"
+#include "limcycle/analysis/orbit/settle/watch/outcome_watch.hpp"
 
 namespace limcycle {
 

@@ -7,7 +7,7 @@
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/steppers/stepper_limits.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/orbit/settle/outcome_watch.hpp"
+#include "limcycle/analysis/orbit/settle/watch/outcome_watch.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/delay.hpp"
 #include "limcycle/models/linear/dense.hpp"

@@ -7,7 +7,7 @@
 #include "limcycle/analysis/frequency/harmonic_balance/harmonic_balance.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/adequacy/scene_simulation.hpp"
-#include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 #include "limcycle/analysis/study/precision/work_point.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"

@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
-#include "limcycle/analysis/orbit/settle/turning_points.hpp"
+#include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/cycle_search.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "limcycle/analysis/study/balance/root_spread.hpp"
+#include "limcycle/analysis/study/balance/roots/root_spread.hpp"
 #include "limcycle/analysis/study/predict/failure_note.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"
 

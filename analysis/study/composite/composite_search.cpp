@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/analysis/study/balance/within_data.hpp"
+#include "limcycle/analysis/study/balance/roots/within_data.hpp"
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 
 namespace limcycle {

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "limcycle/analysis/study/identify/friction_response.hpp"
+#include "limcycle/analysis/study/identify/record/friction_response.hpp"
 #include "limcycle/models/dual.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/identify/friction_response.hpp"
-#include "limcycle/analysis/study/identify/record.hpp"
+#include "limcycle/analysis/study/identify/record/friction_response.hpp"
+#include "limcycle/analysis/study/identify/record/record.hpp"
 
 namespace limcycle {
 

@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/study/identify/fit.hpp"
 #include "limcycle/analysis/study/identify/profile.hpp"
-#include "limcycle/analysis/study/identify/synthesize.hpp"
+#include "limcycle/analysis/study/identify/record/synthesize.hpp"
 
 namespace limcycle {
 namespace {

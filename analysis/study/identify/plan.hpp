@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "limcycle/analysis/study/identify/record.hpp"
+#include "limcycle/analysis/study/identify/record/record.hpp"
 
 namespace limcycle {
 

@@ -9,7 +9,7 @@
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/orbit/cycle/shooting.hpp"
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
 

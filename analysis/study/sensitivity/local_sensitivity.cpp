@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/orbit/derivatives/cycle_derivatives.hpp"
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 
 namespace limcycle {
 namespace {

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "limcycle/cases/loader/input_error.hpp"
+#include "limcycle/cases/loader/text/input_error.hpp"
 
 namespace limcycle {
 

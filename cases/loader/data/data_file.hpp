@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "limcycle/cases/loader/data/csv_reader.hpp"
-#include "limcycle/cases/loader/section.hpp"
+#include "limcycle/cases/loader/text/section.hpp"
 
 namespace limcycle::case_file {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/cases/loader/section.hpp"
+#include "limcycle/cases/loader/text/section.hpp"
 
 namespace limcycle::case_file {
 

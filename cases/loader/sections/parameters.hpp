@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "limcycle/cases/loader/section.hpp"
+#include "limcycle/cases/loader/text/section.hpp"
 #include "limcycle/models/catalogue.hpp"
 
 namespace limcycle {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "limcycle/cases/loader/formula.hpp"
 #include "limcycle/cases/loader/sections/sections.hpp"
+#include "limcycle/cases/loader/text/formula.hpp"
 
 namespace limcycle {
 namespace case_file {

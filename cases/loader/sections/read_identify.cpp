@@ -2,7 +2,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "limcycle/analysis/study/identify/friction_response.hpp"
+#include "limcycle/analysis/study/identify/record/friction_response.hpp"
 #include "limcycle/cases/loader/data/data_file.hpp"
 #include "limcycle/cases/loader/sections/sections.hpp"
 #include "limcycle/models/catalogue.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include "limcycle/cases/loader/case.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
-#include "limcycle/cases/loader/section.hpp"
+#include "limcycle/cases/loader/text/section.hpp"
 
 namespace limcycle::case_file {
 

@@ -6,7 +6,7 @@
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
-#include "limcycle/analysis/orbit/settle/standstill.hpp"
+#include "limcycle/analysis/orbit/settle/watch/standstill.hpp"
 #include "limcycle/analysis/orbit/simulate/ensemble.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/gantry.hpp"

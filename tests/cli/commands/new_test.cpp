@@ -5,7 +5,7 @@
 #include "limcycle/cases/loader/case.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
 #include "limcycle/reports/case_files/new_case.hpp"
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/tests/cli/program.hpp"
 #include "limcycle/tests/share.hpp"
 

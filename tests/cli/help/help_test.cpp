@@ -4,7 +4,7 @@
 #include <set>
 #include <sstream>
 
-#include "limcycle/reports/table.hpp"
+#include "limcycle/reports/format/table.hpp"
 #include "limcycle/tests/cli/program.hpp"
 #include "limcycle/tests/lines.hpp"
 #include "limcycle/tests/setting.hpp"

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "limcycle/reports/figures/drawing/plotly.hpp"
 #include "limcycle/reports/figures/harmonics_figure.hpp"
-#include "limcycle/reports/figures/plotly.hpp"
 #include "limcycle/reports/page/case_in_page.hpp"
 #include "limcycle/tests/reports/markup.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "limcycle/reports/figures/svg_parts.hpp"
+#include "limcycle/reports/figures/drawing/svg_parts.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 
 using namespace limcycle;

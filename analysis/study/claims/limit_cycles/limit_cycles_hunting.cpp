@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
 
 namespace limcycle::cycle_claims {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <numbers>
 
-#include "limcycle/analysis/study/balance/df_roots.hpp"
 #include "limcycle/analysis/study/balance/orbit_guess.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
 #include "limcycle/models/linear/dense.hpp"
 

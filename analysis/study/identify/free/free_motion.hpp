@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/identify/record.hpp"
+#include "limcycle/analysis/study/identify/record/record.hpp"
 #include "limcycle/models/linear/plants.hpp"
 
 namespace limcycle {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "limcycle/analysis/study/identify/friction_response.hpp"
+#include "limcycle/analysis/study/identify/record/friction_response.hpp"
 #include "limcycle/models/element/element.hpp"
 
 namespace limcycle {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "limcycle/analysis/study/identify/free/free_motion.hpp"
-#include "limcycle/analysis/study/identify/synthesize.hpp"
+#include "limcycle/analysis/study/identify/record/synthesize.hpp"
 
 namespace limcycle {
 

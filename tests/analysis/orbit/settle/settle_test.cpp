@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "limcycle/analysis/orbit/settle/turning_points.hpp"
+#include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/study/balance/df_roots.hpp"
 #include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/tests/analysis/predictions.hpp"
 #include "limcycle/tests/loops.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/study/identify/fit.hpp"
-#include "limcycle/analysis/study/identify/synthesize.hpp"
+#include "limcycle/analysis/study/identify/record/synthesize.hpp"
 #include "limcycle/analysis/study/sensitivity/global/random_stream.hpp"
 #include "limcycle/tests/analysis/study/identify/rigs.hpp"
 #include "limcycle/tests/share.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/study/identify/identify.hpp"
-#include "limcycle/analysis/study/identify/synthesize.hpp"
+#include "limcycle/analysis/study/identify/record/synthesize.hpp"
 #include "limcycle/tests/analysis/study/identify/rigs.hpp"
 
 using namespace limcycle;

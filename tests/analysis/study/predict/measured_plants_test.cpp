@@ -1,9 +1,9 @@
 /// Loops with plants that are known by data, against the same loops with the known plant.
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/study/balance/df_roots.hpp"
-#include "limcycle/analysis/study/balance/root_spread.hpp"
-#include "limcycle/analysis/study/balance/within_data.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
+#include "limcycle/analysis/study/balance/roots/root_spread.hpp"
+#include "limcycle/analysis/study/balance/roots/within_data.hpp"
 #include "limcycle/analysis/study/composite/composite_predictions.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/measured/plants_of_loop.hpp"

@@ -3,7 +3,7 @@
 
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/return_map.hpp"
-#include "limcycle/analysis/orbit/settle/rest_watch.hpp"
+#include "limcycle/analysis/orbit/settle/watch/rest_watch.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/models/linear/dense.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/analysis/study/balance/df_roots.hpp"
+#include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/tests/cycle_knobs.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "limcycle/analysis/study/claims/run_claims.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
-#include "limcycle/cases/loader/formula.hpp"
+#include "limcycle/cases/loader/text/formula.hpp"
 #include "limcycle/models/friction/dry/coulomb.hpp"
 #include "limcycle/tests/cases/message.hpp"
 
