@@ -43,7 +43,7 @@ void need_done(herr_t code, const std::string& what) {
 
 /// Values of the JSON document that stand in one dataset or group: one, or those of a list in the order of `sizes`
 /// (the last varies fastest). A null pointer is a value that is not there.
-struct Cells {
+struct HdfCells {
   std::vector<const Json*> values;
   std::vector<hsize_t> sizes;  ///< empty: one value
 };
@@ -51,7 +51,7 @@ struct Cells {
 bool is_there(const Json* value) { return value != nullptr && !value->is_null(); }
 
 template <class Test>
-bool any(const Cells& cells, Test&& test) {
+bool any(const HdfCells& cells, Test&& test) {
   return std::ranges::any_of(cells.values, [&](const Json* value) { return is_there(value) && test(*value); });
 }
 
@@ -62,8 +62,8 @@ bool holds_objects(const Json& list) {
 }
 
 /// The elements of lists, all as long as the longest.
-Cells opened(const Cells& lists) {
-  Cells out;
+HdfCells opened(const HdfCells& lists) {
+  HdfCells out;
   std::size_t longest = 0;
   for (const Json* list : lists.values)
     if (is_there(list)) longest = std::max(longest, list->is_array() ? list->size() : 1);
@@ -99,14 +99,14 @@ class Hdf5Writer {
   }
 
   /// Writes the members of an object, or columns of several, into a group.
-  void members(hid_t group, const Cells& objects) {
+  void members(hid_t group, const HdfCells& objects) {
     std::vector<std::string> keys;
     for (const Json* object : objects.values)
       if (is_there(object))
         for (const auto& [key, value] : object->items())
           if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
     for (const std::string& key : keys) {
-      Cells column{.values = {}, .sizes = objects.sizes};
+      HdfCells column{.values = {}, .sizes = objects.sizes};
       column.values.reserve(objects.values.size());
       for (const Json* object : objects.values) {
         const auto found = is_there(object) ? object->find(key) : Json::const_iterator();
@@ -117,7 +117,7 @@ class Hdf5Writer {
   }
 
  private:
-  void add(hid_t parent, const std::string& name, const Cells& cells) {
+  void add(hid_t parent, const std::string& name, const HdfCells& cells) {
     if (any(cells, [](const Json& one) { return one.is_object(); })) {
       members(new_group(parent, name), cells);
     } else if (any(cells, holds_objects)) {
@@ -132,16 +132,16 @@ class Hdf5Writer {
   }
 
   /// Lists of objects: one as columns, several as one group each.
-  void add_rows(hid_t parent, const std::string& name, const Cells& lists) {
+  void add_rows(hid_t parent, const std::string& name, const HdfCells& lists) {
     const Hdf5Id group = new_group(parent, name);
     if (lists.sizes.empty()) {
-      const Cells rows = opened(lists);
+      const HdfCells rows = opened(lists);
       note_rows(group, rows.values.size());
       members(group, rows);
       return;
     }
     for (std::size_t i = 0; i < lists.values.size(); ++i) {
-      const Cells one{.values = {lists.values[i]}, .sizes = {}};
+      const HdfCells one{.values = {lists.values[i]}, .sizes = {}};
       if (is_there(lists.values[i]) && holds_objects(*lists.values[i]))
         add_rows(group, std::to_string(i), one);
       else
@@ -162,7 +162,7 @@ class Hdf5Writer {
     need_done(H5Awrite(attribute, H5T_NATIVE_UINT64, &value), "write the attribute rows");
   }
 
-  void dataset(hid_t parent, const std::string& name, const Cells& cells, hid_t in_file, hid_t in_memory,
+  void dataset(hid_t parent, const std::string& name, const HdfCells& cells, hid_t in_file, hid_t in_memory,
                const void* values) const {
     const Hdf5Id space(cells.sizes.empty()
                            ? H5Screate(H5S_SCALAR)
@@ -174,7 +174,7 @@ class Hdf5Writer {
       need_done(H5Dwrite(data, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write the dataset " + name);
   }
 
-  void add_numbers(hid_t parent, const std::string& name, const Cells& cells) const {
+  void add_numbers(hid_t parent, const std::string& name, const HdfCells& cells) const {
     // Seeds may need all 64 bits.
     constexpr std::uint64_t exact = std::uint64_t{1} << std::numeric_limits<double>::digits;
     if (any(cells, [](const Json& one) { return one.is_number_unsigned() && one.get<std::uint64_t>() > exact; })) {
@@ -192,7 +192,7 @@ class Hdf5Writer {
     dataset(parent, name, cells, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, numbers.data());
   }
 
-  void add_texts(hid_t parent, const std::string& name, const Cells& cells) const {
+  void add_texts(hid_t parent, const std::string& name, const HdfCells& cells) const {
     if (cells.sizes.size() > 1) return add_text_lists(parent, name, cells);
     std::vector<std::string> texts;
     std::size_t longest = 1;
@@ -212,7 +212,7 @@ class Hdf5Writer {
   }
 
   /// Octave reads no table of texts.
-  void add_text_lists(hid_t parent, const std::string& name, const Cells& lists) const {
+  void add_text_lists(hid_t parent, const std::string& name, const HdfCells& lists) const {
     const Hdf5Id group = new_group(parent, name);
     const std::size_t count = lists.sizes.front(), each = count > 0 ? lists.values.size() / count : 0;
     for (std::size_t i = 0; i < count; ++i) {
