@@ -15,8 +15,8 @@ constexpr double panel_width = 206, panel_height = 140, left_margin = 44, top_ma
                  panel_gap = 16;
 constexpr double cell_width = left_margin + panel_width + panel_gap,
                  cell_height = top_margin + panel_height + bottom_margin;
-constexpr int columns = 4;
-constexpr double picture_width = columns * cell_width;
+constexpr int picture_columns = 4;
+constexpr double picture_width = picture_columns * cell_width;
 constexpr std::size_t colours = 10;
 
 constexpr std::string_view figures_style =
@@ -100,11 +100,11 @@ std::pair<std::string, double> figure_svg(const ExperimentFigure& figure, double
     y += 18.0;
   }
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-    const std::size_t row = i / columns, column = i % columns;
+    const std::size_t row = i / picture_columns, column = i % picture_columns;
     out += panel_svg(figure, figure.panels[i], legend, static_cast<double>(column) * cell_width,
                      y + static_cast<double>(row) * cell_height);
   }
-  const std::size_t rows = (figure.panels.size() + columns - 1) / columns;
+  const std::size_t rows = (figure.panels.size() + picture_columns - 1) / picture_columns;
   return {out, y + static_cast<double>(rows) * cell_height - top};
 }
 
