@@ -107,6 +107,10 @@ class Settling {
       if (turning_.points().size() > 1 && turning_.swing(0) > large_swing * (high_ - low_)) ++large_turns_;
       look_at_swings();
     }
+    // Between its swings a body may stick for long while it rings.
+    if (!decided_ && of_large_.turning.feed(march_.t(), y) &&
+        of_large_.turning.points().size() < turning_.points().size())
+      look_for_cycle(of_large_);
     if (!decided_ && rubs_elsewhere_ && of_rubbing_.turning.feed(march_.t(), rubbing())) look_for_cycle(of_rubbing_);
     if (decided_) return;
     if (auto still = stillness_.look(march_.t(), march_.x(), dx_, field_.modes())) come_to(*still);
@@ -391,7 +395,7 @@ class Settling {
   StillnessWatch stillness_;
   SwitchingWatch switching_;
   /// A body behind a spring may be held for long while y swings on: then its own displacement shows a period.
-  Swings of_y_, of_rubbing_;
+  Swings of_y_, of_rubbing_, of_large_{TurningPoints(true)};
   const TurningPoints& turning_ = of_y_.turning;
   bool rubs_elsewhere_;
   Settled result_;

@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/derivative_notes.hpp"
 #include "limcycle/analysis/motion/sampling.hpp"
+#include "limcycle/analysis/motion/steppers/stepper_limits.hpp"
 #include "limcycle/analysis/orbit/settle/load_step.hpp"
 #include "limcycle/analysis/orbit/settle/stop_map.hpp"
 #include "limcycle/analysis/short_number.hpp"
@@ -140,7 +141,9 @@ class PredictionStudy {
   /// Looks for stable cycles whose range of attraction no start has met, by the map from one stop to the next.
   void look_from_stops() {
     constexpr double near = 1.3;
-    auto map = StopMap::of(time_, hunt_->rtol(), options_.stop);
+    constexpr double loose = 1e-5;  // for places to start from; what begins there is simulated as all else
+    const double rtol = std::max(hunt_->rtol(), std::min(0.1 * loosest_stiff_tolerance(time_), loose));
+    auto map = StopMap::of(time_, rtol, options_.stop);
     if (!map || starts_.empty() || stopped()) return;
     const double most = starts_.front().place;
     for (const double p : map->growing(most * box_.amplitude_min / box_.amplitude_max, most)) {

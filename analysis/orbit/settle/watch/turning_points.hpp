@@ -8,9 +8,12 @@ namespace limcycle {
 /// Turning points of a signal, found as its samples arrive: a reversal counts once the signal has returned by `share`
 /// of the last swing, so that the bristle's tremble at each stop is not taken for an oscillation. When no reversal has
 /// counted for twice as long as ever before, each uncounted one lowers that share, so that a small oscillation after a
-/// large first swing is found in the end.
+/// large first swing is found in the end. A body that begins with a fast swing and then sticks for long on a bristle
+/// that rings turns at every ring then, unless `only_large` swings count: those whose share is never lowered.
 class TurningPoints {
  public:
+  explicit TurningPoints(bool only_large = false) : only_large_(only_large) {}
+
   struct Point {
     double t, y;
   };
@@ -30,7 +33,7 @@ class TurningPoints {
       extreme_ = {t, y};
       return false;
     }
-    if (reversed && t - extreme_.t > 2.0 * longest_) part_ *= 0.8;
+    if (reversed && !only_large_ && t - extreme_.t > 2.0 * longest_) part_ *= 0.8;
     const double last_swing = points_.empty() ? 0.0 : std::abs(extreme_.y - points_.back().y);
     if (std::abs(y - extreme_.y) <= part_ * last_swing) return false;
     if (!points_.empty()) longest_ = std::max(longest_, extreme_.t - points_.back().t);
@@ -64,7 +67,7 @@ class TurningPoints {
   double last_ = 0.0, part_ = share, longest_ = 0.0;
   int trend_ = 0;
   int direction_ = 0;
-  bool started_ = false;
+  bool started_ = false, only_large_;
 };
 
 }  // namespace limcycle

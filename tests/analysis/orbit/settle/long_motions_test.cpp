@@ -144,3 +144,22 @@ TEST_CASE("settle: a body that trembles in loops too small for its return points
     CHECK(settled.trace.y.back() == Approx(start).epsilon(1e-3));
   }
 }
+
+TEST_CASE("a body that sticks for seconds while its bristle rings at 300 Hz: its swings are told from the rings") {
+  // Loop 5 of seed 90210 of tests/random_loops. The first swing is fast, so that every ring once counted as a turn.
+  auto law = with_levels<ElastoPlastic<double>>(86.4234, 55.2095);
+  law.vs = 0.00267951;
+  law.sigma0 = 8.33781e7;
+  Pid controller = pid(15901.7, 56130.5, 697.193);
+  controller.tf = 0.00167203;
+  const Loop loop = loop_of(Mass{23.5079, 113.265, 0.0}, controller, Element(law));
+  SettleOptions options;
+  options.amplitude_floor = 1.699e-8;
+  options.amplitude_ceiling = 170.0;
+  options.fewest_turns = 8;
+  const auto settled = settle(loop, displaced(loop, 0.001699), options);
+  REQUIRE(settled.outcome == Outcome::cycle);
+  CHECK(settled.shot->cycle.period == Approx(4.8312).epsilon(1e-4));
+  CHECK(settled.shot->cycle.amplitude == Approx(0.0010933).epsilon(1e-4));
+  CHECK(settled.steps < 150000);
+}
