@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <stdexcept>
 
 #include "limcycle/analysis/lanes/elimination.hpp"
@@ -10,9 +11,29 @@ namespace limcycle {
 
 std::optional<LinearPeriod> LinearPeriod::of(const Element& element) {
   if (const auto* lugre = element.as<LuGre<double>>()) return LinearPeriod(Law(*lugre));
-  if (const auto* dahl = element.as<Dahl<double>>(); dahl != nullptr && dahl->is_linear_in_state())
-    return LinearPeriod(Law(*dahl));
-  return std::nullopt;
+  if (const auto* dahl = element.as<Dahl<double>>()) {
+    if (dahl->is_linear_in_state()) return LinearPeriod(Law(*dahl));
+    return std::nullopt;
+  }
+  if (element.states() != 1 || element.has_modes() || element.follows_position()) return std::nullopt;
+  return LinearPeriod(Law(Supposed(element)));
+}
+
+double LinearPeriod::Supposed::rate(const Input<double>& in, double z) const {
+  double dz = 0.0;
+  element_.rate(in, Mode{}, {&z, 1}, {&dz, 1});
+  return dz;
+}
+
+LinearRate<double> LinearPeriod::Supposed::linear_rate(const Input<double>& in) const {
+  const double source = rate(in, 0.0);
+  return {source, (source - rate(in, scale_)) / scale_};
+}
+
+bool LinearPeriod::Supposed::agrees(const Input<double>& in, const LinearRate<double>& linear, double z) const {
+  constexpr double rounding = 1e-12;
+  const double slowed = linear.decay * z;
+  return std::abs(rate(in, z) - (linear.source - slowed)) <= rounding * (std::abs(linear.source) + std::abs(slowed));
 }
 
 void LinearPeriod::place(const PrescribedMotion& motion, const std::vector<Panel>& panels, const RadauIIA& table) {
@@ -73,18 +94,40 @@ void LinearPeriod::march(const RadauIIA& table, double frequency) {
   }
 }
 
+/// The output of the motion that begins in the state `start`, into `sums`; its largest state. Empty if the rate is not
+/// linear there.
+std::optional<double> LinearPeriod::integrate(double start, HarmonicSums& sums) const {
+  return std::visit(
+      [&]<class L>(const L& law) -> std::optional<double> {
+        double peak = std::abs(start);
+        for (const Node& node : nodes_) {
+          const Input<double>& in = node.motion.in;
+          const double z = node.particular + start * node.homogeneous;
+          peak = std::max(peak, std::abs(z));
+          if constexpr (std::same_as<L, Supposed>) {
+            if (!law.agrees(in, node.rate, z)) return std::nullopt;
+            sums.node(node.motion, node.weight, law.output(in, z));
+          } else {
+            const LinearOutput<double> output = law.linear_output(in);
+            const double rate = node.rate.source - node.rate.decay * z;
+            sums.node(node.motion, node.weight, output.stiffness * z + output.damping * rate + output.rest);
+          }
+        }
+        return peak;
+      },
+      law_);
+}
+
 std::optional<PeriodicState> LinearPeriod::find(const PrescribedMotion& motion, const PeriodMesh& mesh, int stages,
                                                 bool half, HarmonicSums& sums) {
+  if (!is_linear_) return std::nullopt;
   const RadauIIA& table = radau_iia(stages);
   nodes_.clear();
   place(motion, mesh.first, table);
   if (!half) place(motion, mesh.second, table);
   std::visit(
       [&](const auto& law) {
-        for (Node& node : nodes_) {
-          node.rate = law.linear_rate(node.motion.in);
-          node.output = law.linear_output(node.motion.in);
-        }
+        for (Node& node : nodes_) node.rate = law.linear_rate(node.motion.in);
       },
       law_);
   march(table, motion.frequency());
@@ -92,20 +135,17 @@ std::optional<PeriodicState> LinearPeriod::find(const PrescribedMotion& motion, 
   const double lost = half ? 1.0 + last.homogeneous : 1.0 - last.homogeneous;
   if (lost < 1e-12) return std::nullopt;
   const double start = (half ? -last.particular : last.particular) / lost;
-  double peak = std::abs(start);
-  for (const Node& node : nodes_) {
-    const double z = node.particular + start * node.homogeneous, rate = node.rate.source - node.rate.decay * z;
-    peak = std::max(peak, std::abs(z));
-    sums.node(node.motion, node.weight, node.output.stiffness * z + node.output.damping * rate + node.output.rest);
-  }
+  const auto peak = integrate(start, sums);
+  is_linear_ = peak.has_value();
+  if (!peak) return std::nullopt;
   const double own = std::visit([](const auto& law) { return law.state_scale(0); }, law_);
   PeriodicState found;
-  found.status = std::isfinite(peak) ? Status::converged : Status::not_finite;
+  found.status = std::isfinite(*peak) ? Status::converged : Status::not_finite;
   found.state.z = {start};
   found.state.sensitivity = {last.homogeneous};
   found.symmetric = half;
   found.defect = 1e-15 * std::max(1.0, 1.0 / lost);
-  found.scale = {peak > 0.0 ? std::min(own, peak) : own};
+  found.scale = {*peak > 0.0 ? std::min(own, *peak) : own};
   return found;
 }
 

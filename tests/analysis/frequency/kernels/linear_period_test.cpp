@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "limcycle/models/friction/own_law.hpp"
 #include "limcycle/tests/analysis/frequency/random_points.hpp"
 #include "limcycle/tests/share.hpp"
 
@@ -65,6 +66,52 @@ TEST_CASE("period of a linear law: the error that it states is true") {
     INFO("A " << A << ", w " << w << ", bias " << point.bias);
     CHECK(rough.error <= 1e-4);
     CHECK(apart(rough.gain, best.gain) <= rough.error + best.error);
+  }
+}
+
+namespace {
+
+/// A bristle that yields at a level of its own shape; `bent`: a rate that is not linear in the state.
+struct OwnBristle {
+  static constexpr std::string_view kind = "own-bristle";
+  double Fs = 1.5, Fc = 1.0, vs = 0.001, s = 1e5, d = 300.0, bent = 0.0;
+
+  double slip(double v, double z) const {
+    const double share = s * z / (Fc + (Fs - Fc) / (1.0 + v * v / (vs * vs)));
+    return v - std::abs(v) * share * (1.0 + bent * share * share);
+  }
+  int states() const { return 1; }
+  void rate(const Input<double>& in, Mode, std::span<const double> z, std::span<double> dz) const {
+    dz[0] = slip(in.v, z[0]);
+  }
+  double output(const Input<double>& in, Mode, std::span<const double> z) const {
+    return s * z[0] + d * slip(in.v, z[0]);
+  }
+  Scales scales() const { return {.displacement = Fs / s, .velocity = vs, .output = Fs}; }
+  bool odd() const { return true; }
+};
+
+}  // namespace
+
+TEST_CASE("period of a linear law: that of a user, found to be linear, and one that is not") {
+  Random random(161803);
+  for (const double bent : {0.0, 1e-6, 0.5}) {
+    OwnBristle bristle;
+    bristle.bent = bent;
+    const Element law = own_law(bristle);
+    for (int k = 0; k < samples(20); ++k) {
+      const double A = random.spread(1e-6, 0.1), w = random.spread(0.1, 1e3);
+      const DfPoint point{A, w, k % 2 == 0 ? 0.0 : random.uniform(-2.0, 2.0) * A * w};
+      INFO("bent " << bent << ", A " << A << ", w " << w << ", bias " << point.bias);
+      const auto pass = computed(law, point, DfMethod::automatic, 1e-6);
+      const auto march = computed(law, point, DfMethod::quadrature, 1e-6);
+      REQUIRE(pass.answered());
+      CHECK(apart(pass.gain, march.gain) <= pass.error + march.error);
+      if (bent == 0.0)
+        CHECK(pass.evaluations < march.evaluations);
+      else
+        CHECK(pass.gain == march.gain);
+    }
   }
 }
 
