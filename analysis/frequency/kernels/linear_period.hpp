@@ -40,7 +40,7 @@ class LinearPeriod {
    public:
     explicit Supposed(Element element) : element_(std::move(element)), scale_(element_.state_scale(0)) {}
     LinearRate<double> linear_rate(const Input<double>& in) const;
-    bool agrees(const Input<double>& in, const LinearRate<double>& rate, double z) const;
+    bool agrees(const Input<double>& in, const LinearRate<double>& linear, double z) const;
     double output(const Input<double>& in, double z) const { return element_.output(in, Mode{}, {&z, 1}); }
     double state_scale(int i) const { return element_.state_scale(i); }
 
