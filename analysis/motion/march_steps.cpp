@@ -107,8 +107,9 @@ bool March::try_step(double& dt) {
   step_.x1 = x_;
   step_.t1 = t_;
   if (kind_ == StepperKind::exact) {
-    if (try_exact(dt)) return is_finite(step_.x1);
-    return false;
+    if (!try_exact(dt)) return false;
+    field_.keep_held(step_.x0, step_.x1);
+    return is_finite(step_.x1);
   }
   const double tried = dt;
   const auto result = std::visit(
@@ -122,6 +123,7 @@ bool March::try_step(double& dt) {
       },
       stepper_->any());
   if (result != boost::numeric::odeint::success) return false;
+  field_.keep_held(step_.x0, step_.x1);
   if (is_finite(step_.x1)) return true;
   dt = 0.1 * tried;  // a NaN that the error estimate did not show
   return false;
@@ -142,6 +144,7 @@ void March::repeat(double h, State& out) {
         }
       },
       stepper_->any());
+  field_.keep_held(step_.x0, out);
 }
 
 /// A few roundings of the time.

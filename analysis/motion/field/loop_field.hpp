@@ -72,6 +72,9 @@ class LoopField {
   bool fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation);
   /// The same, with the terms of the saltation matrix.
   bool fire(State& x, double t, std::size_t guard, SwitchSlopes& slopes);
+  /// Gives the velocities of bodies that are held the values that they had at the start of a step, to the last bit: on
+  /// a velocity of rounding size a body that breaks away would stop again at once.
+  void keep_held(const State& start, State& end) const;
   /// The element whose guard this is.
   std::size_t owner(std::size_t guard) const;
   /// Time until the next switch by an element's own clock, s; infinite without one.

@@ -106,7 +106,6 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
     find_inputs(x);
   }
   const Mode before = modes_[i];
-  const auto rested = held_state(i);
   const Element& element = loop_->elements[i];
   if (element.has_modes()) modes_[i] = element.next(inputs_[i], modes_[i], own_states(x, i), static_cast<int>(k));
   // The located v is zero to the accuracy of the location: remove the remainder. Otherwise a body that reaches v = 0
@@ -114,9 +113,6 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
   if (held(i) == Held::rate || (before == modes_[i] && slides_through_zero(*loop_, i))) arrest(x, i);
   if (held(i) == Held::rate)
     for (const std::size_t only : held_states()) x[only] = 0.0;
-  // A body breaks away from rest, to the last bit: on a velocity of rounding size it would stop again at once.
-  else if (rested)
-    x[*rested] = 0.0;
 }
 
 /// The velocities of all bodies that are held: the force that stops one of them passes on to the others, which stay at
@@ -126,6 +122,11 @@ std::vector<std::size_t> LoopField::held_states() const {
   for (std::size_t i = 0; i < ne_; ++i)
     if (const auto only = held_state(i)) at_rest.push_back(*only);
   return at_rest;
+}
+
+void LoopField::keep_held(const State& start, State& end) const {
+  for (std::size_t i = 0; i < ne_; ++i)
+    if (const auto only = held_state(i)) end[*only] = start[*only];
 }
 
 bool LoopField::fire(State& x, double t, std::size_t guard, Eigen::MatrixXd& saltation) {
