@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -32,26 +33,54 @@ SharedObject shared(py::object object) {
           }};
 }
 
+/// What Python keeps of threads that have ended. A thread does not free its own: it would have to wait for the lock,
+/// and if the interpreter ended meanwhile, Python would end the process. The next thread that comes with the lock does.
+class EndedThreads {
+ public:
+  static EndedThreads& all() {
+    static EndedThreads& kept = *new EndedThreads;  // outlives every thread
+    return kept;
+  }
+  void add(PyThreadState* state) {
+    const std::lock_guard lock(guard_);
+    states_.push_back(state);
+  }
+  /// With the interpreter's lock.
+  void release() {
+    std::vector<PyThreadState*> ended;
+    {
+      const std::lock_guard lock(guard_);
+      ended.swap(states_);
+    }
+    for (PyThreadState* state : ended) {
+      PyThreadState_Clear(state);
+      PyThreadState_Delete(state);
+    }
+  }
+
+ private:
+  std::mutex guard_;
+  std::vector<PyThreadState*> states_;
+};
+
 /// The lock of the interpreter, for a call of the law. What Python keeps of a thread that is not its own stays until
 /// the thread ends: to make and to free it with every call takes twenty times as long as the call.
 class LawLock {
  public:
   LawLock() {
     if (!unknown_) return;
-    thread_local const Kept kept;
+    EndedThreads::all().release();
+    thread_local const Kept kept{PyThreadState_Get()};
     lock_.inc_ref();
   }
 
  private:
   struct Kept {
-    Kept() = default;
+    explicit Kept(PyThreadState* own) : state(own) {}
     Kept(const Kept&) = delete;
     Kept& operator=(const Kept&) = delete;
-    ~Kept() {
-      if (Py_IsInitialized() == 0) return;
-      py::gil_scoped_acquire last;
-      last.dec_ref();
-    }
+    ~Kept() { EndedThreads::all().add(state); }
+    PyThreadState* state;
   };
   bool unknown_ = PyGILState_GetThisThreadState() == nullptr;  ///< to Python, before the lock
   py::gil_scoped_acquire lock_;

@@ -2,8 +2,10 @@
 
 import ctypes
 import math
+import os
 import pickle
 import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -183,6 +185,18 @@ class OwnLaws(unittest.TestCase):
             thread.start()
             thread.join()
         self.assertEqual(statuses, ["converged"] * 3)
+
+    def test_the_interpreter_may_end_at_once(self):
+        # A thread that freed what Python kept of it would have waited for the lock while the interpreter ended.
+        script = "\n".join(["import limcycle", "class Bristle:",
+                            "    states, odd, scales = 1, True, (0.01, float('inf'), 1.0)",
+                            "    def output(self, v, z): return 100.0 * z[0]",
+                            "    def rate(self, v, z): return v - 100.0 * abs(v) * z[0]",
+                            "limcycle.df(Bristle(), [0.0001 * 1.05 ** k for k in range(150)], [1.0], threads=4)"])
+        for _ in range(8):
+            ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False,
+                                 env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})
+            self.assertEqual((ran.returncode, ran.stderr), (0, ""))
 
     def test_every_question_keeps_it(self):
         # remedies, as thresholds, read the case again
