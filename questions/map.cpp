@@ -11,6 +11,16 @@
 
 namespace limcycle {
 
+namespace {
+
+/// Empty where the values of the point are no valid case.
+std::optional<Loop> loop_at(const HuntingMap& map, std::size_t k, const LoopVariation& variation) {
+  const double values[] = {map.x_of(k), map.y_of(k)};
+  return variation.loop(values);
+}
+
+}  // namespace
+
 Methods map_methods(const std::string& argument, const std::vector<std::string>& names) {
   const auto known = names_of({true, true, true});
   Methods chosen{names.empty(), false, false};
@@ -67,8 +77,7 @@ PredictOptions map_options(const Case& from, const Methods& methods, const std::
 }
 
 MapPoint point_of(const HuntingMap& map, std::size_t k, const LoopVariation& variation, const PredictOptions& options) {
-  const double values[] = {map.x_of(k), map.y_of(k)};
-  if (const auto loop = variation.loop(values)) return map_point(*loop, options);
+  if (const auto loop = loop_at(map, k, variation)) return map_point(*loop, options);
   MapPoint point;
   point.methods.resize(map.methods.size());
   return point;
@@ -98,10 +107,7 @@ std::vector<std::optional<Loop>> loops_of(const HuntingMap& map, std::span<const
                                           const LoopVariation& variation) {
   std::vector<std::optional<Loop>> loops;
   loops.reserve(points.size());
-  for (const std::size_t k : points) {
-    const double values[] = {map.x_of(k), map.y_of(k)};
-    loops.push_back(variation.loop(values));
-  }
+  for (const std::size_t k : points) loops.push_back(loop_at(map, k, variation));
   return loops;
 }
 

@@ -11,7 +11,7 @@ namespace limcycle {
 
 /// The methods of these names, as a map judges them: the describing function alone if there are none, since with mass
 /// and friction as one element a point takes ten times as long. Throws InputError (of `argument`) for an unknown name.
-/// A map that judges no method, Methods{false, false, false}, has outcomes only: see simulated_points().
+/// `no_methods` ask for a map of outcomes.
 Methods map_methods(const std::string& argument, const std::vector<std::string>& names);
 
 /// A map over two numbers of a case, with their units; its points are not computed yet. Throws InputError (of x or y,

@@ -160,8 +160,6 @@ bool March::creeps(std::size_t guard) const {
   const Loop& loop = field_.loop();
   const Element& element = loop.elements[i];
   if (!element.may_stick() || field_.holds(i)) return false;
-  // At the instant of another switch a body may touch zero by a rounding of its velocity, as where it breaks away.
-  if (!event_times_.empty() && t_ - event_times_.back() <= 4.0 * shortest_step()) return false;
   const Eigen::RowVectorXd& C_v = loop.ports[i].C_v;
   const double push = std::abs((C_v * loop.B.col(static_cast<Eigen::Index>(i))).value()) * element.scales().output;
   const double deceleration = (C_v * Eigen::Map<const Eigen::VectorXd>(step_.dx1.data(), loop.states())).value();

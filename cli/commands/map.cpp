@@ -30,9 +30,8 @@ struct MapFlags : SweepFlags {
 Status compute(const Case& from, HuntingMap& map, const MapFlags& flags, const Methods& methods) {
   Progress silent(true);  // the sweep shows its own
   const int starts = flags.starts > 0 ? flags.starts : from.predict.starts;
-  const std::string design =
-      fmt::format("map {}; {}; starts {}", flags_of(map, !flags.methods.empty(), flags.starts),
-                  flags.outcomes ? "outcomes" : fmt::format("{}", fmt::join(map.methods, ", ")), starts);
+  const std::string design = fmt::format("map {}; {}; starts {}", flags_of(map, !flags.methods.empty(), flags.starts),
+                                         fmt::join(map.methods, ", "), starts);
   return ask_map(from, map, methods, starts, design, asking_of(flags, silent),
                  [&](const auto& task, const auto& columns, const auto& text) {
                    return run_stored(task, columns, text, flags, from);
@@ -44,7 +43,7 @@ int run(MapFlags flags) {
   take_picture(flags, flags.picture);
   const Case from = load_case(flags);
   need_loop(from);
-  const Methods methods = flags.outcomes ? Methods{false, false, false} : map_methods("--methods", flags.methods);
+  const Methods methods = flags.outcomes ? no_methods : map_methods("--methods", flags.methods);
   MapReport report = map_of(from, flags.x, flags.y, methods);
   need_memory_for(report.map, {!flags.json.empty(), !flags.csv.empty()}, "--");
   Output output(flags, &from);

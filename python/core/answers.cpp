@@ -280,7 +280,7 @@ Answer margin_answer(const Question& question, const std::vector<std::string>& p
 
 Answer map_answer(const Question& question, const MapAxis& x, const MapAxis& y, const std::vector<std::string>& methods,
                   bool outcomes, int starts) {
-  const Methods chosen = outcomes ? Methods{false, false, false} : map_methods("methods", methods);
+  const Methods chosen = outcomes ? no_methods : map_methods("methods", methods);
   const MapReport empty = map_over(*question.from, x, y, chosen, "");
   Status ended = Status::converged;
   const auto report = computed([&] {

@@ -63,6 +63,9 @@ struct HuntingMap {
   std::size_t known() const;
 };
 
+/// Of a map that judges none and has outcomes only: see simulated_points().
+inline constexpr Methods no_methods{false, false, false};
+
 /// Methods by name, in the order of `wanted`.
 std::vector<std::string> names_of(const Methods& wanted);
 

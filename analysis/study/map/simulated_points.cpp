@@ -35,11 +35,8 @@ class LaneTrials {
   }
   /// From up to three starts further down, as predict() does where all others diverge.
   void add_below(LaneTrial& trial) {
-    double smallest = start_displacements(output_per_input(trial.loop), trial.box, how_.predict.starts).back();
-    trial.box.amplitude_min *= 1e-6;
-    std::vector<double> displacements;
-    for (int i = 0; i < std::min(how_.predict.starts, 3); ++i) displacements.push_back(smallest *= 0.01);
-    add_from(trial, displacements);
+    const auto above = start_displacements(output_per_input(trial.loop), trial.box, how_.predict.starts);
+    add_from(trial, extend_down(trial.box, above.back(), how_.predict.starts));
   }
 
   void run() {
@@ -96,7 +93,8 @@ bool add_outcomes(MapPoint& point, std::span<const EnsembleResult> results) {
     point.amplitude = result.amplitude;
     point.period = result.period;
   }
-  point.stable = point.cycles += static_cast<int>(cycles.size());
+  point.cycles += static_cast<int>(cycles.size());
+  point.stable = point.cycles;
   std::ranges::sort(point.outcomes);
   return !point.outcomes.empty();
 }
@@ -132,7 +130,7 @@ bool fits_lanes(const Loop& loop) { return lane_shape(loop).has_value(); }
 
 std::vector<MapPoint> simulated_points(std::span<const std::optional<Loop>> loops, const SimulatedPoints& how) {
   PredictOptions alone = how.predict;
-  alone.methods = {false, false, false};
+  alone.methods = no_methods;
   alone.accuracy = std::max(alone.accuracy, swing_accuracy);
   auto in_lanes = points_in_lanes(loops, how);
   std::vector<MapPoint> points;

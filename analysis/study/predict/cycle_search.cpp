@@ -22,4 +22,12 @@ SettleOptions cycle_search(const Loop& loop, const SearchBox& box, double accura
   return options;
 }
 
+std::vector<double> extend_down(SearchBox& box, double smallest, int starts) {
+  constexpr double decades = 1e-6, between = 0.01;
+  box.amplitude_min *= decades;
+  std::vector<double> displacements(static_cast<std::size_t>(std::min(starts, 3)));
+  for (double& displacement : displacements) displacement = smallest *= between;
+  return displacements;
+}
+
 }  // namespace limcycle

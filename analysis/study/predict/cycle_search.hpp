@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <vector>
 
 #include "limcycle/analysis/frequency/roots/root_search.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
@@ -15,5 +16,9 @@ namespace limcycle {
 /// at which such stiff bristles stick (loosest_stiff_tolerance), if that is less; never below 1e-12. Shooting solves a
 /// cycle to the relative error `accuracy` of period and amplitude.
 SettleOptions cycle_search(const Loop& loop, const SearchBox& box, double accuracy, std::function<bool()> stop = {});
+
+/// For a box in which every start diverges: extends it downwards by six decades, and returns displacements from which
+/// to simulate then, up to three of `starts`, each a hundredth of the one before and the first of `smallest`.
+std::vector<double> extend_down(SearchBox& box, double smallest, int starts);
 
 }  // namespace limcycle

@@ -107,12 +107,10 @@ class PredictionStudy {
 
   /// For a box in which every start diverges: extends it downwards and simulates from smaller displacements.
   void look_further_down() {
-    constexpr double decades = 1e-6, between = 0.01;
-    const int more = std::min(options_.starts, 3);
     std::vector<double> displacements;
     for (const auto& start : starts_) displacements.push_back(start.place);
-    for (int i = 0; i < more; ++i) displacements.push_back(between * displacements.back());
-    box_.amplitude_min *= decades;
+    const auto further = extend_down(box_, displacements.back(), options_.starts);
+    displacements.insert(displacements.end(), further.begin(), further.end());
     report_.search = box_;
     note("every start in the search box diverges: the box was extended down to an amplitude of " +
          short_number(box_.amplitude_min, 3));
