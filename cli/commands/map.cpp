@@ -52,7 +52,8 @@ int run(MapFlags flags) {
   output.check_picture("--svg", flags.picture);
 
   const Status ended = compute(from, report.map, flags, methods);
-  const auto made = provenance(flags, &from);
+  auto made = provenance(flags, &from);
+  if (flags.outcomes) made.isa = to_string(instruction_set(flags));
   const Units units = units_of(from, largest_swing(report));
   Document text = map_document(from.title, report);
   if (!flags.html.empty()) {

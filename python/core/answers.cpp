@@ -288,7 +288,8 @@ Answer map_answer(const Question& question, const MapAxis& x, const MapAxis& y, 
     ended = ask_map(*question.from, made.map, chosen, starts, {}, question.asking, sweep_in_memory(question.asking));
     return made;
   });
-  const Sheet sheet = sheet_of(question, ended);
+  Sheet sheet = sheet_of(question, ended);
+  if (outcomes) sheet.made.isa = to_string(question.asking.isa);
   Answer answer = documents(
       sheet, report, [=](const auto& made, const auto& all) { return map_json(made, all, ended); }, map_csv,
       map_document);

@@ -192,11 +192,11 @@ std::string map_picture(const MapReport& report, const Units& units) {
 
 std::string map_sections(const MapReport& report, const Units& units, int level) {
   const std::string heading = "h" + std::to_string(level);
+  const std::string about = "Outcome of motions from several starts, amplitude and period of the largest stable cycle";
   std::string body =
-      html_tag(heading, "The map") + html_picture(map_picture(report, units),
-                                                  "Outcome of motions from several starts, amplitude and period of the "
-                                                  "largest stable cycle, and reliability of each method.",
-                                                  map_csv(report));
+      html_tag(heading, "The map") +
+      html_picture(map_picture(report, units),
+                   about + (report.map.methods.empty() ? "." : ", and reliability of each method."), map_csv(report));
   body += html_tag(heading, "Outcome") + html_table(happens_table(report), "Points of the map by outcome");
   if (!report.map.methods.empty())
     body += html_tag(heading, "Reliability of the methods") +
