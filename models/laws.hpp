@@ -10,9 +10,11 @@
 #include "limcycle/models/element/memoryless/window.hpp"
 #include "limcycle/models/element/of_controllers/clamped_pi.hpp"
 #include "limcycle/models/element/of_controllers/compensation.hpp"
+#include "limcycle/models/element/of_controllers/impulses.hpp"
 #include "limcycle/models/element/of_controllers/output_rate.hpp"
 #include "limcycle/models/element/of_controllers/reset_integrator.hpp"
 #include "limcycle/models/element/of_controllers/sampled.hpp"
+#include "limcycle/models/element/of_controllers/stop_reset_integrator.hpp"
 #include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/models/element/with_memory/delayed_relay.hpp"
 #include "limcycle/models/element/with_memory/rate_limit.hpp"
@@ -58,7 +60,7 @@ using FrictionLaws = KindList<Coulomb, Stribeck, StribeckTable, Karnopp, Quinn, 
                               BoucWen, LuGre, LuGreTable, LuGreSpline, ElastoPlastic, Leuven, Jenkins, MaxwellSlip,
                               Iwan, Gms, GmsTable, Xiong, TwoState, NonDrift>;
 using ForwardElements = KindList<Relay, Saturation, RateLimit, DeadZone, Backlash, ValveStiction, Cubic, Lookup,
-                                 ClampedPi, ResetIntegrator, Window>;
+                                 ClampedPi, ResetIntegrator, StopResetIntegrator, Impulses, Window>;
 using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
 using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity, Sampled>;
 

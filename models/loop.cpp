@@ -86,6 +86,8 @@ std::optional<BrokenRule> validate_error(const LoopParts& parts, double D_rate) 
   if (!parts.error) return std::nullopt;
   if (!uses_error(parts))
     return BrokenRule{"loop.error", "needs a controller: with friction alone the error is not used"};
+  if (const auto* pid = std::get_if<Pid>(&parts.controller); pid != nullptr && pid->reset_speed > 0.0)
+    return BrokenRule{"loop.controller.reset_speed", "cannot stand beside [loop.error], whose output has no rate here"};
   if (D_rate == 0.0 || output_rate(*parts.error)) return std::nullopt;
   const std::string kind(parts.error->kind());
   const bool jumps = parts.error->as<Quantizer<double>>() != nullptr;
@@ -138,10 +140,15 @@ std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {
   bool nonlinear = false;
   for (const Block& block : diagram.blocks) {
     if (const auto* controller = std::get_if<Controller>(&block.what))
-      if (const auto* pid = std::get_if<Pid>(controller); pid != nullptr && pid->holds_integral_back())
-        return BrokenRule{block.path + "." + std::string(pid->held_back_by()),
-                          "is not for a block of a diagram: let the integral be a block of its own, of kind "
-                          "clamped-pi or reset-integrator, or window and integrator"};
+      if (const auto* pid = std::get_if<Pid>(controller)) {
+        if (pid->holds_integral_back())
+          return BrokenRule{block.path + "." + std::string(pid->held_back_by()),
+                            "is not for a block of a diagram: let the integral be a block of its own, of kind "
+                            "clamped-pi or reset-integrator, or window and integrator"};
+        if (pid->impulse > 0.0)
+          return BrokenRule{block.path + ".impulse",
+                            "is not for a block of a diagram: let the impulses be a block of their own"};
+      }
     if (const auto* plant = std::get_if<Plant>(&block.what)) {
       nonlinear = nonlinear || std::holds_alternative<FroudePendulum>(*plant);
       if (const auto* froude = std::get_if<FroudePendulum>(plant); froude && froude->clearance > 0.0)

@@ -12,6 +12,7 @@
 #include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/models/element/of_controllers/clamped_pi.hpp"
 #include "limcycle/models/element/of_controllers/reset_integrator.hpp"
+#include "limcycle/models/element/of_controllers/stop_reset_integrator.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/transfer.hpp"
 
@@ -211,10 +212,13 @@ namespace {
 std::optional<double> integral_gain(const Element& element) {
   if (const auto* pi = element.as<ClampedPi<double>>()) return pi->ki;
   if (const auto* integral = element.as<ResetIntegrator<double>>()) return integral->gain;
+  if (const auto* integral = element.as<StopResetIntegrator<double>>()) return integral->gain;
   return std::nullopt;
 }
 
-bool is_reset(const Element& element) { return element.as<ResetIntegrator<double>>() != nullptr; }
+bool is_reset(const Element& element) {
+  return element.as<ResetIntegrator<double>>() != nullptr || element.as<StopResetIntegrator<double>>() != nullptr;
+}
 
 /// working_loop() on some states, with the integrals that are states of elements below them.
 MatrixXd with_integrals(const Loop& loop, const MatrixXd& working, const std::vector<Index>& seen) {

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/remedy/dither.hpp"
+#include "limcycle/analysis/study/remedy/gain_line.hpp"
+#include "limcycle/analysis/study/remedy/linear_costs.hpp"
 #include "limcycle/analysis/study/sensitivity/global/random_stream.hpp"
 #include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/cases/loader/loop_variation.hpp"
@@ -27,6 +30,33 @@ Case case_with_remedy(const Case& from, const RemedyCandidate& candidate, double
   return case_with_overrides(from, remedy_overrides(candidate, value));
 }
 
+/// The loop over the remedy's number; a reason why not if the case does not take the remedy at all.
+void find_parts(const Case& from, RemedyCandidate& candidate) try {
+  const Case with = case_with_remedy(from, candidate, candidate.is_absent() ? 1.0 : candidate.own);
+  candidate.parts = [variation = LoopVariation(with, "remedy", candidate.parameter)](double value) {
+    return variation.parts({&value, 1});
+  };
+} catch (const InputError& error) {
+  candidate.why_not = error.fault().key + " " + error.fault().rule;
+}
+
+/// Impulses in the place of integral action: of a hundredth of a turn at the crossover of the loop, half a turn apart;
+/// an error of a tenth of the hunting may stay, and a hundredth of its speed counts as none.
+RemedyCandidate sized_impulses(const Case& from, RemedyCandidate candidate, double turn, const HuntingSizes& sizes) {
+  const auto set = [&](const std::string& key, double value) {
+    candidate.with.push_back(override_of("loop.controller." + key, std::stod(short_number(value, 2))));
+  };
+  candidate.sized = {};
+  candidate.band = std::stod(short_number(0.1 * sizes.displacement, 2));
+  set("ki", 0.0);
+  set("impulse_width", 0.01 * turn);
+  set("impulse_pause", 0.5 * turn);
+  set("impulse_band", candidate.band);
+  set("impulse_speed", 0.01 * sizes.displacement * sizes.frequency);
+  find_parts(from, candidate);
+  return candidate;
+}
+
 class Candidates {
  public:
   explicit Candidates(const Case& from) : from_(from), parts_(need_loop(from)), numbers_(numbers_of(from)) {}
@@ -36,14 +66,14 @@ class Candidates {
     leak();
     hold_back("integrator-clamp", "integral_limit", Measure::force, Way::down);
     hold_back("integrator-reset", "integral_reset", Measure::own, Way::up);
+    reset_at_stop();
     gain("gain-kp", {"kp", "position_kp"}, "proportional gain", Measure::stiffness);
     integral_gain();
     gain("gain-kd", {"kd", "velocity_kp"}, "derivative gain", Measure::damping);
+    gain_line("gain-line-bandwidth", GainLine::Keeps::bandwidth);
+    gain_line("gain-line-margin", GainLine::Keeps::phase_margin);
     compensation();
-    not_written(
-        "impulse-compensation",
-        "no controller here sends pulses to a body that is stuck with an error; `simulate` takes a table of the "
-        "force");
+    impulses();
     dither();
     hold_back("integral-band", "integral_band", Measure::displacement, Way::down);
     feedforward();
@@ -54,18 +84,10 @@ class Candidates {
 
  private:
   void add(RemedyCandidate candidate) {
-    if (candidate.why_not.empty()) try {
-        const Case with = case_with_remedy(from_, candidate, candidate.is_absent() ? 1.0 : candidate.own);
-        candidate.parts = [variation = LoopVariation(with, "remedy", candidate.parameter)](double value) {
-          return variation.parts({&value, 1});
-        };
-      } catch (const InputError& error) {  // the case does not take the remedy at all
-        candidate.why_not = error.fault().key + " " + error.fault().rule;
-      }
+    if (candidate.why_not.empty()) find_parts(from_, candidate);
     list_.push_back(std::move(candidate));
   }
   void not_there(const std::string& name, const std::string& why) { add({name, {}, {}, why}); }
-  void not_written(const std::string& name, const std::string& why) { not_there(name, "not implemented: " + why); }
   void vary(const std::string& name, const CaseNumber& number, Measure measure, Way way) {
     const double own = std::isfinite(number.value) ? number.value : 0.0;
     add({name, number.path, number.unit, {}, own, measure, own == 0.0 ? Way::up : way});
@@ -104,6 +126,30 @@ class Candidates {
     not_there(name, no_number(what));
   }
 
+  /// kp along the line on which kd keeps something of the loop.
+  void gain_line(const std::string& name, GainLine::Keeps keeps) {
+    const auto* pid = std::get_if<Pid>(&parts_.controller);
+    if (parts_.diagram || pid == nullptr) return not_there(name, "the controller has no kp and kd: kind \"pid\" has");
+    const auto line = GainLine::of(parts_, keeps);
+    if (!line)
+      return not_there(name, "it needs kp and kd above 0 and a frequency at which the open loop has a gain of 1");
+    const CaseNumber* number = at("loop.controller.kp");
+    RemedyCandidate candidate{name, number->path, number->unit, {}, pid->kp, Measure::stiffness, Way::both};
+    candidate.parts = [parts = parts_, line](double kp) -> std::optional<LoopParts> {
+      const auto kd = line->kd(kp);
+      if (!kd) return std::nullopt;
+      LoopParts changed = parts;
+      auto& controller = std::get<Pid>(changed.controller);
+      controller.kp = kp;
+      controller.kd = *kd;
+      return validate(changed) ? std::nullopt : std::optional(std::move(changed));
+    };
+    candidate.follows = [line](double kp) {
+      return std::vector<std::string>{override_of("loop.controller.kd", line->kd(kp).value_or(0.0))};
+    };
+    list_.push_back(std::move(candidate));
+  }
+
   void integral_gain() {
     for (const std::string_view key : {"ki", "velocity_ki", "position_ki"}) {
       const auto* number = has_controller() ? of_controller(key) : nullptr;
@@ -121,6 +167,26 @@ class Candidates {
                                      : "the controller has no integral that can leak: kind \"pid\" has");
   }
 
+  /// In the place of integral action. Their times are those of the loop without friction, the band a tenth of the
+  /// hunting.
+  void impulses() {
+    const std::string name = "impulse-compensation";
+    const auto* pid = std::get_if<Pid>(&parts_.controller);
+    if (parts_.diagram) return not_there(name, "in a diagram it is a block of kind \"impulses\"");
+    if (pid == nullptr) return not_there(name, "the controller sends no impulses: kind \"pid\" does");
+    if (!parts_.friction) return not_there(name, "there is no friction");
+    if (pid->is_on()) return not_there(name, "a sampled controller sends none yet");
+    if (pid->impulse > 0.0) return vary(name, *at("loop.controller.impulse"), Measure::force, Way::both);
+    if (parts_.reference_rate != 0.0) return not_there(name, "along a ramp the body is not to stop");
+    const auto crossover = highest_crossover(parts_);
+    if (!crossover) return not_there(name, "the loop without friction has no crossover to take their times from");
+    RemedyCandidate candidate{name, "loop.controller.impulse", "N", {}, 0.0, Measure::force, Way::up};
+    candidate.sized = [from = from_, candidate, turn = 2.0 * std::numbers::pi / *crossover](const HuntingSizes& sizes) {
+      return sized_impulses(from, candidate, turn, sizes);
+    };
+    list_.push_back(std::move(candidate));
+  }
+
   /// A limit, a band or a reset of the integral of a PID: infinite or 0 where it is absent.
   void hold_back(const std::string& name, const std::string& key, Measure measure, Way way) {
     const auto* pid = std::get_if<Pid>(&parts_.controller);
@@ -129,6 +195,27 @@ class Candidates {
     if (pid->ki == 0.0) return not_there(name, "there is no integral action");
     const CaseNumber* number = at("loop.controller." + key);
     add({name, number->path, number->unit, {}, number->value, measure, way});
+  }
+
+  /// The same where the body stops: at a hundredth of the speed of the hunting.
+  void reset_at_stop() {
+    const std::string name = "integrator-stop-reset";
+    const auto* pid = std::get_if<Pid>(&parts_.controller);
+    if (pid == nullptr || parts_.diagram || pid->ki == 0.0 || pid->holds_integral_back())
+      return not_there(name, parts_.diagram   ? "in a diagram the integral is a block of its own"
+                             : pid == nullptr ? "the controller has no integral of that kind: kind \"pid\" has"
+                             : pid->ki == 0.0 ? "there is no integral action"
+                                              : "the integral is held back already");
+    RemedyCandidate candidate{name, "loop.controller.integral_reset", "1", {}, 0.0, Measure::own, Way::up};
+    candidate.sized = [from = from_, candidate](const HuntingSizes& sizes) {
+      RemedyCandidate with_speed = candidate;
+      with_speed.sized = {};
+      const double speed = std::stod(short_number(0.01 * sizes.displacement * sizes.frequency, 2));
+      with_speed.with.push_back(override_of("loop.controller.reset_speed", speed));
+      find_parts(from, with_speed);
+      return with_speed;
+    };
+    list_.push_back(std::move(candidate));
   }
 
   void dead_zone() {
@@ -201,6 +288,8 @@ std::vector<RemedyCandidate> remedy_candidates(const Case& from) { return Candid
 std::vector<std::string> remedy_overrides(const RemedyCandidate& candidate, double value) {
   std::vector<std::string> overrides = candidate.with;
   overrides.push_back(override_of(candidate.parameter, value));
+  if (candidate.follows)
+    for (std::string& one : candidate.follows(value)) overrides.push_back(std::move(one));
   return overrides;
 }
 

@@ -123,6 +123,17 @@ std::optional<OutputRate<double>> output_rate(const Element& element) {
   return std::nullopt;
 }
 
+std::optional<SignalRow> command_row(const LoopParts& parts) {
+  if (parts.diagram || sampling_of(parts.controller).is_on()) return std::nullopt;
+  const Diagram diagram = short_form(parts);
+  SignalRows rows(diagram);
+  rows.number_elements();
+  if (rows.delay() > 0.0) return std::nullopt;
+  const Row row = rows.sum(diagram.blocks.front().inputs.at(0));
+  const Index n = rows.states();
+  return SignalRow{row.head(n), row.segment(2 * n, rows.elements()), row.tail(4)};
+}
+
 Loop assemble(const Diagram& diagram, double reference, double load) {
   return Assembly(diagram).build(reference, load);
 }

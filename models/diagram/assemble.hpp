@@ -30,6 +30,16 @@ enum class Clock { sampled, averaged, continuous };
 Diagram short_form(const LoopParts& parts, Clock clock = Clock::continuous);
 Loop assemble(const LoopParts& parts);
 
+/// A signal of a loop: a row over its linear states, one over the outputs of its elements and one over the external
+/// signals.
+struct SignalRow {
+  Eigen::RowVectorXd states, outputs, external;
+};
+
+/// The force of the actuator on the plant, friction and load excluded. Empty for a diagram, for a sampled controller,
+/// and with a dead time.
+std::optional<SignalRow> command_row(const LoopParts& parts);
+
 /// Element that computes the rate of the output of an element on the error; empty where that rate is not available.
 std::optional<OutputRate<double>> output_rate(const Element& element);
 

@@ -2,8 +2,10 @@
 
 #include "limcycle/models/element/memoryless/window.hpp"
 #include "limcycle/models/element/of_controllers/clamped_pi.hpp"
+#include "limcycle/models/element/of_controllers/impulses.hpp"
 #include "limcycle/models/element/of_controllers/reset_integrator.hpp"
 #include "limcycle/models/element/of_controllers/sampled.hpp"
+#include "limcycle/models/element/of_controllers/stop_reset_integrator.hpp"
 #include "limcycle/models/linear/discrete.hpp"
 
 namespace limcycle {
@@ -15,6 +17,13 @@ std::optional<Element> held_integral(const Pid& pid) {
     ClampedPi<double> integral;
     integral.ki = pid.ki;
     integral.limit = pid.integral_limit;
+    return integral;
+  }
+  if (pid.integral_reset > 0.0 && pid.reset_speed > 0.0) {
+    StopResetIntegrator<double> integral;
+    integral.gain = pid.ki;
+    integral.share = pid.integral_reset;
+    integral.speed = pid.reset_speed;
     return integral;
   }
   if (pid.integral_reset > 0.0) {
@@ -46,6 +55,19 @@ SignalSum through_held_integral(std::vector<Block>& blocks, const Pid& pid, Sign
 }
 
 }  // namespace
+
+void add_impulses(std::vector<Block>& blocks, const Controller& controller, SignalSum error, SignalSum& command) {
+  const auto* pid = std::get_if<Pid>(&controller);
+  if (pid == nullptr || pid->impulse == 0.0) return;
+  Impulses<double> impulses;
+  impulses.force = pid->impulse;
+  impulses.width = pid->impulse_width;
+  impulses.pause = pid->impulse_pause;
+  impulses.band = pid->impulse_band;
+  impulses.speed = pid->impulse_speed;
+  blocks.push_back({"impulses", "loop.controller.impulse", Element(impulses), {std::move(error)}});
+  command.push_back({1.0, "impulses", ""});
+}
 
 StateSpace discrete_of(const Controller& controller, const Sampling& sampling) {
   const auto* pid = std::get_if<Pid>(&controller);

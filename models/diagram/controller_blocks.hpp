@@ -12,6 +12,9 @@ namespace limcycle {
 /// after those that it reads, so that they do at one tick what they do in one run.
 SignalSum through_controller(std::vector<Block>& blocks, const Controller& controller, SignalSum e, Clock clock);
 
+/// Adds the impulses of a PID that has some, by the error as it is measured, to the command.
+void add_impulses(std::vector<Block>& blocks, const Controller& controller, SignalSum error, SignalSum& command);
+
 /// The same for a cascade.
 SignalSum through_cascade(std::vector<Block>& blocks, const Cascade& cascade, SignalSum e, Clock clock);
 

@@ -29,6 +29,7 @@ Diagram short_form(const LoopParts& parts, Clock clock) {
       signal = {{1.0, "error", ""}};
     }
     signal = through_controller(blocks, parts.controller, std::move(signal), clock);
+    add_impulses(blocks, parts.controller, {{1.0, "r", ""}, {-1.0, "plant", "y"}}, signal);
   }
   signal = through_actuator(blocks, actuator_of(parts.controller), "", "loop.controller", std::move(signal), "plant");
   if (parts.element) {

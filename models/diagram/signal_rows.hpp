@@ -32,6 +32,8 @@ class SignalRows {
   double delay() const { return delay_; }
   const std::vector<ElementRows>& ports() const { return ports_; }
 
+  /// A signal that no element reads.
+  Eigen::RowVectorXd sum(const SignalSum& terms) { return value(terms); }
   /// y of the loop before any delay; dX/dt. After number_elements(), rows have as many columns as there are elements.
   Eigen::RowVectorXd output();
   Eigen::MatrixXd rates();

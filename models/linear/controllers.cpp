@@ -48,9 +48,26 @@ std::string_view Pid::held_back_by() const {
   return integral_reset > 0.0 ? "integral_reset" : "";
 }
 
+std::optional<BrokenRule> Pid::broken_impulses() const {
+  for (const auto& [key, value] : {std::pair("impulse_width", impulse_width),
+                                   {"impulse_pause", impulse_pause},
+                                   {"impulse_band", impulse_band},
+                                   {"impulse_speed", impulse_speed}}) {
+    if (value > 0.0 && impulse == 0.0) return BrokenRule{key, "needs impulse: there are none"};
+    if (value == 0.0 && impulse > 0.0) return BrokenRule{"impulse", std::string("needs ") + key};
+  }
+  if (impulse > 0.0 && is_on()) return BrokenRule{"impulse", "is not for a sampled controller yet"};
+  return std::nullopt;
+}
+
 std::optional<BrokenRule> Pid::broken_together() const {
   if (reset_interval > 0.0 && integral_reset == 0.0)
     return BrokenRule{"reset_interval", "needs integral_reset: there is no reset"};
+  if (reset_speed > 0.0 && integral_reset == 0.0)
+    return BrokenRule{"reset_speed", "needs integral_reset: there is no reset"};
+  if (reset_speed > 0.0 && reset_interval > 0.0)
+    return BrokenRule{"reset_interval", "is for resets where e changes sign, not beside reset_speed"};
+  if (auto broken = broken_impulses()) return broken;
   const std::string key(held_back_by());
   if (key.empty()) return std::nullopt;
   for (const auto& [other, is_there] :

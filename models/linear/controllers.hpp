@@ -103,10 +103,12 @@ struct NoController : ControllerParts {
 /// what the integral can reach: ki/leak times a constant error. Three other ways to hold the integral back, one at a
 /// time: ki I stops at +-integral_limit (see ClampedPi), or I grows only while |e| is within integral_band (see
 /// Window), or the share integral_reset of I is taken off where e changes sign, at the earliest reset_interval after
-/// the last time (see ResetIntegrator).
+/// the last time (see ResetIntegrator), or with reset_speed where y stops beyond the set-point (see
+/// StopResetIntegrator). With `impulse`, a body that has stopped with an error is pushed on (see Impulses).
 struct Pid : ControllerParts {
   double kp{}, ki{0.0}, kd{0.0}, tf{0.0}, leak{0.0}, integral_limit{infinite}, integral_band{infinite},
-      integral_reset{0.0}, reset_interval{0.0};
+      integral_reset{0.0}, reset_interval{0.0}, reset_speed{0.0}, impulse{0.0}, impulse_width{0.0}, impulse_pause{0.0},
+      impulse_band{0.0}, impulse_speed{0.0};
   static constexpr std::string_view kind = "pid";
   static constexpr std::string_view equation =
       "u = kp e + ki I + kd de/dt, dI/dt = e - leak I; tf > 0: derivative filtered by 1/(tf s + 1)";
@@ -130,7 +132,16 @@ struct Pid : ControllerParts {
          &Pid::integral_reset,
          {0.0, 2.0},
          false},
-        {"reset_interval", "s", "least time between two resets", &Pid::reset_interval, not_negative, false}};
+        {"reset_interval", "s", "least time between two resets", &Pid::reset_interval, not_negative, false},
+        {"reset_speed", "m/s", "resets where |dy/dt| falls to it beyond r, not where e changes sign", &Pid::reset_speed,
+         not_negative, false},
+        {"impulse", "N", "size of the impulses that push on a body stopped with an error", &Pid::impulse, not_negative,
+         false},
+        {"impulse_width", "s", "duration of an impulse", &Pid::impulse_width, not_negative, false},
+        {"impulse_pause", "s", "least time between two impulses", &Pid::impulse_pause, not_negative, false},
+        {"impulse_band", "m", "largest |e| without impulses", &Pid::impulse_band, not_negative, false},
+        {"impulse_speed", "m/s", "|dy/dt| below which the body counts as stopped", &Pid::impulse_speed, not_negative,
+         false}};
     append_table(table);
     return table;
   }
@@ -141,8 +152,11 @@ struct Pid : ControllerParts {
   std::string_view held_back_by() const;
   /// The rule that these numbers break together.
   std::optional<BrokenRule> broken_together() const;
-  /// With the integral never held back.
+  /// With the integral never held back, and without impulses.
   ControllerModel model() const;
+
+ private:
+  std::optional<BrokenRule> broken_impulses() const;
 };
 
 /// u = numerator(s)/denominator(s) e, proper.

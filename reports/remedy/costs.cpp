@@ -33,6 +33,7 @@ std::vector<std::string> cost_row(const std::string& name, const RemedyCosts& co
           cost_cell(costs.phase_margin, 180.0 / std::numbers::pi),
           cost_cell(costs.peak_sensitivity),
           cost_cell(costs.noise_gain),
+          cost_cell(costs.actuator_travel),
           cost_cell(costs.robust_share, 100.0)};
 }
 
@@ -48,6 +49,7 @@ Table cost_table(const std::string& heading, const NamedCosts& loops, const Unit
                {"phase", "deg"},
                {"Ms", ""},
                {"noise", ""},
+               {"travel", "N"},
                {"robust", "%"}},
               {}};
   for (const auto& [name, costs] : loops) table.rows.push_back(cost_row(name, *costs, units));
@@ -57,7 +59,8 @@ Table cost_table(const std::string& heading, const NamedCosts& loops, const Unit
 std::string cost_legend(double step, const Units& units) {
   return fmt::format(
       "error: r - y over all states of rest; settles, overshoot: a step of {} with friction; phase margin and Ms: "
-      "without friction; noise: largest gain from y to the command; robust: share of [sensitivity] without hunting",
+      "without friction; noise: largest gain from y to the command; travel: all that the command goes up and down in "
+      "that step; robust: share of [sensitivity] without hunting",
       Units::attach(with_digits(step * units.y_per_si, 3), units.y));
 }
 
@@ -73,6 +76,7 @@ std::string costs_json(const RemedyCosts& costs) {
                     {"delay_margin", known(costs.delay_margin)},
                     {"peak_sensitivity", known(costs.peak_sensitivity)},
                     {"noise_gain", known(costs.noise_gain)},
+                    {"actuator_travel", known(costs.actuator_travel)},
                     {"robust_share", known(costs.robust_share)}});
 }
 

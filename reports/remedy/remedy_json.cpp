@@ -44,7 +44,7 @@ std::string remedy_json(const Provenance& provenance, const RemedyReport& report
 std::string remedy_csv(const RemedyReport& report) {
   std::string out = csv_line({"name", "parameter", "unit", "now", "applicable", "ends", "value", "again", "error_low",
                               "error_high", "settling_time", "overshoot", "phase_margin", "delay_margin",
-                              "peak_sensitivity", "noise_gain", "robust_share", "why"});
+                              "peak_sensitivity", "noise_gain", "actuator_travel", "robust_share", "why"});
   const auto cell = [](const std::optional<double>& value) { return value ? shortest(*value) : std::string(); };
   for (const Remedy& one : report.remedies) {
     const RemedyCosts& costs = one.costs;
@@ -56,7 +56,8 @@ std::string remedy_csv(const RemedyReport& report) {
                      one.ends == true ? shortest(one.value) : "", one.edges.size() > 1 ? shortest(one.edges[1]) : "",
                      error ? shortest(error->low) : "", error ? shortest(error->high) : "", cell(costs.settling_time),
                      cell(costs.overshoot), cell(costs.phase_margin), cell(costs.delay_margin),
-                     cell(costs.peak_sensitivity), cell(costs.noise_gain), cell(costs.robust_share), one.why});
+                     cell(costs.peak_sensitivity), cell(costs.noise_gain), cell(costs.actuator_travel),
+                     cell(costs.robust_share), one.why});
   }
   return out;
 }

@@ -60,6 +60,14 @@ TEST_CASE("elements are odd where they say so") {
   table.inputs = {0.0, 0.2, 0.5};
   table.outputs = {0.0, 0.4, 0.3};
   check_odd(table, {{0}, {1}, {2}, {3}, {4}});
+  Impulses<double> impulses;
+  impulses.force = 2.0;
+  impulses.pause = 1.0;
+  check_odd(impulses, {{-1}, {0}, {1}});  // else a clock runs, whose state is even
+  StopResetIntegrator<double> stop_reset;
+  stop_reset.gain = 2.0;
+  stop_reset.speed = 0.005;
+  check_odd(stop_reset, {{-1}, {0}, {1}});
   Cubic<double> cubic;
   cubic.coefficient = 2.0;
   check_odd(cubic, {{0}});

@@ -257,6 +257,10 @@ class Settling {
       if (swings.turning.points().size() <= 2 * order) return;
       const double change = largest_change(swings.turning, order);
       if (change > least) continue;
+      if (shrinks_to_nothing(swings.turning, order)) {
+        swings.next_try = next_try_after(swings.turning, 1.5);
+        return;
+      }
       if (try_cycle(swings, order, change)) return;
       least = 0.5 * change;
     }
@@ -268,6 +272,21 @@ class Settling {
     for (std::size_t k = 0; k < order; ++k)
       largest = std::max(largest, std::abs(turning.swing(k) / turning.swing(k + order) - 1.0));
     return largest;
+  }
+
+  /// True if swings that shrink have no cycle ahead: their limit, by Aitken's extrapolation from the last three of one
+  /// period each, is a small part of the present one.
+  static bool shrinks_to_nothing(const TurningPoints& turning, std::size_t order) {
+    constexpr double small = 0.3;
+    if (turning.points().size() <= 2 * order + 1) return false;
+    const double now = turning.swing(0), before = turning.swing(order), first = turning.swing(2 * order);
+    const double last_change = before - now, change = first - before;
+    if (!(last_change > 0.0) || !(change >= last_change)) return false;
+    return change == last_change || now - last_change * last_change / (change - last_change) < small * now;
+  }
+
+  static std::size_t next_try_after(const TurningPoints& turning, double factor) {
+    return static_cast<std::size_t>(factor * static_cast<double>(turning.points().size())) + 1;
   }
 
   /// Displacement of the body that rubs.
@@ -305,8 +324,7 @@ class Settling {
     const long most = loop_.continuous ? steps_of_sampled_tries + march_.steps() / sampled_steps_per_try
                                        : steps_of_tries + tries_per_step * march_.steps();
     if (tried_ > most) return false;
-    const std::size_t turns = swings.turning.points().size();
-    swings.next_try = turns + turns / 2 + 1;
+    swings.next_try = next_try_after(swings.turning, 1.5);
     const Trace period = recent(swings.turning, order);
     const auto [low, high] = extremes(period);
     const double swing = high - low;
@@ -339,6 +357,8 @@ class Settling {
     }
     if (shot.status == Status::converged) shorten(loop_, shot, section, half, shooting, tried_);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
+    // All maps in vain: soon it would be no better.
+    if (shot.status == Status::max_iterations) swings.next_try = next_try_after(swings.turning, 3.0);
     if (shot.status != Status::converged) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);
     if (shot.cycle.stable == false) {

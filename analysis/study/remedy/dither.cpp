@@ -77,38 +77,21 @@ bool swings_last(const std::vector<double>& swings, double least) {
   return before > least && now >= 0.995 * before;
 }
 
-std::complex<double> crossing_gain(const OpenLoop& open, double w) { return open.L(std::complex<double>(0.0, w)); }
-
 }  // namespace
 
 std::string why_no_dither(const LoopParts& parts) {
   if (parts.diagram) return "in a diagram it is not implemented";
   if (!parts.friction) return "there is no friction that a dither could smooth";
-  if (parts.friction->as<Coulomb<double>>() == nullptr)
-    return "the mean of the friction over a dither is implemented for Coulomb friction only; `simulate` takes a sine "
-           "as force";
   if (std::holds_alternative<NoController>(parts.controller)) return "there is no controller that could add it";
   if (parts.reference_rate != 0.0) return "it is not implemented along a ramp";
   const Loop loop = build_loop(parts);
   if (loop.sampled || loop.delay > 0.0) return "it is not implemented with sampling or a dead time";
-  if (loop.elements.size() > 1) return "it is not implemented beside another element (" + loop.ports.front().path + ")";
   return {};
 }
 
 std::optional<double> frequency_of_dither(const LoopParts& parts) {
-  std::string why;
-  const auto open = open_loop(parts, why);
-  if (!open) return std::nullopt;
-  constexpr double factor = 1.1;
-  double above = 1e9;
-  while (above > 1e-9 && std::abs(crossing_gain(*open, above / factor)) < 1.0) above /= factor;
-  if (above <= 1e-9 || above >= 1e9) return std::nullopt;
-  double below = above / factor;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = std::sqrt(below * above);
-    (std::abs(crossing_gain(*open, middle)) < 1.0 ? above : below) = middle;
-  }
-  return std::stod(short_number(10.0 * above, 3));
+  const auto crossover = highest_crossover(parts);
+  return crossover ? std::optional(std::stod(short_number(10.0 * *crossover, 3))) : std::nullopt;
 }
 
 std::optional<double> dither_speed(const LoopParts& parts, const Dither& dither) {
@@ -278,6 +261,7 @@ class DitherSearch {
   /// a mean.
   std::string averaged() const {
     constexpr double farthest = 100.0;
+    if (built_.elements.size() > 1 || parts_.friction->as<Coulomb<double>>() == nullptr) return {};
     Dither dither{ends_, candidate_.frequency};
     std::optional<LoopParts> parts = averaged_over(parts_, dither);
     for (; !parts && dither.amplitude < farthest * ends_; parts = averaged_over(parts_, dither))

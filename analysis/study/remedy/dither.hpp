@@ -24,12 +24,11 @@ std::optional<double> dither_speed(const LoopParts& parts, const Dither& dither)
 /// dither_speed().
 std::optional<LoopParts> averaged_over(const LoopParts& parts, const Dither& dither);
 
-/// Why a loop has no dither as remedy, a clause; empty: it has. It must be one of five slots with Coulomb friction and
-/// a controller, without any other element, dead time, sampling or ramp.
+/// Why a loop has no dither as remedy, a clause; empty: it has. It must be one of five slots with friction and a
+/// controller, without dead time, sampling or ramp.
 std::string why_no_dither(const LoopParts& parts);
 
-/// Ten times the highest frequency at which |L(jw)| = 1 (see OpenLoop), rad/s: the controller hardly answers to it.
-/// Empty if there is no such frequency between 1e-9 and 1e9 rad/s.
+/// Ten times highest_crossover(), rad/s: the controller hardly answers to it.
 std::optional<double> frequency_of_dither(const LoopParts& parts);
 
 /// Whether the loop under dither, simulated as it is from this state, still swings with periods like that of `hunting`,
@@ -43,8 +42,8 @@ Hunts hunts_under(const Loop& loop, const LoopState& from, const Dither& dither,
 /// The least amplitude of a dither of the candidate's frequency that ends hunting: values at four a decade, from a
 /// tenth of the friction force up to 100 times that, then bisection to 1 %, or to 10 % beside values that are not
 /// decided. Both sides of the edge are simulated as they are, from the largest cycle of the loop and from a
-/// displacement of y by `step`; `why` also has the verdict of the averaged friction. Amplitudes below break-away can be
-/// enough: the body then creeps at the peaks of the dither.
+/// displacement of y by `step`; of a loop with Coulomb friction alone `why` also has the verdict of the averaged
+/// friction. Amplitudes below break-away can be enough: the body then creeps at the peaks of the dither.
 Remedy dither_remedy(const RemedyCandidate& candidate, const LoopParts& parts, const HuntingLoop& loop, double step,
                      const std::function<void(double)>& progress);
 

@@ -63,11 +63,9 @@ Hunts HuntingEdge::judged(double value, Care care) {
     last = from_last_hunting(*loop, box);
     if (last != Hunts::no) return last;
   }
-  Judging judging = loop_.judging;
-  if (care == Care::quick) {
-    judging.predict.starts = std::min(judging.predict.starts, 2);
-    judging.predict.load_step = false;
-  }
+  Judging judging = care == Care::quick ? hurried(loop_.judging) : loop_.judging;
+  if (care == Care::for_rest)
+    judging.predict.enough = [](const OutcomeOfStart& one) { return one.outcome == Outcome::undecided; };
   HuntsAnswer answer = hunts(*loop, judging);
   for (const Cycle& one : answer.found.cycles)
     if (one.stable == true) hunting = motion_state(one, *loop);
@@ -107,7 +105,7 @@ bool HuntingEdge::widen(Bracket& bracket) {
     double distance = apart;
     for (int i = 0; i < widenings && !stopped(); ++i, distance *= 2.5) {
       const double value = at(distance, to_rest);
-      const Hunts here = judged(value);
+      const Hunts here = judged(value, to_rest ? Care::for_rest : Care::full);
       const bool rests = here == Hunts::no, moves = here == Hunts::yes || here == Hunts::diverges;
       if (to_rest ? rests : moves) {
         side = value;
@@ -143,8 +141,8 @@ std::optional<Bracket> HuntingEdge::well_apart(const Bracket& bracket) {
   const auto rests = std::ranges::find_if(factors, [&](double factor) {
     wide.rests = place(bracket.rests, factor);
     const double beyond = wide.rests * std::pow(1.1, outward);
-    return !stopped() && candidate_.parts(wide.rests) && judged(wide.rests) == Hunts::no &&
-           (!candidate_.parts(beyond) || judged(beyond) == Hunts::no);
+    return !stopped() && candidate_.parts(wide.rests) && judged(wide.rests, Care::for_rest) == Hunts::no &&
+           (!candidate_.parts(beyond) || judged(beyond, Care::for_rest) == Hunts::no);
   });
   if (rests == factors.end()) return std::nullopt;
   const auto hunts = std::ranges::find_if(factors, [&](double factor) {

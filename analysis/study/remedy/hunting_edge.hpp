@@ -7,15 +7,6 @@
 
 namespace limcycle {
 
-/// Sizes of the motion of a loop that hunts.
-struct HuntingSizes {
-  double displacement = 1.0;  ///< of y
-  double frequency = 1.0;     ///< rad/s
-  double force = 1.0;         ///< N, of the friction
-
-  double of(Measure measure) const;
-};
-
 /// What is known of a loop before its remedies are sought.
 struct HuntingLoop {
   Judging judging;
@@ -43,8 +34,9 @@ class HuntingEdge {
   bool stopped() const { return loop_.judging.predict.stop && loop_.judging.predict.stop(); }
 
   /// By predict() from the starts of the loop as it stands and of the changed one, and from the last hunting motion, or
-  /// for a quick answer from that motion and two starts alone.
-  enum class Care { quick, full };
+  /// for a quick answer from that motion and two starts alone. For rest: where one start is not decided, the others do
+  /// not matter.
+  enum class Care { quick, full, for_rest };
   Hunts judged(double value, Care care = Care::full);
 
   /// Both sides judged with full care, few-digit numbers at most 1.5e-3 apart; it rests at two values beyond as well.

@@ -131,6 +131,12 @@ std::optional<Settled> settled_from(const Loop& loop, const MotionState& motion,
   return settle(time, *from, settings);
 }
 
+Judging hurried(Judging judging) {
+  judging.predict.starts = std::min(judging.predict.starts, 2);
+  judging.predict.load_step = false;
+  return judging;
+}
+
 Judging judging_of_variants(const PredictOptions& predict, const PredictReport& found) {
   Judging judging{predict};
   judging.predict.progress = {};

@@ -54,6 +54,9 @@ MotionState motion_state(const Cycle& cycle, const Loop& loop);
 std::optional<Settled> settled_from(const Loop& loop, const MotionState& motion, const SearchBox& box,
                                     const PredictOptions& options, long steps = 0);
 
+/// The same from two starts alone.
+Judging hurried(Judging judging);
+
 /// For variants of a loop that was judged with `predict`: the same starts, and those may diverge that did.
 Judging judging_of_variants(const PredictOptions& predict, const PredictReport& found);
 

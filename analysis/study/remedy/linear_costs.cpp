@@ -49,7 +49,9 @@ std::optional<Loop> linear_loop(LoopParts parts) {
         }
         if constexpr (std::is_same_v<C, Pid>) {
           controller.integral_limit = controller.integral_band = infinite;
-          controller.integral_reset = controller.reset_interval = 0.0;
+          controller.integral_reset = controller.reset_interval = controller.reset_speed = 0.0;
+          controller.impulse = controller.impulse_width = controller.impulse_pause = 0.0;
+          controller.impulse_band = controller.impulse_speed = 0.0;
         }
       },
       parts.controller);
@@ -184,6 +186,23 @@ std::optional<OpenLoop> open_loop(const LoopParts& parts, std::string& why) {
   open.unlimited_gain = derivative && lag == 0.0 && !sampling.is_on();
   if (sampling.is_on()) open.highest = pi / sampling.sample_time;
   return open;
+}
+
+std::optional<double> highest_crossover(const LoopParts& parts) {
+  std::string why;
+  const auto open = open_loop(parts, why);
+  if (!open) return std::nullopt;
+  const auto is_below_one = [&](double w) { return std::abs(open->L(Complex(0.0, w))) < 1.0; };
+  constexpr double factor = 1.1;
+  double above = 1e9;
+  while (above > 1e-9 && is_below_one(above / factor)) above /= factor;
+  if (above <= 1e-9 || above >= 1e9) return std::nullopt;
+  double below = above / factor;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::sqrt(below * above);
+    (is_below_one(middle) ? above : below) = middle;
+  }
+  return above;
 }
 
 LinearCosts linear_costs(const LoopParts& parts, double step) {

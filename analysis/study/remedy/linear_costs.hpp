@@ -23,6 +23,9 @@ struct OpenLoop {
 /// pendulum, or an element whose slope is not 1, such as a relay.
 std::optional<OpenLoop> open_loop(const LoopParts& parts, std::string& why);
 
+/// The highest frequency at which |L(jw)| = 1, rad/s, to rounding. Empty if there is none between 1e-9 and 1e9 rad/s.
+std::optional<double> highest_crossover(const LoopParts& parts);
+
 /// Robustness of the linear loop, as it is without friction.
 struct LinearCosts {
   bool stable = false;  ///< all poles of the closed loop have negative real parts; else none of the others is given

@@ -1,5 +1,6 @@
 #include "limcycle/analysis/study/remedy/loop_costs.hpp"
 
+#include "limcycle/analysis/study/remedy/actuator_travel.hpp"
 #include "limcycle/analysis/study/remedy/linear_costs.hpp"
 #include "limcycle/analysis/study/remedy/rest_range.hpp"
 #include "limcycle/models/diagram/assemble.hpp"
@@ -23,6 +24,7 @@ RemedyCosts loop_costs(const LoopParts& parts, double step, const Trace& respons
     const StepNumbers real = step_numbers(response.t, response.y, response.y.front());
     costs.settling_time = real.settling_time;
     costs.overshoot = real.overshoot;
+    costs.actuator_travel = actuator_travel(parts, step, response.t.back() - response.t.front());
   }
   return costs;
 }

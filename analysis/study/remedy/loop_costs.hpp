@@ -14,11 +14,13 @@ struct RemedyCosts {
   std::optional<double> settling_time = {}, overshoot = {};  ///< s and share of the step, of the loop with its friction
   std::optional<double> linear_settling_time = {}, linear_overshoot = {};  ///< of the loop without friction
   std::optional<double> phase_margin = {}, delay_margin = {}, peak_sensitivity = {}, noise_gain = {};  ///< LinearCosts
-  std::optional<double> robust_share = {};  ///< of the samples of a spread, those in which the loop does not hunt
+  std::optional<double> actuator_travel = {};  ///< N, of the real step: see actuator_travel()
+  std::optional<double> robust_share = {};     ///< of the samples of a spread, those in which the loop does not hunt
 };
 
 /// All but the robust share. `step`: height of a step, `response`: the run of the loop with its friction from it;
-/// `rests`: whether the loop does not hunt, so that the run has an end. Cost: linear_costs() and rest_range().
+/// `rests`: whether the loop does not hunt, so that the run has an end. Cost: linear_costs(), rest_range(), a run in
+/// time.
 RemedyCosts loop_costs(const LoopParts& parts, double step, const Trace& response, bool rests);
 
 }  // namespace limcycle

@@ -11,6 +11,7 @@
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
 #include "limcycle/analysis/study/predict/loop_in_time.hpp"
 #include "limcycle/analysis/study/remedy/dither.hpp"
+#include "limcycle/analysis/study/remedy/impulse_remedy.hpp"
 #include "limcycle/analysis/study/remedy/remedy_order.hpp"
 #include "limcycle/analysis/study/remedy/remedy_search.hpp"
 
@@ -111,11 +112,15 @@ class RemedyStudy {
     });
   }
 
-  Remedy one(const RemedyCandidate& candidate, const std::function<void(double)>& progress) const {
+  Remedy one(const RemedyCandidate& given, const std::function<void(double)>& progress) const {
+    const RemedyCandidate candidate = given.sized ? given.sized(loop_.sizes) : given;
     if (!candidate.why_not.empty()) return {candidate, std::nullopt, 0.0, {}, {}, candidate.why_not};
     if (candidate.frequency > 0.0) return dithered(candidate, progress);
-    Remedy remedy = RemedySearch(candidate, loop_, progress).run();
+    Remedy remedy = candidate.band > 0.0 ? impulse_remedy(candidate, parts_.reference, loop_, progress)
+                                         : RemedySearch(candidate, loop_, progress).run();
     if (remedy.ends != true || stopped()) return remedy;
+    if (candidate.follows)
+      for (const std::string& one : candidate.follows(remedy.value)) remedy.why += ", with " + one;
     if (const auto parts = candidate.parts(remedy.value))
       remedy.costs = loop_costs(*parts, report_.step, remedy.after, true);
     remedy.costs.robust_share = robust_share(remedy);
@@ -134,9 +139,7 @@ class RemedyStudy {
   /// Empty if more than a tenth of the samples were not decided.
   std::optional<double> robust_share(const Remedy& remedy) const {
     if (!options_.sampled || options_.samples == 0) return std::nullopt;
-    Judging judging = loop_.judging;
-    judging.predict.starts = std::min(judging.predict.starts, 2);
-    judging.predict.load_step = false;
+    const Judging judging = hurried(loop_.judging);
     std::size_t rest = 0, decided = 0;
     for (std::size_t k = 0; k < options_.samples; ++k) {
       if (stopped()) return std::nullopt;

@@ -15,6 +15,15 @@ namespace limcycle {
 /// What a number of a remedy measures: its size is taken from the motion of the loop that hunts where it has none.
 enum class Measure { own, displacement, force, stiffness, damping, rate };
 
+/// Sizes of the motion of a loop that hunts.
+struct HuntingSizes {
+  double displacement = 1.0;  ///< of y
+  double frequency = 1.0;     ///< rad/s
+  double force = 1.0;         ///< N, of the friction
+
+  double of(Measure measure) const;
+};
+
 /// A remedy to try: one number of the loop, or of a part that is added to it.
 struct RemedyCandidate {
   std::string name;       ///< "error-dead-zone"
@@ -26,15 +35,20 @@ struct RemedyCandidate {
   enum class Way { up, down, both } way = Way::up;
   std::function<std::optional<LoopParts>(double)> parts = {};  ///< the loop with that value; empty: not valid
   std::vector<std::string> with = {};                          ///< what a case needs beside it, "PATH=VALUE"
+  /// What else changes with the value, likewise.
+  std::function<std::vector<std::string>(double)> follows = {};
   double frequency = 0.0;  ///< rad/s, if its number is the amplitude of a dither, which is no part of the loop; else 0
+  double band = 0.0;       ///< > 0: its number is the size of impulses that leave an error of at most this
+  /// For a remedy whose other numbers depend on the hunting motion: the same with them.
+  std::function<RemedyCandidate(const HuntingSizes&)> sized = {};
 
   bool is_absent() const { return own == 0.0 || std::isinf(own); }
 };
 
 /// The costs of RemedyCosts by which remedies are compared, the error as its largest size.
-inline constexpr std::string_view cost_names[] = {"steady_state_error", "settling_time", "overshoot",
-                                                  "phase_margin",       "delay_margin",  "peak_sensitivity",
-                                                  "noise_gain",         "robust_share"};
+inline constexpr std::string_view cost_names[] = {"steady_state_error", "settling_time",   "overshoot",
+                                                  "phase_margin",       "delay_margin",    "peak_sensitivity",
+                                                  "noise_gain",         "actuator_travel", "robust_share"};
 using CostWeights = std::array<double, std::size(cost_names)>;
 
 /// What became of a remedy.

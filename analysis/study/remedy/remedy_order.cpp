@@ -22,6 +22,7 @@ ComparedCosts compared(const RemedyCosts& costs) {
           minus(costs.delay_margin),
           costs.peak_sensitivity,
           costs.noise_gain,
+          costs.actuator_travel,
           minus(costs.robust_share)};
 }
 

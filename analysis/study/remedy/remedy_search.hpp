@@ -19,6 +19,9 @@ class RemedySearch {
   /// `ends`, `value`, `edges`, `beyond`, `why` and `after` of the remedy; its costs are left empty.
   Remedy run();
 
+  /// Adds the edge beyond a value at which the loop does not hunt, on the outer side, to a remedy.
+  void locate_far_edge(Remedy& remedy, const Bracket& near);
+
  private:
   MarginParameter parameter_from(double value) const;
   std::optional<Bracket> followed(bool up);
@@ -28,7 +31,6 @@ class RemedySearch {
   std::optional<Bracket> scanned(bool up, double from, Until until);
   std::optional<Bracket> nearest();
   Bracket around(const MarginSide& side, bool up, bool rests_beyond);
-  void locate_far_edge(Remedy& remedy, const Bracket& near);
   Remedy nothing_found() const;
   std::string number(double value, int shown = 3) const;
 

@@ -35,7 +35,12 @@ std::vector<StraightPiece> straight_pieces(const Element& element) {
     const double limit = element.number("limit").value(), at = limit / slope;
     return {{.slope = slope, .low = -at, .high = at}, {0.0, limit, at, infinite}, {0.0, -limit, -infinite, -at}};
   }
-  if (element.kind() == "reset-integrator") return {{.free = true, .still = true}};
+  if (element.kind() == "reset-integrator" || element.kind() == "stop-reset-integrator")
+    return {{.free = true, .still = true}};
+  if (element.kind() == "impulses") {
+    const double band = element.number("band").value();
+    return {{.low = -band, .high = band}};
+  }
   if (element.kind() == "output-rate") return {{}};  // nothing moves
   if (element.kind() == "friction-compensation") {
     const double level = element.number("level").value();

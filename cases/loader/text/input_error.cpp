@@ -9,6 +9,8 @@
 namespace limcycle {
 namespace {
 
+constexpr std::size_t longest_sentence = 1000;  ///< a list of all kinds of blocks fits
+
 std::string place_of(const InputFault& fault) {
   if (!fault.override.empty()) return "--set " + one_line(fault.override, 120) + ": ";
   if (fault.file.empty()) return "";
@@ -24,8 +26,8 @@ std::string message_of(const InputFault& fault) {
     if (!fault.value.empty()) text += (fault.key.starts_with("--") ? " " : " = ") + one_line(fault.value, 120);
     text += ": ";
   }
-  text += one_line(fault.rule, 600);
-  if (!fault.suggestion.empty()) text += "; " + one_line(fault.suggestion, 600);
+  text += one_line(fault.rule, longest_sentence);
+  if (!fault.suggestion.empty()) text += "; " + one_line(fault.suggestion, longest_sentence);
   return text;
 }
 

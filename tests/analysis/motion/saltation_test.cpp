@@ -3,7 +3,9 @@
 
 #include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/of_controllers/impulses.hpp"
 #include "limcycle/models/element/of_controllers/reset_integrator.hpp"
+#include "limcycle/models/element/of_controllers/stop_reset_integrator.hpp"
 #include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/models/element/with_memory/delayed_relay.hpp"
 #include "limcycle/models/element/with_memory/relay.hpp"
@@ -277,6 +279,47 @@ TEST_CASE("saltation: a reset integrator, ready and waiting, with and without an
     check_agreement(ready);
     CHECK(ready.saltation.row(3).cwiseAbs().maxCoeff() < 1e-12);
   }
+}
+
+TEST_CASE("saltation: an impulse begins and ends, and an integral is reset at a stop") {
+  // 1/(s + 1)^2 with e = -y; the states are put where the guard is zero.
+  const auto on_surface = [](const Loop& loop, double y, double rate) {
+    Eigen::Matrix2d rows;
+    rows << loop.C_y, loop.C_y * loop.A.topLeftCorner(2, 2);
+    return Eigen::Vector2d(rows.partialPivLu().solve(Eigen::Vector2d(y, rate)));
+  };
+  Impulses<double> impulses;
+  impulses.force = 2.0;
+  impulses.width = 0.1;
+  impulses.pause = 0.5;
+  impulses.band = 0.02;
+  impulses.speed = 0.3;
+  const Loop pulsed = forward(impulses, {1.0}, {1.0, 2.0, 1.0});
+  const Eigen::Vector2d leaves = on_surface(pulsed, -0.02, -0.2), stops = on_surface(pulsed, -0.5, -0.3);
+  const auto begun = switched(pulsed, {{leaves(0), leaves(1), 0.0}, {Mode{0}}}, 2, same(3, 1e-5));
+  CHECK(begun.after[0] == Mode{2});
+  check_agreement(begun);
+  // A neighbour that begins later by dt has that much more of the impulse left.
+  CHECK((begun.saltation.row(2).head(2) - pulsed.C_y / 0.2).cwiseAbs().maxCoeff() < 1e-12);
+  const auto stopped = switched(pulsed, {{stops(0), stops(1), 0.0}, {Mode{1}}}, 0, same(3, 1e-5));
+  CHECK(stopped.after[0] == Mode{2});
+  check_agreement(stopped);
+  const auto ended = switched(pulsed, {{0.3, 0.2, 0.0}, {Mode{-2}}}, 0, same(3, 1e-5));
+  CHECK(ended.after[0] == Mode{3});
+  check_agreement(ended);
+
+  StopResetIntegrator<double> integral;
+  integral.gain = 2.0;
+  integral.share = 0.7;
+  integral.speed = 0.3;
+  const Loop reset_loop = forward(integral, {1.0}, {1.0, 2.0, 1.0});
+  const Eigen::Vector2d at = on_surface(reset_loop, -0.5, -0.3);
+  const auto reset = switched(reset_loop, {{at(0), at(1), -0.4}, {Mode{1}}}, 0, same(3, 1e-5));
+  CHECK(reset.after[0] == Mode{0});
+  check_agreement(reset);
+  CHECK(reset.saltation(2, 2) == Approx(0.3).epsilon(1e-12));
+  const auto kept = switched(reset_loop, {{at(0), at(1), 0.4}, {Mode{1}}}, 0, same(3, 1e-5));
+  CHECK((kept.saltation - MatrixXd::Identity(3, 3)).cwiseAbs().maxCoeff() < 1e-12);
 }
 
 TEST_CASE("saltation: a delayed relay keeps when it was told") {

@@ -106,16 +106,16 @@ TEST_CASE("remedy candidates: each name once, applicable where the case has its 
   std::vector<std::string> names, fit;
   for (const auto& one : candidates) {
     names.push_back(one.name);
-    CHECK(one.why_not.empty() == static_cast<bool>(one.parts));
+    CHECK(one.why_not.empty() == (one.parts || one.sized));
     if (one.why_not.empty()) fit.push_back(one.name);
   }
   CHECK(names == std::vector<std::string>{"error-dead-zone", "integrator-leak", "integrator-clamp", "integrator-reset",
-                                          "gain-kp", "gain-ki", "gain-kd", "friction-compensation",
+                                          "integrator-stop-reset", "gain-kp", "gain-ki", "gain-kd",
+                                          "gain-line-bandwidth", "gain-line-margin", "friction-compensation",
                                           "impulse-compensation", "dither", "integral-band", "velocity-feedforward",
                                           "damping", "stiffness"});
-  CHECK(fit == std::vector<std::string>{"error-dead-zone", "integrator-leak", "integrator-clamp", "integrator-reset",
-                                        "gain-kp", "gain-ki", "gain-kd", "friction-compensation", "dither",
-                                        "integral-band", "damping", "stiffness"});
+  std::erase(names, "velocity-feedforward");
+  CHECK(fit == names);
   const auto& zone = candidates.front();
   const auto parts = zone.parts(0.02);
   REQUIRE(parts);
@@ -127,6 +127,45 @@ TEST_CASE("remedy candidates: each name once, applicable where the case has its 
   CHECK_FALSE(reset->parts(2.1));
   for (const auto& one : remedy_candidates(servo_case({"loop.controller.leak=0.1"})))
     if (one.name == "integrator-reset") CHECK(one.why_not.find("cannot stand beside leak") != std::string::npos);
+}
+
+TEST_CASE("remedy candidates: impulses and a reset at a stop have the sizes of the hunting motion") {
+  const auto candidates = remedy_candidates(servo_case());
+  const HuntingSizes sizes{0.064, 0.26, 1.5};
+  const auto sized = [&](const std::string& name) {
+    return std::ranges::find(candidates, name, &RemedyCandidate::name)->sized(sizes);
+  };
+  const RemedyCandidate impulses = sized("impulse-compensation");
+  REQUIRE(impulses.why_not.empty());
+  CHECK(impulses.band == 0.0064);
+  const auto parts = impulses.parts(2.0);
+  REQUIRE(parts);
+  const auto& pid = std::get<Pid>(parts->controller);
+  CHECK(pid.impulse == 2.0);
+  CHECK(pid.impulse_band == 0.0064);
+  CHECK(pid.ki == 0.0);
+  CHECK(pid.impulse_width < pid.impulse_pause);
+  const auto reset = sized("integrator-stop-reset").parts(1.5);
+  REQUIRE(reset);
+  CHECK(std::get<Pid>(reset->controller).integral_reset == 1.5);
+  CHECK(std::get<Pid>(reset->controller).reset_speed == 0.00017);
+  const auto limited = remedy_candidates(servo_case({"loop.controller.integral_limit=2.0"}));
+  const auto held = std::ranges::find(limited, "impulse-compensation", &RemedyCandidate::name)->sized(sizes);
+  CHECK(held.why_not.find("needs ki") != std::string::npos);
+}
+
+TEST_CASE("remedy candidates: along a line of gains kd follows kp, in the loop and in the case") {
+  const Case from = servo_case();
+  for (const auto& one : remedy_candidates(from)) {
+    if (!one.name.starts_with("gain-line")) continue;
+    CAPTURE(one.name);
+    const double kp = 1.5 * one.own;
+    const auto parts = one.parts(kp);
+    REQUIRE(parts);
+    const Case written = read_again(from, remedy_overrides(one, kp));
+    CHECK(std::get<Pid>(written.loop->controller).kp == kp);
+    CHECK(std::get<Pid>(written.loop->controller).kd == std::get<Pid>(parts->controller).kd);
+  }
 }
 
 TEST_CASE("remedy candidates: a dither is a sine in [simulate], of which the case then has a section") {

@@ -3,6 +3,8 @@
 #include <numbers>
 
 #include "limcycle/analysis/energy/loop/stuck_set.hpp"
+#include "limcycle/analysis/orbit/simulate/simulate.hpp"
+#include "limcycle/analysis/study/remedy/actuator_travel.hpp"
 #include "limcycle/analysis/study/remedy/linear_costs.hpp"
 #include "limcycle/analysis/study/remedy/rest_range.hpp"
 #include "limcycle/models/element/memoryless/dead_zone.hpp"
@@ -152,4 +154,53 @@ TEST_CASE("step numbers: the last time outside 2 % and the largest swing beyond 
   CHECK(numbers.settling_time == 2.0);
   CHECK(numbers.overshoot == 0.25);
   CHECK(step_numbers({}, {}, 1.0).overshoot == 0.0);
+}
+
+TEST_CASE("rest range: impulses leave the error within their band, a reset at a stop none") {
+  LoopParts parts = position_loop(3.0, 0.0, 6.0);
+  auto& controller = std::get<Pid>(parts.controller);
+  controller.impulse = 2.0;
+  controller.impulse_width = 0.1;
+  controller.impulse_pause = 0.5;
+  controller.impulse_band = 0.02;
+  controller.impulse_speed = 1e-3;
+  check_range(parts, -0.02, 0.02);
+  controller = pid(3.0, 4.0, 6.0);
+  controller.integral_reset = 1.0;
+  controller.reset_speed = 1e-3;
+  check_range(parts, 0.0, 0.0);
+}
+
+TEST_CASE("actuator travel: that of a proportional command is kp times the way of y, in two units of length") {
+  for (const double unit : {1.0, 1e-3}) {
+    LoopParts parts = servo_parts(coulomb(0.15, 0.1));
+    parts.plant = Mass{1.0 / unit, 0.0, 0.0};
+    parts.controller = pid(3.0 / unit, 0.0, 0.0);
+    SimulateOptions run;
+    run.duration = 60.0;
+    run.rtol = 1e-9;
+    run.sample = 1e-2;
+    run.initial = {{"y", unit}};
+    const Simulation seen = simulate(build_loop(parts), run);
+    double way = 0.0;
+    for (std::size_t i = 1; i < seen.trace.y.size(); ++i) way += std::abs(seen.trace.y[i] - seen.trace.y[i - 1]);
+    CHECK(actuator_travel(parts, unit, 60.0).value() == Approx(3.0 / unit * way).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("actuator travel: impulses count up and down, and where the command is not a row of numbers there is none") {
+  LoopParts parts = servo_parts(coulomb(1.0, 1.0));
+  Pid controller = pid(0.0, 0.0, 0.0);
+  controller.impulse = 3.0;
+  controller.impulse_width = 0.1;
+  controller.impulse_pause = 0.5;
+  controller.impulse_band = 0.02;
+  controller.impulse_speed = 1e-3;
+  parts.plant = Mass{2.0, 0.0, 0.0};
+  parts.controller = controller;
+  CHECK(actuator_travel(parts, 0.1, 20.0).value() == Approx(6 * 2 * 3.0).epsilon(1e-12));  // six hops of 0.015 m
+  controller = pid(3.0, 0.0, 6.0);
+  controller.sample_time = 0.01;
+  parts.controller = controller;
+  CHECK_FALSE(actuator_travel(parts, 0.1, 20.0));
 }

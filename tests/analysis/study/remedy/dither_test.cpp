@@ -149,10 +149,8 @@ TEST_CASE("dither: the loop hunts under a weak one and not under a strong one, i
 TEST_CASE("dither: loops that have none, with the reason") {
   LoopParts parts = hunting_servo(1.0);
   parts.friction = test::lugre();
-  CHECK(why_no_dither(parts).find("Coulomb") != std::string::npos);
-  parts = hunting_servo(1.0);
   std::get<Pid>(parts.controller).saturation = 5.0;
-  CHECK(why_no_dither(parts).find("loop.controller.saturation") != std::string::npos);
+  CHECK(why_no_dither(parts).empty());  // simulated as it is, without a mean law
   parts = hunting_servo(1.0);
   std::get<Pid>(parts.controller).sample_time = 0.01;
   CHECK(why_no_dither(parts).find("sampling") != std::string::npos);

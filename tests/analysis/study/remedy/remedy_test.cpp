@@ -235,3 +235,59 @@ TEST_CASE("remedy: a cycle that shrinks to nothing is followed to its edge, fart
   CHECK(remedy.costs.steady_state_error->high == Approx(0.0).margin(1e-9));
   CHECK(remedy.costs.steady_state_error->low == Approx(0.0).margin(1e-9));
 }
+
+TEST_CASE("impulses in the place of integral action bring a servo within their band, in two units of length") {
+  std::vector<double> sizes, edges;
+  for (const double unit : units()) {
+    LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+    parts.plant = Mass{1.0 / unit, 0.0, 0.0};
+    parts.controller = test::pid(3.0 / unit, 4.0 / unit, 6.0 / unit);
+    RemedyCandidate candidate{"test",         "loop.controller.impulse", "N", {}, 0.0,
+                              Measure::force, RemedyCandidate::Way::up};
+    candidate.sized = [parts, candidate](const HuntingSizes& of) {
+      RemedyCandidate with = candidate;
+      with.sized = {};
+      with.band = 0.1 * of.displacement;
+      with.parts = [parts, of](double force) -> std::optional<LoopParts> {
+        LoopParts pushed = parts;
+        auto& pid = std::get<Pid>(pushed.controller);
+        pid.ki = 0.0;
+        pid.impulse = force;
+        pid.impulse_width = 0.01;
+        pid.impulse_pause = 0.5;
+        pid.impulse_band = 0.1 * of.displacement;
+        pid.impulse_speed = 0.01 * of.displacement * of.frequency;
+        return pushed;
+      };
+      return with;
+    };
+    const RemedyReport report = remedies(parts, {candidate}, quick());
+    REQUIRE(report.remedies.size() == 1);
+    const Remedy& remedy = report.remedies.front();
+    REQUIRE(remedy.ends == true);
+    const double band = remedy.candidate.band;
+    CHECK(remedy.costs.steady_state_error->high == Approx(band).epsilon(1e-6));
+    CHECK(remedy.costs.actuator_travel.value() > 2.0 * remedy.value);
+    const auto ends_at = [&](double force) {
+      const auto found = predict(build_loop(*remedy.candidate.parts(force)));
+      double most = 0.0;
+      for (const auto& one : found.outcomes) {
+        CHECK(one.outcome == Outcome::rest);
+        most = std::max(most, std::abs(one.trace.y.back()));
+      }
+      return most;
+    };
+    CHECK(ends_at(remedy.value) <= 1.01 * band);
+    CHECK(ends_at(0.98 * remedy.value) > band);
+    if (!remedy.edges.empty()) {
+      CHECK(remedy.beyond.front() / remedy.edges.front() < 1.002);
+      // Just beyond there is a stable cycle that no start of predict() reaches.
+      const auto beyond = predict(build_loop(*remedy.candidate.parts(1.5 * remedy.beyond.front())));
+      CHECK(std::ranges::any_of(beyond.cycles, [](const Cycle& one) { return one.stable == true; }));
+    }
+    sizes.push_back(remedy.value);
+    edges.push_back(remedy.edges.empty() ? 0.0 : remedy.edges.front());
+  }
+  for (const double size : sizes) CHECK(size == Approx(sizes.front()).epsilon(0.02));
+  for (const double edge : edges) CHECK(edge == Approx(edges.front()).epsilon(0.02));
+}

@@ -85,12 +85,44 @@ TEST_CASE("a PID: one way to hold its integral back at a time, and in a diagram 
              StartsWith("a.toml:12: loop.controller.integral_reset") && Contains("cannot stand beside integral_limit"));
   CHECK_THAT(pid("ki = 1.0\nsample_time = 0.01\nintegral_reset = 1.0\n"), Contains("not for a sampled controller"));
   CHECK_THAT(pid("ki = 1.0\nsample_time = 0.01\nintegral_band = 2.0\n"), Contains("not for a sampled controller"));
+  CHECK(pid("ki = 1.0\nintegral_reset = 2.0\nreset_speed = 0.1\n").empty());
+  CHECK_THAT(pid("ki = 1.0\nreset_speed = 0.1\n"),
+             StartsWith("a.toml:11: loop.controller.reset_speed") && Contains("needs integral_reset"));
+  CHECK_THAT(pid("ki = 1.0\nintegral_reset = 1.0\nreset_speed = 0.1\nreset_interval = 1.0\n"),
+             StartsWith("a.toml:13: loop.controller.reset_interval") && Contains("not beside reset_speed"));
+  CHECK_THAT(pid("ki = 1.0\nintegral_reset = 1.0\nreset_speed = 0.1\n[loop.error]\nkind = \"dead-zone\"\nhalf_width = "
+                 "0.1\n"),
+             Contains("loop.controller.reset_speed") && Contains("cannot stand beside [loop.error]"));
   CHECK_THAT(
       message("[diagram]\noutput = \"axis.y\"\n[[diagram.block]]\nname = \"axis\"\nkind = \"mass\"\nmass = 1.0\n"
               "input = \"c\"\n[[diagram.block]]\nname = \"c\"\nkind = \"pid\"\nkp = 1.0\nki = 1.0\n"
               "integral_limit = 2.0\ninput = \"r - axis.y\"\n[[diagram.block]]\nname = \"f\"\nkind = \"coulomb\"\n"
               "Fc = 1.0\non = \"axis\"\n"),
       Contains("clamped-pi"));
+}
+
+TEST_CASE("impulses of a PID: all their numbers or none, and none of a sampled controller") {
+  const auto pid = [](const std::string& more) {
+    return message(
+        "[loop.plant]\nkind = \"mass\"\nmass = 1.0\n[loop.friction]\nkind = \"coulomb\"\nFc = 1.0\n"
+        "[loop.controller]\nkind = \"pid\"\nkp = 2.0\n" +
+        more);
+  };
+  const std::string all =
+      "impulse = 2.0\nimpulse_width = 0.1\nimpulse_pause = 0.5\nimpulse_band = 0.01\nimpulse_speed = 0.001\n";
+  CHECK(pid(all).empty());
+  CHECK(pid(all + "[loop.error]\nkind = \"dead-zone\"\nhalf_width = 0.1\n").empty());  // by the error before it
+  CHECK_THAT(pid("impulse_band = 0.1\n"),
+             StartsWith("a.toml:10: loop.controller.impulse_band") && Contains("needs impulse"));
+  CHECK_THAT(pid("impulse = 2.0\nimpulse_width = 0.1\nimpulse_pause = 0.5\nimpulse_speed = 0.001\n"),
+             StartsWith("a.toml:10: loop.controller.impulse") && Contains("needs impulse_band"));
+  CHECK_THAT(pid(all + "sample_time = 0.01\n"), Contains("not for a sampled controller"));
+  CHECK_THAT(message("[diagram]\noutput = \"axis.y\"\n[[diagram.block]]\nname = \"axis\"\nkind = \"mass\"\nmass = 1.0\n"
+                     "input = \"c\"\n[[diagram.block]]\nname = \"c\"\nkind = \"pid\"\nkp = 1.0\n" +
+                     all +
+                     "input = \"r - axis.y\"\n[[diagram.block]]\nname = \"f\"\nkind = \"coulomb\"\nFc = 1.0\non = "
+                     "\"axis\"\n"),
+             Contains("let the impulses be a block of their own"));
 }
 
 TEST_CASE("a ramp as reference") {
