@@ -253,6 +253,10 @@ class Candidates {
     if (!parts_.friction) return not_there(name, "there is no friction");
     if (!has_controller()) return not_there(name, "there is no controller");
     vary(name, *at("loop.controller.friction_compensation"), Measure::force, Way::both);
+    if (parts_.friction->facts().holds == Held::nothing && list_.back().is_absent())
+      list_.back().in_vain =
+          "this friction is smooth at v = 0, where the compensation is not: in a small swing it gives more energy than "
+          "any damping takes, so that the body never rests";
   }
 
   void feedforward() {

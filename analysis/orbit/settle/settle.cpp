@@ -258,7 +258,7 @@ class Settling {
       const double change = largest_change(swings.turning, order);
       if (change > least) continue;
       if (shrinks_to_nothing(swings.turning, order)) {
-        swings.next_try = next_try_after(swings.turning, 1.5);
+        swings.next_try = next_try_after(swings.turning);
         return;
       }
       if (try_cycle(swings, order, change)) return;
@@ -285,8 +285,9 @@ class Settling {
     return change == last_change || now - last_change * last_change / (change - last_change) < small * now;
   }
 
-  static std::size_t next_try_after(const TurningPoints& turning, double factor) {
-    return static_cast<std::size_t>(factor * static_cast<double>(turning.points().size())) + 1;
+  static std::size_t next_try_after(const TurningPoints& turning) {
+    const std::size_t turns = turning.points().size();
+    return turns + turns / 2 + 1;
   }
 
   /// Displacement of the body that rubs.
@@ -324,7 +325,7 @@ class Settling {
     const long most = loop_.continuous ? steps_of_sampled_tries + march_.steps() / sampled_steps_per_try
                                        : steps_of_tries + tries_per_step * march_.steps();
     if (tried_ > most) return false;
-    swings.next_try = next_try_after(swings.turning, 1.5);
+    swings.next_try = next_try_after(swings.turning);
     const Trace period = recent(swings.turning, order);
     const auto [low, high] = extremes(period);
     const double swing = high - low;
@@ -357,8 +358,6 @@ class Settling {
     }
     if (shot.status == Status::converged) shorten(loop_, shot, section, half, shooting, tried_);
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
-    // All maps in vain: soon it would be no better.
-    if (shot.status == Status::max_iterations) swings.next_try = next_try_after(swings.turning, 3.0);
     if (shot.status != Status::converged) return false;
     const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);
     if (shot.cycle.stable == false) {

@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/orbit/simulate/simulate.hpp"
+#include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
 #include "limcycle/analysis/study/predict/loop_in_time.hpp"
@@ -20,6 +21,12 @@ namespace {
 
 constexpr double before_remedies = 0.1;  ///< of the progress bar
 
+/// "PATH=VALUE" with a value of four digits.
+std::string shortened(const std::string& assignment) {
+  const auto at = assignment.find('=') + 1;
+  return assignment.substr(0, at) + short_number(std::stod(assignment.substr(at)), 4);
+}
+
 class RemedyStudy {
  public:
   RemedyStudy(const LoopParts& parts, const std::vector<RemedyCandidate>& candidates, const RemedyOptions& options)
@@ -32,7 +39,7 @@ class RemedyStudy {
       report_.cause = cause_of(parts_, loop_.judging, loop_.cycles);
       try_all();
       for (const Remedy& one : report_.remedies)
-        if (one.ends == true && one.candidate.frequency > 0.0)
+        if (one.ends == true && (one.candidate.frequency > 0.0 || one.candidate.band > 0.0 || one.candidate.follows))
           report_.notes.push_back(one.candidate.name + ": " + one.why);
       order_remedies(report_.remedies, options_.weights);
     }
@@ -115,12 +122,13 @@ class RemedyStudy {
   Remedy one(const RemedyCandidate& given, const std::function<void(double)>& progress) const {
     const RemedyCandidate candidate = given.sized ? given.sized(loop_.sizes) : given;
     if (!candidate.why_not.empty()) return {candidate, std::nullopt, 0.0, {}, {}, candidate.why_not};
+    if (!candidate.in_vain.empty()) return {candidate, false, 0.0, {}, {}, candidate.in_vain};
     if (candidate.frequency > 0.0) return dithered(candidate, progress);
     Remedy remedy = candidate.band > 0.0 ? impulse_remedy(candidate, parts_.reference, loop_, progress)
                                          : RemedySearch(candidate, loop_, progress).run();
     if (remedy.ends != true || stopped()) return remedy;
     if (candidate.follows)
-      for (const std::string& one : candidate.follows(remedy.value)) remedy.why += ", with " + one;
+      for (const std::string& one : candidate.follows(remedy.value)) remedy.why += ", with " + shortened(one);
     if (const auto parts = candidate.parts(remedy.value))
       remedy.costs = loop_costs(*parts, report_.step, remedy.after, true);
     remedy.costs.robust_share = robust_share(remedy);

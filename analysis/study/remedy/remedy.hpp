@@ -37,6 +37,7 @@ struct RemedyCandidate {
   std::vector<std::string> with = {};                          ///< what a case needs beside it, "PATH=VALUE"
   /// What else changes with the value, likewise.
   std::function<std::vector<std::string>(double)> follows = {};
+  std::string in_vain = {};  ///< proof that no value of its number ends the hunting, a clause; empty: one may
   double frequency = 0.0;  ///< rad/s, if its number is the amplitude of a dither, which is no part of the loop; else 0
   double band = 0.0;       ///< > 0: its number is the size of impulses that leave an error of at most this
   /// For a remedy whose other numbers depend on the hunting motion: the same with them.

@@ -111,8 +111,9 @@ std::optional<Bracket> RemedySearch::scanned(bool up, double from, Until until) 
   double last = from;
   int diverging = 0, open = 0;
   for (int k = begin == from ? 1 : 0; k <= steps && !edge_.stopped(); ++k) {
-    const double value = begin * std::pow(end / begin, static_cast<double>(k) / steps);
+    double value = begin * std::pow(end / begin, static_cast<double>(k) / steps);
     if (progress_) progress_(static_cast<double>(k) / steps);
+    if (!candidate_.parts(value) && k > 0) value = std::sqrt(last * value);  // up to where values are valid
     if (!candidate_.parts(value)) break;
     const Hunts here = edge_.judged(value, HuntingEdge::Care::quick);
     if (until == Until::rests && here == Hunts::no) return Bracket{value, last};
@@ -136,24 +137,25 @@ std::optional<Bracket> RemedySearch::scanned(bool up, double from, Until until) 
   return std::nullopt;
 }
 
-/// The nearer edge of the two sides; of two as near, that of the larger magnitude.
-std::optional<Bracket> RemedySearch::nearest() {
+/// The edges of the two sides, the nearer first; of two as near, that of the larger magnitude.
+std::vector<Bracket> RemedySearch::edges() {
   using Way = RemedyCandidate::Way;
-  std::optional<Bracket> best;
+  std::vector<Bracket> found;
   const auto distance = [&](const Bracket& one) {
     return candidate_.is_absent() ? 0.0 : std::abs(std::log(one.rests / candidate_.own));
   };
   for (const bool up : {true, false}) {
     if (up ? candidate_.way == Way::down : candidate_.way == Way::up || candidate_.own == 0.0) continue;
-    if (auto one = followed(up); one && (!best || distance(*one) < distance(*best))) {
-      best = std::move(one);
-      best->hunting = edge_.hunting;
+    if (auto one = followed(up)) {
+      one->hunting = edge_.hunting;
+      found.push_back(std::move(*one));
     }
-    if (edge_.stopped()) return std::nullopt;
+    if (edge_.stopped()) return {};
   }
-  if (!best && candidate_.way != Way::up && !candidate_.is_absent() && edge_.judged(0.0) == Hunts::no)
-    return Bracket{0.0, 0.0};
-  return best;
+  std::ranges::stable_sort(found, {}, distance);
+  if (found.empty() && candidate_.way != Way::up && !candidate_.is_absent() && edge_.judged(0.0) == Hunts::no)
+    found.push_back({0.0, 0.0});
+  return found;
 }
 
 void RemedySearch::locate_far_edge(Remedy& remedy, const Bracket& near) {
@@ -206,46 +208,55 @@ Remedy RemedySearch::nothing_found() const {
 }
 
 Remedy RemedySearch::run() {
-  auto edge = nearest();
-  if (!edge) return nothing_found();
+  const auto all = edges();
+  Remedy remedy = all.empty() ? nothing_found() : at_edge(all.front());
+  // The nearer one may be no edge of what `predict` finds.
+  if (all.size() > 1 && !remedy.ends && !edge_.stopped())
+    if (Remedy other = at_edge(all.back()); other.ends == true) return other;
+  return remedy;
+}
+
+/// It rests however small, or however large, the number is.
+Remedy RemedySearch::without_edge(const Bracket& edge) {
   Remedy remedy{candidate_, true};
-  if (edge->hunts == 0.0 || std::isinf(edge->hunts)) {
-    if (edge->rests == 0.0)
-      remedy.why =
-          "only 0 ends it: " + (seen_.empty() ? std::string("it hunts at every other value tried") : seen_.back());
-    else
-      remedy.why = "rests at every value tried, " + std::string(edge->hunts == 0.0 ? "down" : "up") + " to " +
-                   number(edge->rests);
-    remedy.value = edge->rests;
-    if (edge_.judged(edge->rests) != Hunts::no) remedy.ends = std::nullopt;
-    remedy.after = edge_.run;
-    return remedy;
-  }
-  edge_.hunting = edge->hunting;
-  const Bracket found = *edge;
-  if (!edge_.confirm(*edge)) {
-    if (auto wide = edge_.stopped() ? std::nullopt : edge_.well_apart(found)) {
-      remedy.value = wide->rests;
-      remedy.edges.push_back(wide->rests);
-      remedy.beyond.push_back(wide->hunts);
-      remedy.why = "hunts at " + short_number(wide->hunts, edge_digits) + ", no longer at " +
-                   number(wide->rests, edge_digits) + "; `predict` does not decide all values between them";
-      remedy.after = edge_.run;
-      return remedy;
-    }
+  remedy.value = edge.rests;
+  if (edge.rests == 0.0)
+    remedy.why =
+        "only 0 ends it: " + (seen_.empty() ? std::string("it hunts at every other value tried") : seen_.back());
+  else
+    remedy.why =
+        "rests at every value tried, " + std::string(edge.hunts == 0.0 ? "down" : "up") + " to " + number(edge.rests);
+  if (edge_.judged(edge.rests) != Hunts::no) remedy.ends = std::nullopt;
+  remedy.after = edge_.run;
+  return remedy;
+}
+
+Remedy RemedySearch::at_edge(Bracket edge) {
+  if (edge.hunts == 0.0 || std::isinf(edge.hunts)) return without_edge(edge);
+  Remedy remedy{candidate_, true};
+  edge_.hunting = edge.hunting;
+  const Bracket found = edge;
+  const auto take = [&](const Bracket& one) {
+    remedy.value = one.rests;
+    remedy.edges.push_back(one.rests);
+    remedy.beyond.push_back(one.hunts);
+    remedy.why =
+        "hunts at " + short_number(one.hunts, edge_digits) + ", no longer at " + number(one.rests, edge_digits);
+  };
+  if (edge_.confirm(edge)) {
+    take(edge);
+    locate_far_edge(remedy, edge);
+  } else if (auto wide = edge_.stopped() ? std::nullopt : edge_.well_apart(found)) {
+    take(*wide);
+    remedy.why += "; `predict` does not decide all values between them";
+  } else {
     remedy.ends = std::nullopt;
     remedy.why = edge_.stopped()
                      ? "interrupted"
-                     : "hunting ends near " + number(edge->rests) +
+                     : "hunting ends near " + number(edge.rests) +
                            " on the cycle that was followed, but `predict` does not confirm it on both sides";
     return remedy;
   }
-  remedy.value = edge->rests;
-  remedy.edges.push_back(edge->rests);
-  remedy.beyond.push_back(edge->hunts);
-  remedy.why =
-      "hunts at " + short_number(edge->hunts, edge_digits) + ", no longer at " + number(edge->rests, edge_digits);
-  locate_far_edge(remedy, *edge);
   remedy.after = edge_.run;
   return remedy;
 }

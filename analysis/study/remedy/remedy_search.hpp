@@ -29,7 +29,9 @@ class RemedySearch {
   std::optional<Bracket> followed_from_nothing(bool up);
   enum class Until { rests, hunts };
   std::optional<Bracket> scanned(bool up, double from, Until until);
-  std::optional<Bracket> nearest();
+  std::vector<Bracket> edges();
+  Remedy without_edge(const Bracket& edge);
+  Remedy at_edge(Bracket edge);
   Bracket around(const MarginSide& side, bool up, bool rests_beyond);
   Remedy nothing_found() const;
   std::string number(double value, int shown = 3) const;
