@@ -113,6 +113,7 @@ MarginReport ask_margin(const Case& from, const MarginWishes& wishes, const Aski
   const auto parameters = margin_parameters(from, wishes, notes);
   MarginOptions options;
   options.factor = wishes.factor;
+  options.threads = asking.threads;
   options.predict = from.predict;
   options.predict.stop = asking.stop;
   options.predict.progress = asking.progress;

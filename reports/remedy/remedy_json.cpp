@@ -53,11 +53,10 @@ std::string remedy_csv(const RemedyReport& report) {
     out += csv_line({one.candidate.name, one.candidate.parameter, one.candidate.unit,
                      applicable && std::isfinite(one.candidate.own) ? shortest(one.candidate.own) : "",
                      applicable ? "yes" : "no", one.ends ? (*one.ends ? "yes" : "no") : "",
-                     one.ends == true ? shortest(one.value) : "", one.edges.size() > 1 ? shortest(one.edges[1]) : "",
-                     error ? shortest(error->low) : "", error ? shortest(error->high) : "", cell(costs.settling_time),
-                     cell(costs.overshoot), cell(costs.phase_margin), cell(costs.delay_margin),
-                     cell(costs.peak_sensitivity), cell(costs.noise_gain), cell(costs.actuator_travel),
-                     cell(costs.robust_share), one.why});
+                     one.ends == true ? shortest(one.value) : "", cell(one.again()), error ? shortest(error->low) : "",
+                     error ? shortest(error->high) : "", cell(costs.settling_time), cell(costs.overshoot),
+                     cell(costs.phase_margin), cell(costs.delay_margin), cell(costs.peak_sensitivity),
+                     cell(costs.noise_gain), cell(costs.actuator_travel), cell(costs.robust_share), one.why});
   }
   return out;
 }

@@ -58,7 +58,7 @@ Table remedy_table(const RemedyReport& report, const Units& units) {
     const auto cell = [&](double value, int digits) { return number_of_remedy(one.candidate, value, digits, units); };
     table.rows.push_back({one.candidate.name, short_path(one.candidate.parameter),
                           one.candidate.is_absent() ? "-" : cell(one.candidate.own, 4), cell(one.value, 4),
-                          one.edges.size() > 1 ? cell(one.edges[1], 4) : "-", one.best ? "*" : ""});
+                          one.again() ? cell(*one.again(), 4) : "-", one.best ? "*" : ""});
   }
   return table;
 }

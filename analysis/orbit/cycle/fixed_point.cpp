@@ -45,7 +45,7 @@ Status FixedPoint::warm_up(const LoopState& guess) {
   return status;
 }
 
-Status FixedPoint::solve(double rtol, double tolerance) {
+Status FixedPoint::solve(double rtol, double tolerance, int most_maps) {
   map_.set_rtol(rtol);
   map_.set_trace(true);
   chart_.emplace(map_.section(), largest_, typical_);
@@ -56,7 +56,8 @@ Status FixedPoint::solve(double rtol, double tolerance) {
   // Without a derivative nothing filters the noise of the integration.
   const auto goal = [&] { return no_derivative_ ? std::max(tolerance, 10.0 * rtol) : tolerance; };
   while (r.norm() > goal()) {
-    if (maps_ > options_.max_maps || map_.steps() > options_.max_steps) return Status::max_iterations;
+    if (maps_ > std::min(options_.max_maps, most_maps) || map_.steps() > options_.max_steps)
+      return Status::max_iterations;
     if (jacobian_.size() == 0) {
       if (const Status status = find_jacobian(rtol, r.size()); status != Status::converged) return status;
       fresh = true;

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <complex>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -24,7 +25,8 @@ class FixedPoint {
   /// Maps the guess until it changes little.
   Status warm_up(const LoopState& guess);
   /// Brings the residual below the tolerance; on return state() is the best point and residual_size() its residual.
-  Status solve(double rtol, double tolerance);
+  /// `most_maps`: with all before, if that is less than the options allow.
+  Status solve(double rtol, double tolerance, int most_maps = std::numeric_limits<int>::max());
   /// Relative difference in period and amplitude between the solution and that of a looser integration, which is so
   /// close that the derivative of the map leads to it.
   Status compare(double loose, double& difference);

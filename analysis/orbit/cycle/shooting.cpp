@@ -133,7 +133,7 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
   FixedPoint point(loop, {loop, section, reflection, map}, options);
   Status status = point.warm_up(guess);
   if (status != Status::converged) return failed(status, point, "the motion did not return to the section");
-  if (!exact && coarse > options.rtol) status = point.solve(coarse, 30.0 * coarse);
+  if (!exact && coarse > options.rtol) status = point.solve(coarse, 30.0 * coarse, 3 * options.max_maps / 5);
   if (status != Status::converged) return failed(status, point, "no fixed point of the return map was reached");
 
   ShootingResult result;

@@ -1,11 +1,16 @@
 #include "limcycle/analysis/study/continuation/margin.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <mutex>
+#include <numeric>
 
 #include "limcycle/analysis/derivative_notes.hpp"
+#include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/continuation/margin_side.hpp"
 #include "limcycle/analysis/study/continuation/outcome_side.hpp"
@@ -38,7 +43,7 @@ class Margins {
     report_.hunts = std::ranges::any_of(report_.cycles, [](const Cycle& cycle) { return cycle.stable == true; });
     if (loop_.sampled) look_at_outcomes(found.outcomes);
     measure_balance();
-    for (std::size_t i = 0; i < parameters_.size() && !stopped(); ++i) one(i);
+    follow_all();
     std::ranges::stable_sort(report_.parameters, {}, &ParameterMargin::distance);
     if (stopped()) report_.status = Status::interrupted;
     return std::move(report_);
@@ -76,21 +81,34 @@ class Margins {
     return report_.hunts ? side.where_hunting_ends(report_.cycles) : side.where_hunting_begins();
   }
 
-  void one(std::size_t index) {
-    ParameterMargin result{parameters_[index], {}, {}};
-    if (!by_outcome_) result.parameter.family = in_exact_time(std::move(result.parameter.family));
-    const double each = 0.85 / static_cast<double>(parameters_.size());
-    for (const bool up : {true, false}) {
-      const double begin = 0.15 + each * (static_cast<double>(index) + (up ? 0.0 : 0.5));
-      tell(begin, result.parameter.path);
-      MarginSide& target = up ? result.up : result.down;
-      target =
-          side_of(result.parameter, up, [&](double share) { tell(begin + 0.5 * each * share, result.parameter.path); });
-      if (stopped()) return;  // incomplete: not kept
-      if (target.what == MarginSide::What::unknown && report_.status == Status::converged)
-        report_.status = Status::incomplete;
+  /// Both sides of every parameter; those that were not finished are not kept.
+  void follow_all() {
+    std::vector<std::array<std::optional<MarginSide>, 2>> sides(parameters_.size());
+    std::vector<double> done(2 * parameters_.size(), 0.0);
+    std::mutex telling;
+    const auto progress_of = [&](std::size_t task, double fraction) {
+      const std::lock_guard lock(telling);
+      done[task] = std::max(done[task], fraction);
+      tell(0.15 + 0.85 * std::accumulate(done.begin(), done.end(), 0.0) / static_cast<double>(done.size()),
+           parameters_[task / 2].path);
+    };
+    std::atomic<std::size_t> next = 0;
+    on_threads(thread_count(options_.threads), [&] {
+      for (std::size_t task = next++; task < done.size() && !stopped(); task = next++) {
+        progress_of(task, 0.0);
+        MarginParameter parameter = parameters_[task / 2];
+        if (!by_outcome_) parameter.family = in_exact_time(std::move(parameter.family));
+        MarginSide side = side_of(parameter, task % 2 == 0, [&](double share) { progress_of(task, share); });
+        if (!stopped()) sides[task / 2][task % 2] = std::move(side);
+        progress_of(task, 1.0);
+      }
+    });
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+      const auto& [up, down] = sides[i];
+      for (const auto* side : {&up, &down})
+        if (*side && (*side)->what == MarginSide::What::unknown) report_.status = Status::incomplete;
+      if (up && down) report_.parameters.push_back({parameters_[i], *up, *down});
     }
-    report_.parameters.push_back(std::move(result));
   }
 
   const Loop& loop_;

@@ -57,6 +57,7 @@ struct MarginOptions {
   double accuracy = 1e-7;            ///< relative, of the cycles that are followed
   int scan_per_decade = 5;           ///< values at which a loop that rests is simulated
   long steps_a_branch = 10'000'000;  ///< of the integrator; some minutes at most, if each map takes long
+  int threads = 1;                   ///< sides of parameters at once; the numbers do not depend on it. 0: one a core
   PredictOptions predict;            ///< search for cycles at the own values; stop and progress are used throughout
 };
 

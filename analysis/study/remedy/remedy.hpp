@@ -63,6 +63,13 @@ struct Remedy {
   RemedyCosts costs = {};           ///< at `value`
   Trace after = {};                 ///< at `value`: the run from the largest displacement of predict()
   bool best = false;                ///< no other remedy is at least as good in every cost and better in one
+
+  /// Where hunting begins again; the only edge of impulses, since a loop without integral action rests under small
+  /// ones.
+  std::optional<double> again() const {
+    const std::size_t at = candidate.band > 0.0 ? 0 : 1;
+    return edges.size() > at ? std::optional(edges[at]) : std::nullopt;
+  }
 };
 
 /// A sample of a spread: the loop with a value of the remedy's number, and the numbers of that sample.
