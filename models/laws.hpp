@@ -17,6 +17,7 @@
 #include "limcycle/models/element/of_controllers/stop_reset_integrator.hpp"
 #include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/models/element/with_memory/delayed_relay.hpp"
+#include "limcycle/models/element/with_memory/hysteretic_dead_zone.hpp"
 #include "limcycle/models/element/with_memory/rate_limit.hpp"
 #include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/models/element/with_memory/valve_stiction.hpp"
@@ -59,8 +60,8 @@ struct KindList {
 using FrictionLaws = KindList<Coulomb, Stribeck, StribeckTable, Karnopp, Quinn, Kikuuwe, Awrejcewicz, Wojewoda, Dahl,
                               BoucWen, LuGre, LuGreTable, LuGreSpline, ElastoPlastic, Leuven, Jenkins, MaxwellSlip,
                               Iwan, Gms, GmsTable, Xiong, TwoState, NonDrift>;
-using ForwardElements = KindList<Relay, Saturation, RateLimit, DeadZone, Backlash, ValveStiction, Cubic, Lookup,
-                                 ClampedPi, ResetIntegrator, StopResetIntegrator, Impulses, Window>;
+using ForwardElements = KindList<Relay, Saturation, RateLimit, DeadZone, HystereticDeadZone, Backlash, ValveStiction,
+                                 Cubic, Lookup, ClampedPi, ResetIntegrator, StopResetIntegrator, Impulses, Window>;
 using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
 using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity, Sampled>;
 

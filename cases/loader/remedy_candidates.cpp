@@ -63,6 +63,8 @@ class Candidates {
 
   std::vector<RemedyCandidate> all() {
     dead_zone();
+    hold_back("integrator-dead-zone", "integral_dead_zone", Measure::displacement, Way::up);
+    hysteresis();
     leak();
     hold_back("integrator-clamp", "integral_limit", Measure::force, Way::down);
     hold_back("integrator-reset", "integral_reset", Measure::own, Way::up);
@@ -195,6 +197,28 @@ class Candidates {
     if (pid->ki == 0.0) return not_there(name, "there is no integral action");
     const CaseNumber* number = at("loop.controller." + key);
     add({name, number->path, number->unit, {}, number->value, measure, way});
+  }
+
+  /// A dead zone before the integral that lets it go on at twice the error at which it holds.
+  void hysteresis() {
+    const std::string name = "integrator-hysteresis";
+    const auto* pid = std::get_if<Pid>(&parts_.controller);
+    if (parts_.diagram)
+      return not_there(name, "in a diagram it is a block \"hysteretic-dead-zone\" before the integral");
+    if (pid == nullptr) return not_there(name, "the controller has no integral of that kind: kind \"pid\" has");
+    if (pid->ki == 0.0) return not_there(name, "there is no integral action");
+    if (pid->holds_integral_back()) return not_there(name, "the integral is held back already");
+    RemedyCandidate candidate{name, "loop.controller.integral_dead_zone", "m", {}, 0.0, Measure::displacement, Way::up};
+    candidate.parts = [parts = parts_](double value) -> std::optional<LoopParts> {
+      LoopParts changed = parts;
+      auto& controller = std::get<Pid>(changed.controller);
+      controller.integral_dead_zone = controller.integral_hysteresis = value;
+      return validate(changed) ? std::nullopt : std::optional(std::move(changed));
+    };
+    candidate.follows = [](double value) {
+      return std::vector<std::string>{override_of("loop.controller.integral_hysteresis", value)};
+    };
+    list_.push_back(std::move(candidate));
   }
 
   /// The same where the body stops: at a hundredth of the speed of the hunting.

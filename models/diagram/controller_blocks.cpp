@@ -1,17 +1,19 @@
 #include "limcycle/models/diagram/controller_blocks.hpp"
 
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/models/element/memoryless/window.hpp"
 #include "limcycle/models/element/of_controllers/clamped_pi.hpp"
 #include "limcycle/models/element/of_controllers/impulses.hpp"
 #include "limcycle/models/element/of_controllers/reset_integrator.hpp"
 #include "limcycle/models/element/of_controllers/sampled.hpp"
 #include "limcycle/models/element/of_controllers/stop_reset_integrator.hpp"
+#include "limcycle/models/element/with_memory/hysteretic_dead_zone.hpp"
 #include "limcycle/models/linear/discrete.hpp"
 
 namespace limcycle {
 namespace {
 
-/// The integral of a PID as one element; empty for one with a band.
+/// The integral of a PID as one element; empty for one with a band or a dead zone.
 std::optional<Element> held_integral(const Pid& pid) {
   if (pid.integral_limit < infinite) {
     ClampedPi<double> integral;
@@ -36,6 +38,24 @@ std::optional<Element> held_integral(const Pid& pid) {
   return std::nullopt;
 }
 
+/// What lets the error through to the integral.
+Element before_integral(const Pid& pid) {
+  if (pid.integral_band < infinite) {
+    Window<double> window;
+    window.half_width = pid.integral_band;
+    return window;
+  }
+  if (pid.integral_hysteresis > 0.0) {
+    HystereticDeadZone<double> zone;
+    zone.half_width = pid.integral_dead_zone;
+    zone.hysteresis = pid.integral_hysteresis;
+    return zone;
+  }
+  DeadZone<double> zone;
+  zone.half_width = pid.integral_dead_zone;
+  return zone;
+}
+
 /// The integral of a PID as blocks of its own, behind the rest of it.
 SignalSum through_held_integral(std::vector<Block>& blocks, const Pid& pid, SignalSum e) {
   const std::string path = "loop.controller";
@@ -46,10 +66,9 @@ SignalSum through_held_integral(std::vector<Block>& blocks, const Pid& pid, Sign
     blocks.push_back({"integral", path + "." + std::string(pid.held_back_by()), *integral, {std::move(e)}});
     return {{1.0, "controller", ""}, {1.0, "integral", ""}};
   }
-  Window<double> window;
-  window.half_width = pid.integral_band;
-  blocks.push_back({"integral_band", path + ".integral_band", Element(window), {std::move(e)}});
-  blocks.push_back({"integral", path, LinearBlock(Integrator{1.0, pid.leak}), {{{1.0, "integral_band", ""}}}});
+  const std::string key(pid.held_back_by());
+  blocks.push_back({key, path + "." + key, before_integral(pid), {std::move(e)}});
+  blocks.push_back({"integral", path, LinearBlock(Integrator{1.0, pid.leak}), {{{1.0, key, ""}}}});
   blocks.back().states = {"I"};
   return {{1.0, "controller", ""}, {pid.ki, "integral", ""}};
 }

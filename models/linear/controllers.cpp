@@ -45,6 +45,7 @@ ControllerModel NoController::model() const {
 std::string_view Pid::held_back_by() const {
   if (integral_limit < infinite) return "integral_limit";
   if (integral_band < infinite) return "integral_band";
+  if (integral_dead_zone > 0.0) return "integral_dead_zone";
   return integral_reset > 0.0 ? "integral_reset" : "";
 }
 
@@ -67,11 +68,14 @@ std::optional<BrokenRule> Pid::broken_together() const {
     return BrokenRule{"reset_speed", "needs integral_reset: there is no reset"};
   if (reset_speed > 0.0 && reset_interval > 0.0)
     return BrokenRule{"reset_interval", "is for resets where e changes sign, not beside reset_speed"};
+  if (integral_hysteresis > 0.0 && integral_dead_zone == 0.0)
+    return BrokenRule{"integral_hysteresis", "needs integral_dead_zone: there is none"};
   if (auto broken = broken_impulses()) return broken;
   const std::string key(held_back_by());
   if (key.empty()) return std::nullopt;
-  for (const auto& [other, is_there] :
-       {std::pair("integral_band", integral_band < infinite), {"integral_reset", integral_reset > 0.0}})
+  for (const auto& [other, is_there] : {std::pair("integral_band", integral_band < infinite),
+                                        {"integral_dead_zone", integral_dead_zone > 0.0},
+                                        {"integral_reset", integral_reset > 0.0}})
     if (is_there && key != other) return BrokenRule{other, "cannot stand beside " + key};
   if (ki == 0.0) return BrokenRule{key, "needs ki: there is no integral"};
   if (integral_limit < infinite && leak > 0.0)

@@ -102,13 +102,15 @@ struct NoController : ControllerParts {
 /// u = kp e + ki I + kd de/dt, dI/dt = e - leak I, the derivative filtered by 1/(tf s + 1) when tf > 0. A leak bounds
 /// what the integral can reach: ki/leak times a constant error. Three other ways to hold the integral back, one at a
 /// time: ki I stops at +-integral_limit (see ClampedPi), or I grows only while |e| is within integral_band (see
-/// Window), or the share integral_reset of I is taken off where e changes sign, at the earliest reset_interval after
-/// the last time (see ResetIntegrator), or with reset_speed where y stops beyond the set-point (see
-/// StopResetIntegrator). With `impulse`, a body that has stopped with an error is pushed on (see Impulses).
+/// Window), or only by what of e is beyond integral_dead_zone (see DeadZone), with integral_hysteresis by all of e,
+/// once |e| has exceeded the sum of both, until it is within integral_dead_zone (see HystereticDeadZone), or the share
+/// integral_reset of I is taken off where e changes sign, at the earliest reset_interval after the last time (see
+/// ResetIntegrator), or with reset_speed where y stops beyond the set-point (see StopResetIntegrator). With `impulse`,
+/// a body that has stopped with an error is pushed on (see Impulses).
 struct Pid : ControllerParts {
   double kp{}, ki{0.0}, kd{0.0}, tf{0.0}, leak{0.0}, integral_limit{infinite}, integral_band{infinite},
-      integral_reset{0.0}, reset_interval{0.0}, reset_speed{0.0}, impulse{0.0}, impulse_width{0.0}, impulse_pause{0.0},
-      impulse_band{0.0}, impulse_speed{0.0};
+      integral_dead_zone{0.0}, integral_hysteresis{0.0}, integral_reset{0.0}, reset_interval{0.0}, reset_speed{0.0},
+      impulse{0.0}, impulse_width{0.0}, impulse_pause{0.0}, impulse_band{0.0}, impulse_speed{0.0};
   static constexpr std::string_view kind = "pid";
   static constexpr std::string_view equation =
       "u = kp e + ki I + kd de/dt, dI/dt = e - leak I; tf > 0: derivative filtered by 1/(tf s + 1)";
@@ -126,6 +128,9 @@ struct Pid : ControllerParts {
          &Pid::integral_band,
          {0.0, infinite, true, false},
          false},
+        {"integral_dead_zone", "m", "largest |e| at which I holds", &Pid::integral_dead_zone, not_negative, false},
+        {"integral_hysteresis", "m", "by which |e| must then exceed it for I to go on", &Pid::integral_hysteresis,
+         not_negative, false},
         {"integral_reset",
          "1",
          "share of I that is taken off where e changes sign",

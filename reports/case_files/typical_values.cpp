@@ -61,6 +61,8 @@ constexpr std::array typical_rows{
     TypicalRow{"element", "rate-limit", "limit", {"50.0", "the actuator's largest rate"}},
     TypicalRow{"element", "rate-limit", "tau", {"0.01", "the actuator's time constant"}},
     TypicalRow{"element", "dead-zone", "half_width", {"0.1", "0.1 to 10 % of the largest input"}},
+    TypicalRow{"element", "hysteretic-dead-zone", "half_width", {"0.1", "0.1 to 10 % of the largest input"}},
+    TypicalRow{"element", "hysteretic-dead-zone", "hysteresis", {"0.1", "half_width"}},
     TypicalRow{"element", "backlash", "half_gap", {"0.1", "0.1 to 10 % of the largest input"}},
     TypicalRow{"element", "valve-stiction", "S", {"0.1", "1 to 10 % of the travel"}},
     TypicalRow{"element", "valve-stiction", "J", {"0.05", "0 to S"}},

@@ -44,7 +44,8 @@ const Bad bad_values[] = {
     {"misspelt key", "sigma0", "sigm0", ":13: loop.friction.sigm0: unknown key; did you mean sigma0?"},
     {"unknown key", "kp = 3.0", "kp = 3.0\nspeed = 1",
      ":8: loop.controller.speed: unknown key; known: kind, kp, ki, kd, tf, leak, integral_limit, integral_band, "
-     "integral_reset, reset_interval, reset_speed, impulse, impulse_width, impulse_pause, impulse_band, "
+     "integral_dead_zone, integral_hysteresis, integral_reset, reset_interval, reset_speed, impulse, impulse_width, "
+     "impulse_pause, impulse_band, "
      "impulse_speed, "
      "sample_time, computation_delay, input_step, output_step, velocity_window, hold, "
      "friction_compensation, "

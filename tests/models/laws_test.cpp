@@ -60,6 +60,10 @@ TEST_CASE("elements are odd where they say so") {
   table.inputs = {0.0, 0.2, 0.5};
   table.outputs = {0.0, 0.4, 0.3};
   check_odd(table, {{0}, {1}, {2}, {3}, {4}});
+  HystereticDeadZone<double> zone;
+  zone.half_width = 0.2;
+  zone.hysteresis = 0.1;
+  check_odd(zone, {{-1}, {0}, {1}});
   Impulses<double> impulses;
   impulses.force = 2.0;
   impulses.pause = 1.0;

@@ -49,6 +49,7 @@ std::optional<Loop> linear_loop(LoopParts parts) {
         }
         if constexpr (std::is_same_v<C, Pid>) {
           controller.integral_limit = controller.integral_band = infinite;
+          controller.integral_dead_zone = controller.integral_hysteresis = 0.0;
           controller.integral_reset = controller.reset_interval = controller.reset_speed = 0.0;
           controller.impulse = controller.impulse_width = controller.impulse_pause = 0.0;
           controller.impulse_band = controller.impulse_speed = 0.0;

@@ -31,6 +31,10 @@ std::vector<StraightPiece> straight_pieces(const Element& element) {
     const double h = element.number("half_width").value();
     return {{.low = -h, .high = h}, {slope, -slope * h, h, infinite}, {slope, slope * h, -infinite, -h}};
   }
+  if (element.kind() == "hysteretic-dead-zone") {  // it may hold up to there
+    const double h = element.number("half_width").value(), most = h + element.number("hysteresis").value();
+    return {{.low = -most, .high = most}, {1.0, 0.0, h, infinite}, {1.0, 0.0, -infinite, -h}};
+  }
   if (element.kind() == "saturation") {
     const double limit = element.number("limit").value(), at = limit / slope;
     return {{.slope = slope, .low = -at, .high = at}, {0.0, limit, at, infinite}, {0.0, -limit, -infinite, -at}};

@@ -97,6 +97,7 @@ bool is_siso(const StateSpaceBlock& block) { return block.B.cols() == 1 && block
 bool end_integral(Controller& controller) {
   if (auto* pid = std::get_if<Pid>(&controller)) {
     pid->integral_limit = pid->integral_band = infinite;
+    pid->integral_dead_zone = pid->integral_hysteresis = 0.0;
     pid->integral_reset = pid->reset_interval = pid->reset_speed = 0.0;
     return set_members(*pid, {&Pid::ki}, 0.0);
   }

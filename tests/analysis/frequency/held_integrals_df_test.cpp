@@ -5,7 +5,7 @@
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/models/element/memoryless/window.hpp"
 #include "limcycle/models/element/of_controllers/clamped_pi.hpp"
-#include "limcycle/models/element/of_controllers/reset_integrator.hpp"
+#include "limcycle/models/element/with_memory/hysteretic_dead_zone.hpp"
 #include "limcycle/models/friction/sliders/jenkins.hpp"
 #include "limcycle/tests/analysis/frequency/df_laws.hpp"
 
@@ -136,6 +136,29 @@ Complex by_rule(const ResetIntegrator<double>& element, double A, double w, doub
 }
 
 }  // namespace
+
+TEST_CASE("hysteretic dead zone: its describing function against quadrature, and without hysteresis that of a window") {
+  const auto marched = test::with(DfMethod::quadrature, 1e-9);
+  HystereticDeadZone<double> zone;
+  zone.half_width = 0.2;
+  for (const double hysteresis : {1e-3, 0.1, 0.5})
+    for (const double A : {0.71, 1.0, 20.0}) {
+      zone.hysteresis = hysteresis;
+      const Complex expected = *zone.exact_describing_function(A, 3.0, 0.0);
+      const auto found = describing_function(zone, {A, 3.0, 0.0}, marched);
+      CAPTURE(hysteresis, A, found.gain, expected);
+      CHECK(std::abs(found.gain - expected) < 1e-8);
+      CHECK(expected.imag() < 0.0);  // it passes late
+    }
+  CHECK(*zone.exact_describing_function(0.69, 3.0, 0.0) == 0.0);
+  CHECK_FALSE(zone.exact_describing_function(1.0, 3.0, 0.1));
+  // Without hysteresis it passes what a window does not.
+  zone.hysteresis = 1e-12;
+  Window<double> window;
+  window.half_width = 0.2;
+  CHECK(std::abs(*zone.exact_describing_function(0.5, 1.0, 0.0) + *window.exact_describing_function(0.5, 1.0, 0.0) -
+                 1.0) < 1e-9);
+}
 
 TEST_CASE("reset integrator: Clegg's describing function, and that of a partial reset, against quadrature") {
   const auto marched = test::with(DfMethod::quadrature, 1e-9);

@@ -109,11 +109,11 @@ TEST_CASE("remedy candidates: each name once, applicable where the case has its 
     CHECK(one.why_not.empty() == (one.parts || one.sized));
     if (one.why_not.empty()) fit.push_back(one.name);
   }
-  CHECK(names == std::vector<std::string>{"error-dead-zone", "integrator-leak", "integrator-clamp", "integrator-reset",
-                                          "integrator-stop-reset", "gain-kp", "gain-ki", "gain-kd",
-                                          "gain-line-bandwidth", "gain-line-margin", "friction-compensation",
-                                          "impulse-compensation", "dither", "integral-band", "velocity-feedforward",
-                                          "damping", "stiffness"});
+  CHECK(names == std::vector<std::string>{
+                     "error-dead-zone", "integrator-dead-zone", "integrator-hysteresis", "integrator-leak",
+                     "integrator-clamp", "integrator-reset", "integrator-stop-reset", "gain-kp", "gain-ki", "gain-kd",
+                     "gain-line-bandwidth", "gain-line-margin", "friction-compensation", "impulse-compensation",
+                     "dither", "integral-band", "velocity-feedforward", "damping", "stiffness"});
   std::erase(names, "velocity-feedforward");
   CHECK(fit == names);
   const auto& zone = candidates.front();

@@ -169,6 +169,11 @@ TEST_CASE("rest range: impulses leave the error within their band, a reset at a 
   controller.integral_reset = 1.0;
   controller.reset_speed = 1e-3;
   check_range(parts, 0.0, 0.0);
+  controller = pid(3.0, 4.0, 6.0);
+  controller.integral_dead_zone = 0.02;
+  check_range(parts, -0.02, 0.02);
+  controller.integral_hysteresis = 0.01;
+  check_range(parts, -0.03, 0.03);
 }
 
 TEST_CASE("actuator travel: that of a proportional command is kp times the way of y, in two units of length") {

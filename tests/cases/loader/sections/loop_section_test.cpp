@@ -86,6 +86,14 @@ TEST_CASE("a PID: one way to hold its integral back at a time, and in a diagram 
   CHECK_THAT(pid("ki = 1.0\nsample_time = 0.01\nintegral_reset = 1.0\n"), Contains("not for a sampled controller"));
   CHECK_THAT(pid("ki = 1.0\nsample_time = 0.01\nintegral_band = 2.0\n"), Contains("not for a sampled controller"));
   CHECK(pid("ki = 1.0\nintegral_reset = 2.0\nreset_speed = 0.1\n").empty());
+  CHECK(pid("ki = 1.0\nleak = 0.1\nintegral_dead_zone = 0.1\n").empty());
+  CHECK(pid("ki = 1.0\nintegral_dead_zone = 0.1\nintegral_hysteresis = 0.1\n").empty());
+  CHECK_THAT(pid("ki = 1.0\nintegral_hysteresis = 0.1\n"),
+             StartsWith("a.toml:11: loop.controller.integral_hysteresis") && Contains("needs integral_dead_zone"));
+  CHECK_THAT(pid("integral_dead_zone = 0.1\n"), Contains("needs ki"));
+  CHECK_THAT(
+      pid("ki = 1.0\nintegral_dead_zone = 0.1\nintegral_reset = 1.0\n"),
+      StartsWith("a.toml:12: loop.controller.integral_reset") && Contains("cannot stand beside integral_dead_zone"));
   CHECK_THAT(pid("ki = 1.0\nreset_speed = 0.1\n"),
              StartsWith("a.toml:11: loop.controller.reset_speed") && Contains("needs integral_reset"));
   CHECK_THAT(pid("ki = 1.0\nintegral_reset = 1.0\nreset_speed = 0.1\nreset_interval = 1.0\n"),

@@ -178,11 +178,12 @@ void check_choice(const Parameter<Owner, double>& parameter) {
 }
 
 /// Parameters that a loop rejects although they exist: tested with that rule.
-constexpr std::string_view elsewhere[] = {"clearance",         "elements",       "anti_windup",   "sample_time",
-                                          "computation_delay", "input_step",     "output_step",   "velocity_window",
-                                          "position_every",    "integral_limit", "integral_band", "integral_reset",
-                                          "reset_interval",    "reset_speed",    "impulse_width", "impulse_pause",
-                                          "impulse_band",      "impulse_speed",  "impulse"};
+constexpr std::string_view elsewhere[] = {"clearance",          "elements",       "anti_windup",   "sample_time",
+                                          "computation_delay",  "input_step",     "output_step",   "velocity_window",
+                                          "position_every",     "integral_limit", "integral_band", "integral_reset",
+                                          "reset_interval",     "reset_speed",    "impulse_width", "impulse_pause",
+                                          "impulse_band",       "impulse_speed",  "impulse",       "integral_dead_zone",
+                                          "integral_hysteresis"};
 
 template <class Owner>
 void check_owner() {
