@@ -4,8 +4,11 @@ from .asked import Finding, goes_on, stable_cycles, texts, undecided, without_do
 
 NAMES = (
     "error-dead-zone", "integrator-leak", "integrator-clamp", "integrator-reset", "integral-band", "gain-kp", "gain-ki",
-    "gain-kd", "friction-compensation", "damping", "stiffness",
+    "gain-kd", "friction-compensation", "damping", "stiffness", "integrator-dead-zone", "integrator-hysteresis",
+    "integrator-stop-reset", "gain-line-bandwidth", "gain-line-margin", "impulse-compensation",
 )  # fmt: skip
+# With another number that follows the one of the remedy: the last value before it is no change of one number.
+FOLLOWED = ("integrator-hysteresis", "gain-line-bandwidth", "gain-line-margin")
 
 
 def judge(asked, dice):
@@ -31,7 +34,7 @@ def judge(asked, dice):
     if not fixed.exists():
         return [Finding("failed", [f"{name}: --apply wrote no case"])]
     findings = [_at(asked, fixed, one, None, False)]
-    findings += [_at(asked, fixed, one, value, True) for value in one["beyond"][:1]]
+    findings += [_at(asked, fixed, one, value, True) for value in one["beyond"][:1] if name not in FOLLOWED]
     order = ("failed", "late", "wrong", "undecided", "unlisted", "right")
     worst = min(findings, key=lambda found: order.index(found.kind))
     return [Finding(worst.kind, [f"{name} ({one['why']}): {why}" for why in worst.why])]
