@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "limcycle/tests/cli/program.hpp"
@@ -103,4 +104,16 @@ TEST_CASE("a page's command has the flags that were given, but those that say wh
         "limcycle margin " + servo + " --factor 3 --parameter loop.controller.kp");
   CHECK(command_of({"predict", servo, "--seed", "7", "--quiet"}) == "limcycle predict " + servo + " --seed 7");
   CHECK(command_of({"predict", servo}) == "limcycle predict " + servo);
+}
+
+TEST_CASE("remedy: the schema knows the names that the program knows") {
+  std::ifstream file(std::string(LIMCYCLE_SOURCE_DIR) + "/docs/schema/remedy.json");
+  const auto schema = Json::parse(file);
+  const auto& names = schema["properties"]["remedies"]["items"]["properties"]["name"]["enum"];
+  REQUIRE(names.size() > 10);
+  std::string known;
+  for (const auto& name : names) known += (known.empty() ? "" : ", ") + name.get<std::string>();
+  const auto ran = run({"remedy", shipped("over-compensated.toml"), "--only", "no-such-word"});
+  CHECK(ran.code == 2);
+  CHECK_THAT(squeezed(ran.err), Contains("known: " + known));
 }
