@@ -6,9 +6,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 namespace limcycle {
 
@@ -42,6 +45,25 @@ void on_threads(std::size_t count, const std::function<void()>& work, const std:
     });
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+void share_tasks(int threads, std::size_t count,
+                 const std::function<void(std::size_t, const std::function<void(double)>&)>& task,
+                 const std::function<void(double, std::size_t)>& tell) {
+  std::vector<double> done(count, 0.0);
+  std::mutex telling;
+  const auto progress_of = [&](std::size_t i, double fraction) {
+    const std::lock_guard lock(telling);
+    done[i] = std::max(done[i], fraction);
+    tell(std::accumulate(done.begin(), done.end(), 0.0) / static_cast<double>(count), i);
+  };
+  std::atomic<std::size_t> next = 0;
+  on_threads(thread_count(threads), [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      task(i, [&](double fraction) { progress_of(i, fraction); });
+      progress_of(i, 1.0);
+    }
+  });
 }
 
 }  // namespace limcycle

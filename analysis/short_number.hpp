@@ -11,4 +11,7 @@ inline std::string short_number(double value, int digits = 4) {
   return text;
 }
 
+/// The value with that many significant digits, as a person would set it.
+inline double rounded_to(double value, int digits) { return std::stod(short_number(value, digits)); }
+
 }  // namespace limcycle

@@ -44,10 +44,10 @@ void find_parts(const Case& from, RemedyCandidate& candidate) try {
 /// an error of a tenth of the hunting may stay, and a hundredth of its speed counts as none.
 RemedyCandidate sized_impulses(const Case& from, RemedyCandidate candidate, double turn, const HuntingSizes& sizes) {
   const auto set = [&](const std::string& key, double value) {
-    candidate.with.push_back(override_of("loop.controller." + key, std::stod(short_number(value, 2))));
+    candidate.with.push_back(override_of("loop.controller." + key, rounded_to(value, 2)));
   };
   candidate.sized = {};
-  candidate.band = std::stod(short_number(0.1 * sizes.displacement, 2));
+  candidate.band = rounded_to(0.1 * sizes.displacement, 2);
   set("ki", 0.0);
   set("impulse_width", 0.01 * turn);
   set("impulse_pause", 0.5 * turn);
@@ -128,6 +128,28 @@ class Candidates {
     not_there(name, no_number(what));
   }
 
+  /// Why the controller has no integral that could be held back; empty: it has.
+  std::string why_no_integral() const {
+    const auto* pid = std::get_if<Pid>(&parts_.controller);
+    if (parts_.diagram) return "in a diagram the integral is a block of its own";
+    if (pid == nullptr) return "the controller has no integral of that kind: kind \"pid\" has";
+    return pid->ki == 0.0 ? "there is no integral action" : "";
+  }
+  /// Or whose integral is held back already.
+  std::string why_no_free_integral() const {
+    const auto why = why_no_integral();
+    const bool held = why.empty() && std::get<Pid>(parts_.controller).holds_integral_back();
+    return held ? "the integral is held back already" : why;
+  }
+  /// The loop with other numbers of its PID; empty if `set` returns false or they are not valid.
+  std::function<std::optional<LoopParts>(double)> with_pid(std::function<bool(Pid&, double)> set) const {
+    return [parts = parts_, set = std::move(set)](double value) -> std::optional<LoopParts> {
+      LoopParts changed = parts;
+      if (!set(std::get<Pid>(changed.controller), value) || validate(changed)) return std::nullopt;
+      return changed;
+    };
+  }
+
   /// kp along the line on which kd keeps something of the loop.
   void gain_line(const std::string& name, GainLine::Keeps keeps) {
     const auto* pid = std::get_if<Pid>(&parts_.controller);
@@ -137,15 +159,12 @@ class Candidates {
       return not_there(name, "it needs kp and kd above 0 and a frequency at which the open loop has a gain of 1");
     const CaseNumber* number = at("loop.controller.kp");
     RemedyCandidate candidate{name, number->path, number->unit, {}, pid->kp, Measure::stiffness, Way::both};
-    candidate.parts = [parts = parts_, line](double kp) -> std::optional<LoopParts> {
+    candidate.parts = with_pid([line](Pid& changed, double kp) {
       const auto kd = line->kd(kp);
-      if (!kd) return std::nullopt;
-      LoopParts changed = parts;
-      auto& controller = std::get<Pid>(changed.controller);
-      controller.kp = kp;
-      controller.kd = *kd;
-      return validate(changed) ? std::nullopt : std::optional(std::move(changed));
-    };
+      changed.kp = kp;
+      changed.kd = kd.value_or(0.0);
+      return kd.has_value();
+    });
     candidate.follows = [line](double kp) {
       return std::vector<std::string>{override_of("loop.controller.kd", line->kd(kp).value_or(0.0))};
     };
@@ -191,10 +210,7 @@ class Candidates {
 
   /// A limit, a band or a reset of the integral of a PID: infinite or 0 where it is absent.
   void hold_back(const std::string& name, const std::string& key, Measure measure, Way way) {
-    const auto* pid = std::get_if<Pid>(&parts_.controller);
-    if (parts_.diagram) return not_there(name, "in a diagram the integral is a block of its own");
-    if (pid == nullptr) return not_there(name, "the controller has no integral of that kind: kind \"pid\" has");
-    if (pid->ki == 0.0) return not_there(name, "there is no integral action");
+    if (const auto why = why_no_integral(); !why.empty()) return not_there(name, why);
     const CaseNumber* number = at("loop.controller." + key);
     add({name, number->path, number->unit, {}, number->value, measure, way});
   }
@@ -202,19 +218,14 @@ class Candidates {
   /// A dead zone before the integral that lets it go on at twice the error at which it holds.
   void hysteresis() {
     const std::string name = "integrator-hysteresis";
-    const auto* pid = std::get_if<Pid>(&parts_.controller);
     if (parts_.diagram)
       return not_there(name, "in a diagram it is a block \"hysteretic-dead-zone\" before the integral");
-    if (pid == nullptr) return not_there(name, "the controller has no integral of that kind: kind \"pid\" has");
-    if (pid->ki == 0.0) return not_there(name, "there is no integral action");
-    if (pid->holds_integral_back()) return not_there(name, "the integral is held back already");
+    if (const auto why = why_no_free_integral(); !why.empty()) return not_there(name, why);
     RemedyCandidate candidate{name, "loop.controller.integral_dead_zone", "m", {}, 0.0, Measure::displacement, Way::up};
-    candidate.parts = [parts = parts_](double value) -> std::optional<LoopParts> {
-      LoopParts changed = parts;
-      auto& controller = std::get<Pid>(changed.controller);
-      controller.integral_dead_zone = controller.integral_hysteresis = value;
-      return validate(changed) ? std::nullopt : std::optional(std::move(changed));
-    };
+    candidate.parts = with_pid([](Pid& changed, double value) {
+      changed.integral_dead_zone = changed.integral_hysteresis = value;
+      return true;
+    });
     candidate.follows = [](double value) {
       return std::vector<std::string>{override_of("loop.controller.integral_hysteresis", value)};
     };
@@ -224,17 +235,12 @@ class Candidates {
   /// The same where the body stops: at a hundredth of the speed of the hunting.
   void reset_at_stop() {
     const std::string name = "integrator-stop-reset";
-    const auto* pid = std::get_if<Pid>(&parts_.controller);
-    if (pid == nullptr || parts_.diagram || pid->ki == 0.0 || pid->holds_integral_back())
-      return not_there(name, parts_.diagram   ? "in a diagram the integral is a block of its own"
-                             : pid == nullptr ? "the controller has no integral of that kind: kind \"pid\" has"
-                             : pid->ki == 0.0 ? "there is no integral action"
-                                              : "the integral is held back already");
+    if (const auto why = why_no_free_integral(); !why.empty()) return not_there(name, why);
     RemedyCandidate candidate{name, "loop.controller.integral_reset", "1", {}, 0.0, Measure::own, Way::up};
     candidate.sized = [from = from_, candidate](const HuntingSizes& sizes) {
       RemedyCandidate with_speed = candidate;
       with_speed.sized = {};
-      const double speed = std::stod(short_number(0.01 * sizes.displacement * sizes.frequency, 2));
+      const double speed = rounded_to(0.01 * sizes.displacement * sizes.frequency, 2);
       with_speed.with.push_back(override_of("loop.controller.reset_speed", speed));
       find_parts(from, with_speed);
       return with_speed;

@@ -129,7 +129,7 @@ std::optional<SignalRow> command_row(const LoopParts& parts) {
   SignalRows rows(diagram);
   rows.number_elements();
   if (rows.delay() > 0.0) return std::nullopt;
-  const Row row = rows.sum(diagram.blocks.front().inputs.at(0));
+  const Row row = rows.value(diagram.blocks.front().inputs.at(0));
   const Index n = rows.states();
   return SignalRow{row.head(n), row.segment(2 * n, rows.elements()), row.tail(4)};
 }

@@ -32,8 +32,7 @@ class SignalRows {
   double delay() const { return delay_; }
   const std::vector<ElementRows>& ports() const { return ports_; }
 
-  /// A signal that no element reads.
-  Eigen::RowVectorXd sum(const SignalSum& terms) { return value(terms); }
+  Eigen::RowVectorXd value(const SignalSum& sum);
   /// y of the loop before any delay; dX/dt. After number_elements(), rows have as many columns as there are elements.
   Eigen::RowVectorXd output();
   Eigen::MatrixXd rates();
@@ -82,7 +81,6 @@ class SignalRows {
     Eigen::Index output = 0;
   };
   Tap tap(const Part& from, const Term& term) const;
-  Row value(const SignalSum& sum);
   Row value(const Term& term);
   Row rate(const SignalSum& sum, const Block& asking);
   Row rate(const Term& term, const Block& asking);

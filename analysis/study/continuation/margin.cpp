@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <mutex>
-#include <numeric>
 
 #include "limcycle/analysis/derivative_notes.hpp"
 #include "limcycle/analysis/on_threads.hpp"
@@ -84,25 +81,16 @@ class Margins {
   /// Both sides of every parameter; those that were not finished are not kept.
   void follow_all() {
     std::vector<std::array<std::optional<MarginSide>, 2>> sides(parameters_.size());
-    std::vector<double> done(2 * parameters_.size(), 0.0);
-    std::mutex telling;
-    const auto progress_of = [&](std::size_t task, double fraction) {
-      const std::lock_guard lock(telling);
-      done[task] = std::max(done[task], fraction);
-      tell(0.15 + 0.85 * std::accumulate(done.begin(), done.end(), 0.0) / static_cast<double>(done.size()),
-           parameters_[task / 2].path);
+    const auto follow = [&](std::size_t task, const std::function<void(double)>& progress) {
+      if (stopped()) return;
+      progress(0.0);
+      MarginParameter parameter = parameters_[task / 2];
+      if (!by_outcome_) parameter.family = in_exact_time(std::move(parameter.family));
+      MarginSide side = side_of(parameter, task % 2 == 0, progress);
+      if (!stopped()) sides[task / 2][task % 2] = std::move(side);
     };
-    std::atomic<std::size_t> next = 0;
-    on_threads(thread_count(options_.threads), [&] {
-      for (std::size_t task = next++; task < done.size() && !stopped(); task = next++) {
-        progress_of(task, 0.0);
-        MarginParameter parameter = parameters_[task / 2];
-        if (!by_outcome_) parameter.family = in_exact_time(std::move(parameter.family));
-        MarginSide side = side_of(parameter, task % 2 == 0, [&](double share) { progress_of(task, share); });
-        if (!stopped()) sides[task / 2][task % 2] = std::move(side);
-        progress_of(task, 1.0);
-      }
-    });
+    share_tasks(options_.threads, 2 * parameters_.size(), follow,
+                [&](double share, std::size_t task) { tell(0.15 + 0.85 * share, parameters_[task / 2].path); });
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
       const auto& [up, down] = sides[i];
       for (const auto* side : {&up, &down})

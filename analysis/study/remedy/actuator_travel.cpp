@@ -1,6 +1,7 @@
 #include "limcycle/analysis/study/remedy/actuator_travel.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"

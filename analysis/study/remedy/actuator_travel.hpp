@@ -7,9 +7,8 @@ namespace limcycle {
 
 /// Travel of the actuator, N: the sum of all changes of its force on the plant, jumps included, from the displacement
 /// of y by `step` until `duration`, s. The force is read at the ends and the quarters of every step of the integrator,
-/// so that what it does between them is not seen: of a force that swings by a share r of itself within a step about
-/// r/16 of that swing. Empty for a diagram, a sampled controller, a dead time, and where the run cannot go on. Cost:
-/// one run.
+/// so that at most about a sixteenth of its swing within a step is not seen. Empty for a diagram, a sampled controller,
+/// a dead time, and where the run cannot go on. Cost: one run.
 std::optional<double> actuator_travel(const LoopParts& parts, double step, double duration);
 
 }  // namespace limcycle

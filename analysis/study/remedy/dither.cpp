@@ -91,7 +91,7 @@ std::string why_no_dither(const LoopParts& parts) {
 
 std::optional<double> frequency_of_dither(const LoopParts& parts) {
   const auto crossover = highest_crossover(parts);
-  return crossover ? std::optional(std::stod(short_number(10.0 * *crossover, 3))) : std::nullopt;
+  return crossover ? std::optional(rounded_to(10.0 * *crossover, 3)) : std::nullopt;
 }
 
 std::optional<double> dither_speed(const LoopParts& parts, const Dither& dither) {
@@ -213,7 +213,7 @@ class DitherSearch {
     const double smallest = 0.1 * loop_.sizes.force;
     for (int k = 0; k <= values && !stopped(); ++k) {
       if (progress_) progress_(static_cast<double>(k) / (values + 6));
-      const double value = std::stod(short_number(smallest * std::pow(10.0, static_cast<double>(k) / a_decade), 3));
+      const double value = rounded_to(smallest * std::pow(10.0, static_cast<double>(k) / a_decade), 3);
       const Hunts here = judged(value);
       open_ = open_ || here == Hunts::undecided;
       if (here == Hunts::no) {
@@ -228,7 +228,7 @@ class DitherSearch {
   void bisect() {
     constexpr double narrow = 1.01, narrow_beside_undecided = 1.1;
     while (not_ending_ > 0.0 && ends_ / not_ending_ > (undecided_ ? narrow_beside_undecided : narrow) && !stopped()) {
-      const double middle = std::stod(short_number(std::sqrt(not_ending_ * ends_), 3));
+      const double middle = rounded_to(std::sqrt(not_ending_ * ends_), 3);
       if (middle <= not_ending_ || middle >= ends_) return;
       const Hunts here = judged(middle);
       if (here == Hunts::no)
@@ -265,7 +265,7 @@ class DitherSearch {
     Dither dither{ends_, candidate_.frequency};
     std::optional<LoopParts> parts = averaged_over(parts_, dither);
     for (; !parts && dither.amplitude < farthest * ends_; parts = averaged_over(parts_, dither))
-      dither.amplitude = std::stod(short_number(1.1 * dither.amplitude, 3));
+      dither.amplitude = rounded_to(1.1 * dither.amplitude, 3);
     if (!parts) return "; no amplitude keeps the body moving by its first harmonic, so that no mean law applies";
     const Hunts mean = hunts(build_loop(*parts), loop_.judging).hunts;
     return "; with the mean of the friction over " + newtons(dither.amplitude) + ", smooth below " +

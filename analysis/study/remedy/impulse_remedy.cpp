@@ -74,7 +74,7 @@ class ImpulseSearch {
     const double smallest = 0.5 * loop_.sizes.force;
     for (int k = 0; k <= values && !stopped(); ++k) {
       tell(0.4 * k / values);
-      const double size = std::stod(short_number(smallest * std::pow(10.0, static_cast<double>(k) / a_decade), 3));
+      const double size = rounded_to(smallest * std::pow(10.0, static_cast<double>(k) / a_decade), 3);
       const Found here = judged(size, Care::quick);
       open_ = open_ || here == Found::open;
       if (here == Found::hunts) {
@@ -94,7 +94,7 @@ class ImpulseSearch {
   void bisect() {
     constexpr double narrow = 1.01;
     while (too_little_ > 0.0 && enough_ / too_little_ > narrow && !stopped()) {
-      const double middle = std::stod(short_number(std::sqrt(too_little_ * enough_), 3));
+      const double middle = rounded_to(std::sqrt(too_little_ * enough_), 3);
       if (middle <= too_little_ || middle >= enough_) return;
       (judged(middle, Care::quick) == Found::within ? enough_ : too_little_) = middle;
     }
@@ -105,12 +105,11 @@ class ImpulseSearch {
     constexpr std::array a_little_beyond{1.0, 1.03, 1.1};
     constexpr int most = 4;
     for (int i = 0; i < most && !stopped(); ++i) {
-      const auto bad = std::ranges::find_if(a_little_beyond, [&](double factor) {
-        return judged(std::stod(short_number(factor * enough_, 3))) != Found::within;
-      });
+      const auto bad = std::ranges::find_if(
+          a_little_beyond, [&](double factor) { return judged(rounded_to(factor * enough_, 3)) != Found::within; });
       if (bad == a_little_beyond.end()) return true;
-      too_little_ = std::stod(short_number(*bad * enough_, 3));
-      enough_ = std::stod(short_number(1.05 * too_little_, 3));
+      too_little_ = rounded_to(*bad * enough_, 3);
+      enough_ = rounded_to(1.05 * too_little_, 3);
     }
     open_ = true;
     return false;

@@ -7,6 +7,7 @@
 #include "limcycle/analysis/golden_maximum.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/study/remedy/without.hpp"
 #include "limcycle/models/delay.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
@@ -48,9 +49,7 @@ std::optional<Loop> linear_loop(LoopParts parts) {
           controller.anti_windup = {};
         }
         if constexpr (std::is_same_v<C, Pid>) {
-          controller.integral_limit = controller.integral_band = infinite;
-          controller.integral_dead_zone = controller.integral_hysteresis = 0.0;
-          controller.integral_reset = controller.reset_interval = controller.reset_speed = 0.0;
+          free_integral(controller);
           controller.impulse = controller.impulse_width = controller.impulse_pause = 0.0;
           controller.impulse_band = controller.impulse_speed = 0.0;
         }

@@ -1,8 +1,6 @@
 #include "limcycle/analysis/study/remedy/remedy.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <mutex>
 #include <numbers>
 
 #include "limcycle/analysis/on_threads.hpp"
@@ -99,24 +97,15 @@ class RemedyStudy {
 
   void try_all() {
     report_.remedies.resize(candidates_.size());
-    std::vector<double> done(candidates_.size(), 0.0);
-    std::mutex telling;
-    std::atomic<std::size_t> next = 0;
-    const auto progress_of = [&](std::size_t i, double fraction) {
-      const std::lock_guard lock(telling);
-      done[i] = std::max(done[i], fraction);
-      double sum = 0.0;
-      for (const double one : done) sum += one;
-      tell(before_remedies + (1.0 - before_remedies) * sum / static_cast<double>(done.size()), candidates_[i].name);
-    };
-    on_threads(thread_count(options_.threads), [&] {
-      for (std::size_t i = next++; i < candidates_.size(); i = next++) {
-        report_.remedies[i] = stopped()
-                                  ? Remedy{candidates_[i], std::nullopt, 0.0, {}, {}, "interrupted"}
-                                  : one(candidates_[i], [&](double fraction) { progress_of(i, 0.95 * fraction); });
-        progress_of(i, 1.0);
-      }
-    });
+    share_tasks(
+        options_.threads, candidates_.size(),
+        [&](std::size_t i, const std::function<void(double)>& progress) {
+          report_.remedies[i] = stopped() ? Remedy{candidates_[i], std::nullopt, 0.0, {}, {}, "interrupted"}
+                                          : one(candidates_[i], [&](double fraction) { progress(0.95 * fraction); });
+        },
+        [&](double share, std::size_t i) {
+          tell(before_remedies + (1.0 - before_remedies) * share, candidates_[i].name);
+        });
   }
 
   Remedy one(const RemedyCandidate& given, const std::function<void(double)>& progress) const {

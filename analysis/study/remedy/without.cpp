@@ -12,6 +12,13 @@
 #include "limcycle/models/linear/integral_action.hpp"
 
 namespace limcycle {
+
+void free_integral(Pid& pid) {
+  pid.integral_limit = pid.integral_band = infinite;
+  pid.integral_dead_zone = pid.integral_hysteresis = 0.0;
+  pid.integral_reset = pid.reset_interval = pid.reset_speed = 0.0;
+}
+
 namespace {
 
 /// What is done to each part of a loop; each returns true if it changed something.
@@ -96,9 +103,7 @@ bool is_siso(const StateSpaceBlock& block) { return block.B.cols() == 1 && block
 /// True if the controller had integral action.
 bool end_integral(Controller& controller) {
   if (auto* pid = std::get_if<Pid>(&controller)) {
-    pid->integral_limit = pid->integral_band = infinite;
-    pid->integral_dead_zone = pid->integral_hysteresis = 0.0;
-    pid->integral_reset = pid->reset_interval = pid->reset_speed = 0.0;
+    free_integral(*pid);
     return set_members(*pid, {&Pid::ki}, 0.0);
   }
   if (auto* cascade = std::get_if<Cascade>(&controller)) {

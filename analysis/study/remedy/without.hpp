@@ -5,6 +5,9 @@
 
 namespace limcycle {
 
+/// Takes off all that holds the integral back.
+void free_integral(Pid& pid);
+
 /// The same loop without one of its features; empty if it has none, or if the rest is not a valid loop.
 
 /// Integral action of controllers, of integrator blocks, and of blocks with a feed-through and a pole at the origin.

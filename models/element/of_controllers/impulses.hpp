@@ -6,9 +6,9 @@
 namespace limcycle {
 
 /// Impulsive compensation of friction: where the input x, an error, stays beyond the band and its rate says that the
-/// body has stopped, y = force sgn(x) for the time `width`, and the next impulse begins at the earliest `interval`
-/// after this one; else y = 0. The body hops towards the set-point until it stops within the band. The sign is that of
-/// x when the impulse begins.
+/// body has stopped, y = force sgn(x) for the time `width`, and the next one begins at the earliest `pause` after that;
+/// else y = 0. The body hops towards the set-point until it stops within the band. The sign is that of x when the
+/// impulse begins.
 ///
 /// Modes: 0 waits with |dx/dt| <= speed and |x| <= band; +-1 waits while dx/dt is beyond +-speed; +-2 impulse of that
 /// sign; 3 pause behind an impulse. State: time that is left of the impulse or the pause, s.
@@ -24,8 +24,7 @@ struct Impulses {
   static constexpr std::string_view source =
       "Yang, Tomizuka (1988), Adaptive pulse width control for precise positioning under the influence of stiction and "
       "Coulomb friction, J. Dyn. Syst. Meas. Control 110; Armstrong-Helouvry, Dupont, Canudas de Wit (1994), "
-      "Automatica "
-      "30, section 4.2; both quoted from knowledge, with impulses of one size";
+      "Automatica 30, section 4.2; both quoted from knowledge, with impulses of one size";
 
   static std::vector<Parameter<Impulses, S>> parameters() {
     return {{"force", "N", "size of an impulse", &Impulses::force, not_negative},
