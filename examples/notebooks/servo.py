@@ -68,4 +68,4 @@ remedies = limcycle.remedy(axis, ["integrator-leak", "error-dead-zone"], samples
 for one in remedies.remedies:
     print(f"{one.name:18} {one.parameter} = {one.value:.4g}: {'ends it' if one.ends else 'does not end it'}")
 cured = remedies.apply(remedies.remedies[0].name)
-print(limcycle.predict(cured).cycles)
+print([cycle for cycle in limcycle.predict(cured).cycles if cycle.stable])

@@ -27,6 +27,20 @@ bool grows_like_a_power(const TurningPoints& turning) {
          before > least_growth * first && last * first < rise * before * before;
 }
 
+bool drifts(const TurningPoints& turning) {
+  constexpr std::size_t few = 64;
+  const auto& points = turning.points();
+  if (points.size() < few) return false;
+  const auto one_way = [&](std::size_t period) {
+    const double whole = points.back().y - points[points.size() - 1 - period].y;
+    if (whole == 0.0) return false;
+    for (std::size_t i = points.size() / 2; i + period < points.size(); i += period)
+      if ((points[i + period].y - points[i].y) * whole <= 0.0) return false;
+    return true;
+  };
+  return one_way(2) || one_way(4) || one_way(6);
+}
+
 bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long most_steps,
                      const std::function<bool()>& stop) {
   constexpr double farther = 30.0;

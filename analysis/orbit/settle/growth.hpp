@@ -12,6 +12,10 @@ namespace limcycle {
 /// cycle it increases them by less and less. Needs 64 swings.
 bool grows_like_a_power(const TurningPoints& turning);
 
+/// True if the turning points move one way from each period to the next, in the whole second half of the run: the
+/// motion is on its way from somewhere, or to somewhere, and no permanent one. Needs 64 turning points.
+bool drifts(const TurningPoints& turning);
+
 /// True if the motion from this state, moved thirty times as far from rest, grows too: its later swings are larger
 /// than its first ones. Where friction and other limited forces stand against a growth they are weaker there still;
 /// what bounds a growth, such as damping, is stronger. Cost: ten swings, or `most_steps` of the march without an

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "limcycle/analysis/motion/parallel.hpp"
 #include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
+#include "limcycle/analysis/orbit/settle/closed_motion.hpp"
 #include "limcycle/analysis/orbit/settle/displaced.hpp"
+#include "limcycle/analysis/orbit/settle/drift.hpp"
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
 #include "limcycle/analysis/orbit/settle/known_cycle.hpp"
@@ -24,13 +27,12 @@ namespace {
 constexpr long steps_of_tries = 200'000, tries_per_step = 3;
 /// The same for a sampled loop, most cycles of which are not locked: this constant, plus a part of its steps.
 constexpr long steps_of_sampled_tries = 10'000, sampled_steps_per_try = 8;
-constexpr double settled_change = 1e-3;  ///< relative change of the swings of a motion that has all but settled
 constexpr long most_readings = 5'000'000, most_sampled_steps = 4'000'000;
+constexpr long most_leapt_steps = 1'000'000;
 constexpr double large_swing =
     0.05;  ///< of the range of y and the rest: a swing below it may be the ringing of a bristle
 constexpr std::size_t enough_turns = 12;  ///< for a cycle to be recognised
 constexpr int most_restarts = 3;          ///< with short steps, of a march that left the range of numbers
-constexpr long periods_of_a_try = 40;     ///< of return maps; most that converge take 5 to 20, up to 15 maps
 
 /// One run: simulation, and shooting whenever the swings look steady.
 class Settling {
@@ -55,7 +57,7 @@ class Settling {
     while (!decided_) step();
     result_.time = march_.t();
     result_.steps = march_.steps();
-    result_.work = tried_ + march_.steps();
+    result_.work = tried_ + leapt_ + march_.steps();
     return std::move(result_);
   }
 
@@ -133,8 +135,8 @@ class Settling {
   /// Readings of a sampled controller in that time.
   long samples_in(double time) const { return loop_.continuous ? std::lround(time / sample_time(loop_)) : 0; }
 
-  /// Steps that the motion itself took: a clock cuts even a long wait into many.
-  long own_steps() const { return march_.steps() - readings_; }
+  /// Steps that the motion itself took since it last leapt: a clock cuts even a long wait into many.
+  long own_steps() const { return march_.steps() - steps_at_leap_ - readings_; }
 
   /// The step limit, or more for a motion that has not turned often enough, or not lasted long enough for a known
   /// cycle, to be judged: bristles that ring while the body sticks may take 30,000 steps between two of its turns.
@@ -153,12 +155,13 @@ class Settling {
   /// Decides for a permanent motion without a period, if two tolerances give the same numbers; else the reason why not.
   std::string_view look_for_irregular() {
     const bool sampled = loop_.continuous != nullptr;
+    if (!sampled && drifts(turning_)) return "step limit reached while the motion still drifted";
     // A wait before the first swing, of an integrator that has to wind up, is no part of the motion.
     const std::size_t turns = turning_.points().size();
     constexpr std::size_t many_turns = 128;
     const long returns = sampled && turns < many_turns ? 2 : 8;
     const auto motion =
-        permanent_motion(sampled && turns > 4 ? recent(turning_, turns - 2) : result_.trace, sampled, returns);
+        permanent_motion(sampled && turns > 4 ? recent(turning_, turns - 2) : since(begin_), sampled, returns);
     const auto known = [&](const IrregularMotion& other) { return motion && agree(other, *motion); };
     if (std::ranges::any_of(options_.known_irregular, known)) {
       result_.irregular = *motion;
@@ -186,7 +189,7 @@ class Settling {
     LoopField field(loop_);
     field.modes() = start_.modes;
     March march(field, march_.kind(), loop_weights(loop_, std::max(tightest, tighter * options_.rtol)));
-    march.begin(start_.x, 0.0);
+    march.begin(start_.x, begin_);
     Trace trace;
     while (march.t() < until && march.steps() < longer * std::max(options_.max_steps, march_.steps())) {
       if (options_.stop && options_.stop()) break;
@@ -246,7 +249,7 @@ class Settling {
   /// Turning points of a signal, and the number of them at which a cycle is looked for next.
   struct Swings {
     TurningPoints turning;
-    std::size_t next_try = 5;
+    std::size_t next_try = 5, leapt_at = 0;
   };
 
   void look_for_cycle(Swings& swings) {
@@ -258,7 +261,7 @@ class Settling {
       const double change = largest_change(swings.turning, order);
       if (change > least) continue;
       if (shrinks_to_nothing(swings.turning, order)) {
-        swings.next_try = next_try_after(swings.turning);
+        swings.next_try = next_try_after(swings);
         return;
       }
       if (try_cycle(swings, order, change)) return;
@@ -285,9 +288,9 @@ class Settling {
     return change == last_change || now - last_change * last_change / (change - last_change) < small * now;
   }
 
-  static std::size_t next_try_after(const TurningPoints& turning) {
-    const std::size_t turns = turning.points().size();
-    return turns + turns / 2 + 1;
+  static std::size_t next_try_after(const Swings& swings) {
+    const std::size_t turns = swings.turning.points().size();
+    return turns + (turns - swings.leapt_at) / 2 + 1;
   }
 
   /// Displacement of the body that rubs.
@@ -299,10 +302,13 @@ class Settling {
   /// The part of the trace since the turning point `count` back.
   Trace recent(const TurningPoints& turning, std::size_t count) const {
     const auto& points = turning.points();
-    const double since = points[points.size() - 1 - count].t;
+    return since(points[points.size() - 1 - count].t);
+  }
+
+  Trace since(double begin) const {
     Trace part;
     for (std::size_t i = 0; i < result_.trace.t.size(); ++i) {
-      if (result_.trace.t[i] < since) continue;
+      if (result_.trace.t[i] < begin) continue;
       part.t.push_back(result_.trace.t[i]);
       part.y.push_back(result_.trace.y[i]);
       part.rate.push_back(result_.trace.rate[i]);
@@ -325,52 +331,85 @@ class Settling {
     const long most = loop_.continuous ? steps_of_sampled_tries + march_.steps() / sampled_steps_per_try
                                        : steps_of_tries + tries_per_step * march_.steps();
     if (tried_ > most) return false;
-    swings.next_try = next_try_after(swings.turning);
-    const Trace period = recent(swings.turning, order);
-    const auto [low, high] = extremes(period);
-    const double swing = high - low;
-    const LoopState here{march_.x(), field_.modes()};
-    result_.known = known_cycle(loop_, here, swing, options_, tried_);
+    swings.next_try = next_try_after(swings);
+    NearlyClosed motion =
+        nearly_closed(loop_, {march_.x(), field_.modes()}, recent(swings.turning, order), order, change);
+    motion.steps += samples_in(motion.period.t.back() - motion.period.t.front());
+    result_.known = known_cycle(loop_, motion.here, motion.swing, options_, tried_);
     if (result_.known) {
       decide(Outcome::cycle, "converges to cycle " + std::to_string(*result_.known));
       return true;
     }
-    const auto reflection = symmetry(loop_);
-    const double middle = reflection ? (loop_.C_y * reflection->centre).value() : 0.0;
-    bool half = reflection && order % 4 == 2 && std::abs(0.5 * (low + high) - middle) < 0.02 * swing;
-    ShootingOptions shooting = options_.shooting;
-    shooting.max_maps = std::min(shooting.max_maps, 40);
-    shooting.max_steps = periods_of_a_try * (std::ssize(period.t) + samples_in(period.t.back() - period.t.front()));
-    shooting.max_steps_per_map = std::min(shooting.max_steps_per_map, std::max(2000L, 5 * shooting.max_steps));
-    shooting.longest_map = 10.0 * (period.t.back() - period.t.front());
-    const Section section = choose_section(loop_, period);
-    const int returns = returns_of(section, period);
-    // While y rings it may cross the section several times in a row; the half map goes from there to the mirrored one.
-    shooting.returns = half && returns % 2 == 0 ? 1 : returns;
-    auto shot = shoot(loop_, here, section, half, shooting);
-    tried_ += shot.steps;
-    // Swings that are as large on both sides, and repeat, may differ in form.
-    if (half && shot.status != Status::converged && change < settled_change) {
-      half = false;
-      shooting.returns = returns;
-      shot = shoot(loop_, here, section, half, shooting);
-      tried_ += shot.steps;
+    return (!leaves_known(motion) && shoot_at(motion)) || leap_on(motion, swings);
+  }
+
+  bool shoot_at(NearlyClosed motion) {
+    ClosedMotion closed = close_motion(loop_, motion, options_.shooting);
+    tried_ += closed.steps;
+    if (closed.half && is_displaced(motion) && lies_beside(closed.shot, motion.change)) {
+      motion.odd = false;
+      ClosedMotion whole = close_motion(loop_, motion, options_.shooting);
+      tried_ += whole.steps;
+      if (whole.shot.status == Status::converged) closed = std::move(whole);
     }
-    if (shot.status == Status::converged) shorten(loop_, shot, section, half, shooting, tried_);
+    return judge(motion, closed);
+  }
+
+  /// Goes on from where a slow drift leads, if this one can be followed.
+  bool leap_on(const NearlyClosed& motion, Swings& swings) {
+    constexpr std::size_t soon = 6;
+    if (loop_.continuous || !has_settled(motion) || leapt_ > most_leapt_steps) return false;
+    Drift drift = follow_drift(loop_, motion, options_.shooting);
+    (drift.to ? leapt_ : tried_) += drift.steps;
+    if (!drift.to) return false;
+    begin_ = march_.t() + drift.time;
+    start_ = std::move(*drift.to);
+    field_.modes() = start_.modes;
+    march_.begin(start_.x, begin_);
+    swings.leapt_at = swings.turning.points().size();
+    swings.next_try = swings.leapt_at + soon;
+    steps_at_leap_ = march_.steps();
+    return true;
+  }
+
+  /// True if the motion moves on, no slower than before, beside a known unstable cycle of its size.
+  bool leaves_known(const NearlyClosed& motion) {
+    constexpr double slower = 0.8, alike = 0.01;
+    const double before = std::exchange(last_change_, motion.change);
+    const auto is_near = [&](double swing) { return std::abs(swing / motion.swing - 1.0) < alike; };
+    const bool known = std::ranges::any_of(
+        options_.known, [&](const Cycle& one) { return one.stable == false && is_near(2.0 * one.amplitude); });
+    return motion.change > slower * before && before > 0.0 && (known || is_near(unstable_swing_));
+  }
+
+  /// True if a motion may have to do with a cycle that is not symmetric, though one that is has been found: it slows
+  /// down beside an unstable one, or the other is stable and does not attract it yet.
+  bool lies_beside(const ShootingResult& symmetric, double change) {
+    if (symmetric.status != Status::converged) return false;
+    const bool slows = change < 0.5 * beside_;
+    beside_ = change;
+    return slows || symmetric.cycle.stable == true;
+  }
+
+  bool judge(const NearlyClosed& motion, ClosedMotion& closed) {
+    ShootingResult& shot = closed.shot;
     if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
     if (shot.status != Status::converged) return false;
-    const double mismatch = std::abs(2.0 * shot.cycle.amplitude / swing - 1.0);
+    const bool beside = closed.half && is_displaced(motion);
+    const double mismatch =
+        std::max(std::abs(2.0 * shot.cycle.amplitude / motion.swing - 1.0), beside ? motion.offset : 0.0);
     if (shot.cycle.stable == false) {
+      unstable_swing_ = 2.0 * shot.cycle.amplitude;
       if (mismatch < 0.1) pass(shot.cycle);
       return false;
     }
     if (!shot.cycle.stable && mismatch < 0.01) {
-      Surroundings around(loop_, shot.cycle, section, shooting, options_.rtol);
+      Surroundings around(loop_, shot.cycle, closed.section, closed.shooting, options_.rtol);
       if (contracts_but_once(shot) && around.has_twins(shot.neutral))
         keep_one(shot.cycle);
       else if (around.attracts())
         shot.cycle.stable = true;
-      else if (around.has_neighbour(half))
+      else if (around.has_neighbour(closed.half))
         decide(Outcome::family, "periodic, one of a family of periodic motions whose size depends on the start");
       else
         decide(Outcome::undecided, "periodic, but its stability was not determined (multiplier 1)");
@@ -380,7 +419,7 @@ class Settling {
     // Still far from the cycle, but nearer to it than at the last try: a slow approach.
     const bool nearer =
         candidate_ && std::abs(candidate_->period / shot.cycle.period - 1.0) < 1e-6 && mismatch < 0.8 * mismatch_;
-    if (!shot.cycle.stable || (mismatch > 0.1 && !nearer)) {
+    if (!shot.cycle.stable || ((beside || mismatch > 0.1) && !nearer)) {
       candidate_ = shot.cycle;
       mismatch_ = mismatch;
       return false;
@@ -408,7 +447,8 @@ class Settling {
 
   const Loop& loop_;
   const SettleOptions& options_;
-  LoopState start_;
+  LoopState start_;     ///< or the end of the last leap
+  double begin_ = 0.0;  ///< time of it
   LoopField field_;
   March march_;
   StillnessWatch stillness_;
@@ -421,12 +461,16 @@ class Settling {
   State dx_;
   std::optional<Cycle> candidate_;
   double mismatch_ = 0.0;
+  double last_change_ = 0.0;     ///< of a period, at the last try
+  double unstable_swing_ = 0.0;  ///< of the last unstable cycle that a shot found
+  double beside_ = 0.0;          ///< change of a period at which a symmetric cycle was last found far beside the motion
   double low_ = infinite, high_ = -infinite;  ///< of y
   std::size_t large_turns_ = 0;
   std::size_t next_growth_ = 64;
   std::size_t next_irregular_ = 128;  ///< turns, and samples, of a sampled loop: see time_for_irregular()
   long next_readings_ = 1'000'000;
-  long tried_ = 0;  ///< steps of return maps
+  long tried_ = 0;                      ///< steps of return maps
+  long leapt_ = 0, steps_at_leap_ = 0;  ///< steps of return maps that made leaps, and of the march at the last
   long readings_ = 0;
   int restarts_ = 0;
   bool decided_ = false;

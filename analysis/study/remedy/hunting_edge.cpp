@@ -20,6 +20,8 @@ double rounded_away(double value, double other) {
   return places > 0.0 ? whole / unit : whole * unit;
 }
 
+double distance(const Bracket& bracket) { return std::abs(std::log(bracket.rests / bracket.hunts)); }
+
 }  // namespace
 
 double HuntingSizes::of(Measure measure) const {
@@ -123,11 +125,13 @@ bool HuntingEdge::widen(Bracket& bracket) {
   return hunts_beyond || find(false, bracket.hunts);
 }
 
-/// Both sides judged by predict(), and 1e-3 apart.
+/// Both sides judged by predict(), and 1e-3 apart, or a little more if it does not decide the values between them.
 bool HuntingEdge::confirm(Bracket& bracket) {
   constexpr int rounds = 4;
   for (int i = 0; i < rounds; ++i) {
-    if (!widen(bracket) || !narrow(bracket)) return false;
+    if (!widen(bracket)) return false;
+    bracket.has_gap = !narrow(bracket);
+    if (bracket.has_gap && (stopped() || distance(bracket) > wide_enough)) return false;
     if (!look_beyond(bracket)) return !stopped();
   }
   return false;
@@ -151,6 +155,7 @@ std::optional<Bracket> HuntingEdge::well_apart(const Bracket& bracket) {
   });
   if (hunts == factors.end()) return std::nullopt;
   judged(wide.rests);  // for its run
+  wide.has_gap = true;
   return wide;
 }
 
@@ -170,7 +175,7 @@ bool HuntingEdge::look_beyond(Bracket& bracket) {
 
 /// By bisection; true if the sides are near each other in the end.
 bool HuntingEdge::narrow(Bracket& bracket) {
-  while (std::abs(std::log(bracket.rests / bracket.hunts)) > 1.5 * narrow_enough) {
+  while (distance(bracket) > 1.5 * narrow_enough) {
     if (stopped()) return false;
     const double middle = bracket.hunts * std::sqrt(bracket.rests / bracket.hunts);
     const double value = rounded_away(middle, bracket.hunts);

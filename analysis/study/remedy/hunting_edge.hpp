@@ -21,6 +21,7 @@ struct HuntingLoop {
 struct Bracket {
   double rests = 0.0, hunts = 0.0;
   bool diverges = false;                 ///< beyond it the motion diverges: it does not hunt
+  bool has_gap = false;                  ///< `predict` does not decide all values between them
   std::optional<MotionState> hunting{};  ///< on the last hunting motion before it
 };
 
@@ -39,8 +40,8 @@ class HuntingEdge {
   enum class Care { quick, full, for_rest };
   Hunts judged(double value, Care care = Care::full);
 
-  /// Both sides judged with full care, few-digit numbers at most 1.5e-3 apart; it rests at two values beyond as well.
-  /// False if that cannot be had.
+  /// Both sides judged with full care, few-digit numbers at most 1.5e-3 apart, or up to 1e-2 where values between them
+  /// are not decided; it rests at two values beyond as well. False if that cannot be had.
   bool confirm(Bracket& bracket);
 
   /// For an edge that is not confirmed, as motions are too slow or too small near it: two values farther apart, the
@@ -62,6 +63,7 @@ class HuntingEdge {
 };
 
 inline constexpr double narrow_enough = 1e-3;  ///< relative distance of the two sides of an edge
+inline constexpr double wide_enough = 1e-2;    ///< of one between whose sides values are not decided
 inline constexpr int edge_digits = 4;          ///< of the values that are tried at an edge
 
 }  // namespace limcycle

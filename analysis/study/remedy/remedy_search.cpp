@@ -242,13 +242,13 @@ Remedy RemedySearch::at_edge(Bracket edge) {
     remedy.beyond.push_back(one.hunts);
     remedy.why =
         "hunts at " + short_number(one.hunts, edge_digits) + ", no longer at " + number(one.rests, edge_digits);
+    if (one.has_gap) remedy.why += "; `predict` does not decide all values between them";
   };
   if (edge_.confirm(edge)) {
     take(edge);
     locate_far_edge(remedy, edge);
   } else if (auto wide = edge_.stopped() ? std::nullopt : edge_.well_apart(found)) {
     take(*wide);
-    remedy.why += "; `predict` does not decide all values between them";
   } else {
     remedy.ends = std::nullopt;
     remedy.why = edge_.stopped()

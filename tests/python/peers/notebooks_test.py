@@ -27,7 +27,7 @@ class Notebooks(unittest.TestCase):
         self.assertIn("The describing function does not find this cycle.", printed)
         self.assertLess(np.abs(left["run"]["y"][-100:]).max(), 0.0015)
         self.assertEqual([one.ends for one in left["remedies"].remedies], [True, True])
-        self.assertTrue(printed.endswith("\n[]\n"))  # no cycle is left
+        self.assertTrue(printed.endswith("\n[]\n"))  # no stable cycle is left
 
     def test_describing_functions(self):
         left, printed = self.left_by("describing_functions")
