@@ -113,6 +113,7 @@ bool HuntingEdge::widen(Bracket& bracket) {
         side = value;
         return true;
       }
+      if (here == Hunts::undecided) undecided_ = value;
       if (!to_rest && rests) bracket.rests = value;
       if (to_rest && moves) bracket.hunts = value;
     }
@@ -180,6 +181,7 @@ bool HuntingEdge::narrow(Bracket& bracket) {
     const double middle = bracket.hunts * std::sqrt(bracket.rests / bracket.hunts);
     const double value = rounded_away(middle, bracket.hunts);
     if (value == bracket.rests) break;
+    if (value == undecided_) return false;
     const Hunts here = judged(value);
     if (here == Hunts::undecided || here == Hunts::neutral) return false;
     (here == Hunts::no ? bracket.rests : bracket.hunts) = value;

@@ -60,6 +60,7 @@ class HuntingEdge {
 
   const RemedyCandidate& candidate_;
   const HuntingLoop& loop_;
+  std::optional<double> undecided_ = {};  ///< the last value between the sides of which that is known
 };
 
 inline constexpr double narrow_enough = 1e-3;  ///< relative distance of the two sides of an edge

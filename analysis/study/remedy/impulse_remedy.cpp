@@ -23,13 +23,10 @@ class ImpulseSearch {
       remedy.why = stopped() ? "interrupted" : nothing_found();
       return remedy;
     }
-    judged(enough_);  // for its run
     remedy.ends = true;
     remedy.value = enough_;
     remedy.after = run_;
-    remedy.why = too_little_ > 0.0 ? "leaves more than " + short_number(candidate_.band, 3) + " m at " +
-                                         short_number(too_little_, 3) + ", no longer at " + newtons(enough_)
-                                   : "holds the error at every size tried, down to " + newtons(enough_);
+    remedy.why = lower_edge();
     HuntingLoop of_impulses = loop_;  // whose cycles are none of the loop with integral action
     of_impulses.followable = false;
     RemedySearch(candidate_, of_impulses, [this](double fraction) {
@@ -86,33 +83,52 @@ class ImpulseSearch {
         bisect();
         return true;
       }
-      too_little_ = size;
+      set_too_little(size, here);
     }
     return false;
   }
 
+  void set_too_little(double size, Found found) {
+    too_little_ = size;
+    still_hops_ = found == Found::open;
+  }
+
   void bisect() {
-    constexpr double narrow = 1.01;
-    while (too_little_ > 0.0 && enough_ / too_little_ > narrow && !stopped()) {
+    constexpr double narrow = 1.01, narrow_for_time = 1.1;  // which is no edge of the loop
+    while (too_little_ > 0.0 && enough_ / too_little_ > (still_hops_ ? narrow_for_time : narrow) && !stopped()) {
       const double middle = rounded_to(std::sqrt(too_little_ * enough_), 3);
       if (middle <= too_little_ || middle >= enough_) return;
-      (judged(middle, Care::quick) == Found::within ? enough_ : too_little_) = middle;
+      const Found here = judged(middle, Care::quick);
+      if (here == Found::within)
+        enough_ = middle;
+      else
+        set_too_little(middle, here);
     }
   }
 
   /// Moves on to larger ones until those a little larger do as well.
   bool lies_well_within() {
-    constexpr std::array a_little_beyond{1.0, 1.03, 1.1};
+    constexpr std::array a_little_beyond{1.1, 1.03, 1.0};  // the last one's run is kept
     constexpr int most = 4;
     for (int i = 0; i < most && !stopped(); ++i) {
-      const auto bad = std::ranges::find_if(
-          a_little_beyond, [&](double factor) { return judged(rounded_to(factor * enough_, 3)) != Found::within; });
+      Found here = Found::within;
+      const auto bad = std::ranges::find_if(a_little_beyond, [&](double factor) {
+        here = judged(rounded_to(factor * enough_, 3));
+        return here != Found::within;
+      });
       if (bad == a_little_beyond.end()) return true;
-      too_little_ = rounded_to(*bad * enough_, 3);
+      set_too_little(rounded_to(*bad * enough_, 3), here);
       enough_ = rounded_to(1.05 * too_little_, 3);
     }
     open_ = true;
     return false;
+  }
+
+  std::string lower_edge() const {
+    if (too_little_ == 0.0) return "holds the error at every size tried, down to " + newtons(enough_);
+    const std::string less = short_number(too_little_, 3), more = newtons(enough_);
+    if (still_hops_) return "at " + less + " the body still hops when the simulation ends, it arrives at " + more;
+    return "leaves more than " + short_number(candidate_.band, 3) + " m at " + less + ", no longer at " + more;
   }
 
   std::string nothing_found() const {
@@ -131,6 +147,7 @@ class ImpulseSearch {
   Trace run_ = {};
   double enough_ = 0.0, too_little_ = 0.0, hunts_at_ = 0.0;
   bool open_ = false;
+  bool still_hops_ = false;  ///< at too_little_
 };
 
 }  // namespace

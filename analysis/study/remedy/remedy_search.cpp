@@ -13,6 +13,7 @@ namespace {
 constexpr double widest_factor = 100.0;  ///< factor on the present value, or on the size of an absent one, either way
 constexpr int a_decade = 3;
 constexpr long steps_a_branch = 1'500'000;
+constexpr double accuracy_of_branch = 1e-5;  ///< of cycles that only lead to an edge, which predict() confirms
 
 bool is_outward(double value, double from) { return std::abs(value) > std::abs(from); }
 
@@ -42,6 +43,7 @@ std::optional<Bracket> RemedySearch::followed_from(double value, const std::vect
   options.predict = loop_.judging.predict;
   options.factor = widest_factor * std::abs(up ? size_ / value : value / size_);
   options.steps_a_branch = steps_a_branch;
+  options.accuracy = accuracy_of_branch;
   const MarginSide side = SideSearch(parameter, up, options, progress_).where_hunting_ends(cycles);
   if (side.what == MarginSide::What::unknown) {
     seen_.push_back(side.why);
@@ -169,6 +171,7 @@ void RemedySearch::locate_far_edge(Remedy& remedy, const Bracket& near) {
         1.01, up ? std::abs(widest_factor * size_ / near.rests) : std::abs(near.rests * widest_factor / size_));
     options.scan_per_decade = a_decade;
     options.steps_a_branch = steps_a_branch;
+    options.accuracy = accuracy_of_branch;
     const MarginSide side = SideSearch(parameter, up, options, progress_).where_hunting_begins();
     if (side.what == MarginSide::What::begins && side.value != near.rests) {
       far = around(side, up, false);
