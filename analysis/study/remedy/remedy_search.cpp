@@ -234,6 +234,18 @@ Remedy RemedySearch::without_edge(const Bracket& edge) {
   return remedy;
 }
 
+/// The last valid value, to 1e-3, of a number whose range ends between these two.
+std::optional<double> RemedySearch::end_of_range(const Bracket& edge) const {
+  constexpr double near = 1e-3;
+  if (edge_.stopped() || candidate_.parts(edge.rests)) return std::nullopt;
+  double valid = edge.hunts, beyond = edge.rests;
+  while (std::abs(beyond / valid - 1.0) > near) {
+    const double middle = 0.5 * (valid + beyond);
+    (candidate_.parts(middle) ? valid : beyond) = middle;
+  }
+  return valid;
+}
+
 Remedy RemedySearch::at_edge(Bracket edge) {
   if (edge.hunts == 0.0 || std::isinf(edge.hunts)) return without_edge(edge);
   Remedy remedy{candidate_, true};
@@ -252,6 +264,10 @@ Remedy RemedySearch::at_edge(Bracket edge) {
     locate_far_edge(remedy, edge);
   } else if (auto wide = edge_.stopped() ? std::nullopt : edge_.well_apart(found)) {
     take(*wide);
+  } else if (const auto last = end_of_range(found); last && edge_.judged(*last) == Hunts::yes) {
+    remedy.ends = false;
+    remedy.why = "it hunts all the way to " + number(*last) + ", where its range ends";
+    return remedy;
   } else {
     remedy.ends = std::nullopt;
     remedy.why = edge_.stopped()

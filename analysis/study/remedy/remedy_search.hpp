@@ -32,6 +32,7 @@ class RemedySearch {
   std::vector<Bracket> edges();
   Remedy without_edge(const Bracket& edge);
   Remedy at_edge(Bracket edge);
+  std::optional<double> end_of_range(const Bracket& edge) const;
   Bracket around(const MarginSide& side, bool up, bool rests_beyond);
   Remedy nothing_found() const;
   std::string number(double value, int shown = 3) const;
