@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "limcycle/analysis/orbit/settle/closed_motion.hpp"
+#include "limcycle/analysis/orbit/settle/to_cycle/closed_motion.hpp"
 
 namespace limcycle {
 

@@ -10,13 +10,11 @@
 #include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
-#include "limcycle/analysis/orbit/settle/closed_motion.hpp"
 #include "limcycle/analysis/orbit/settle/displaced.hpp"
 #include "limcycle/analysis/orbit/settle/drift.hpp"
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
-#include "limcycle/analysis/orbit/settle/known_cycle.hpp"
-#include "limcycle/analysis/orbit/settle/surroundings.hpp"
+#include "limcycle/analysis/orbit/settle/to_cycle/cycle_tries.hpp"
 #include "limcycle/analysis/orbit/settle/watch/switching_watch.hpp"
 #include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
 
@@ -45,7 +43,8 @@ class Settling {
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
         stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol),
         switching_(loop, loop_sizes(loop)),
-        rubs_elsewhere_(loop.ports.back().rubs && !loop.continuous && !parallel(loop.ports.back().C, loop.C_y)) {}
+        rubs_elsewhere_(loop.ports.back().rubs && !loop.continuous && !parallel(loop.ports.back().C, loop.C_y)),
+        tries_(loop, options) {}
 
   Settled run() {
     field_.modes() = start_.modes;
@@ -57,7 +56,8 @@ class Settling {
     while (!decided_) step();
     result_.time = march_.t();
     result_.steps = march_.steps();
-    result_.work = tried_ + leapt_ + march_.steps();
+    result_.work = tries_.steps() + tried_ + leapt_ + march_.steps();
+    result_.passed = tries_.passed();
     return std::move(result_);
   }
 
@@ -152,25 +152,39 @@ class Settling {
     return early && options_.fewest_turns > 0 ? longer * options_.max_steps : options_.max_steps;
   }
 
+  /// The permanent motion that was followed so far, if it looks like one.
+  std::optional<IrregularMotion> motion_so_far() const {
+    const bool sampled = loop_.continuous != nullptr;
+    // A wait before the first swing, of an integrator that has to wind up, is no part of the motion.
+    const std::size_t turns = turning_.points().size();
+    const Trace trace = sampled && turns > 4 ? recent(turning_, turns - 2) : since(begin_);
+    return permanent_motion(trace, sampled, fewest_returns());
+  }
+
+  /// In each part of a permanent motion.
+  long fewest_returns() const {
+    constexpr std::size_t many_turns = 128;
+    return loop_.continuous && turning_.points().size() < many_turns ? 2 : 8;
+  }
+
+  /// Decides for that motion of another start in whose range it is.
+  bool is_known_irregular(const IrregularMotion& motion) {
+    const auto known = [&](const IrregularMotion& other) { return agree(other, motion); };
+    if (std::ranges::none_of(options_.known_irregular, known)) return false;
+    result_.irregular = motion;
+    decide(Outcome::irregular, "bounded without a period, in the range of another start");
+    return true;
+  }
+
   /// Decides for a permanent motion without a period, if two tolerances give the same numbers; else the reason why not.
   std::string_view look_for_irregular() {
     const bool sampled = loop_.continuous != nullptr;
     if (!sampled && drifts(turning_)) return "step limit reached while the motion still drifted";
-    // A wait before the first swing, of an integrator that has to wind up, is no part of the motion.
-    const std::size_t turns = turning_.points().size();
-    constexpr std::size_t many_turns = 128;
-    const long returns = sampled && turns < many_turns ? 2 : 8;
-    const auto motion =
-        permanent_motion(sampled && turns > 4 ? recent(turning_, turns - 2) : since(begin_), sampled, returns);
-    const auto known = [&](const IrregularMotion& other) { return motion && agree(other, *motion); };
-    if (std::ranges::any_of(options_.known_irregular, known)) {
-      result_.irregular = *motion;
-      decide(Outcome::irregular, "bounded without a period, in the range of another start");
-      return {};
-    }
+    const auto motion = motion_so_far();
+    if (motion && is_known_irregular(*motion)) return {};
     // An exact march has no tolerance that could be another.
     const bool exact = march_.kind() == StepperKind::exact;
-    const auto again = motion && !exact ? permanent_motion(repeated(march_.t()), sampled, returns) : motion;
+    const auto again = motion && !exact ? permanent_motion(repeated(march_.t()), sampled, fewest_returns()) : motion;
     if (!motion || !again || !agree(*motion, *again))
       return motion ? "bounded, but its range differs between two tolerances"
                     : "step limit reached before rest or a cycle was recognised";
@@ -228,6 +242,10 @@ class Settling {
   void look_at_swings() {
     const auto& points = turning_.points();
     if (points.size() < 5) return;
+    if (loop_.continuous && !options_.known_irregular.empty() && points.size() >= next_known_) {
+      next_known_ += next_known_ / 2;
+      if (const auto motion = motion_so_far(); motion && is_known_irregular(*motion)) return;
+    }
     if (time_for_irregular()) {
       look_for_irregular();
       if (decided_) return;
@@ -316,43 +334,21 @@ class Settling {
     return part;
   }
 
-  /// Keeps an unstable cycle that the motion passes, once.
-  void pass(const Cycle& cycle) {
-    constexpr double same = 1e-4;
-    if (loop_.continuous) return;  // the samples make many of them, in a narrow band
-    const bool known = std::ranges::any_of(result_.passed, [&](const Cycle& one) {
-      return std::abs(one.period / cycle.period - 1.0) < same && std::abs(one.amplitude / cycle.amplitude - 1.0) < same;
-    });
-    if (!known) result_.passed.push_back(cycle);
-  }
-
   /// `change`: see largest_change().
   bool try_cycle(Swings& swings, std::size_t order, double change) {
     const long most = loop_.continuous ? steps_of_sampled_tries + march_.steps() / sampled_steps_per_try
                                        : steps_of_tries + tries_per_step * march_.steps();
-    if (tried_ > most) return false;
+    if (tried_ + tries_.steps() > most) return false;
     swings.next_try = next_try_after(swings);
     NearlyClosed motion =
         nearly_closed(loop_, {march_.x(), field_.modes()}, recent(swings.turning, order), order, change);
     motion.steps += samples_in(motion.period.t.back() - motion.period.t.front());
-    result_.known = known_cycle(loop_, motion.here, motion.swing, options_, tried_);
-    if (result_.known) {
-      decide(Outcome::cycle, "converges to cycle " + std::to_string(*result_.known));
-      return true;
-    }
-    return (!leaves_known(motion) && shoot_at(motion)) || leap_on(motion, swings);
-  }
-
-  bool shoot_at(NearlyClosed motion) {
-    ClosedMotion closed = close_motion(loop_, motion, options_.shooting);
-    tried_ += closed.steps;
-    if (closed.half && is_displaced(motion) && lies_beside(closed.shot, motion.change)) {
-      motion.odd = false;
-      ClosedMotion whole = close_motion(loop_, motion, options_.shooting);
-      tried_ += whole.steps;
-      if (whole.shot.status == Status::converged) closed = std::move(whole);
-    }
-    return judge(motion, closed);
+    auto found = tries_.look_from(motion);
+    if (!found) return leap_on(motion, swings);
+    result_.known = found->known;
+    result_.shot = std::move(found->shot);
+    decide(found->outcome, std::move(found->why));
+    return true;
   }
 
   /// Goes on from where a slow drift leads, if this one can be followed.
@@ -372,79 +368,6 @@ class Settling {
     return true;
   }
 
-  /// True if the motion moves on, no slower than before, beside a known unstable cycle of its size.
-  bool leaves_known(const NearlyClosed& motion) {
-    constexpr double slower = 0.8, alike = 0.01;
-    const double before = std::exchange(last_change_, motion.change);
-    const auto is_near = [&](double swing) { return std::abs(swing / motion.swing - 1.0) < alike; };
-    const bool known = std::ranges::any_of(
-        options_.known, [&](const Cycle& one) { return one.stable == false && is_near(2.0 * one.amplitude); });
-    return motion.change > slower * before && before > 0.0 && (known || is_near(unstable_swing_));
-  }
-
-  /// True if a motion may have to do with a cycle that is not symmetric, though one that is has been found: it slows
-  /// down beside an unstable one, or the other is stable and does not attract it yet.
-  bool lies_beside(const ShootingResult& symmetric, double change) {
-    if (symmetric.status != Status::converged) return false;
-    const bool slows = change < 0.5 * beside_;
-    beside_ = change;
-    return slows || symmetric.cycle.stable == true;
-  }
-
-  bool judge(const NearlyClosed& motion, ClosedMotion& closed) {
-    ShootingResult& shot = closed.shot;
-    if (shot.status == Status::interrupted) decide(Outcome::undecided, "interrupted");
-    if (shot.status != Status::converged) return false;
-    const bool beside = closed.half && is_displaced(motion);
-    const double mismatch =
-        std::max(std::abs(2.0 * shot.cycle.amplitude / motion.swing - 1.0), beside ? motion.offset : 0.0);
-    if (shot.cycle.stable == false) {
-      unstable_swing_ = 2.0 * shot.cycle.amplitude;
-      if (mismatch < 0.1) pass(shot.cycle);
-      return false;
-    }
-    if (!shot.cycle.stable && mismatch < 0.01) {
-      Surroundings around(loop_, shot.cycle, closed.section, closed.shooting, options_.rtol);
-      if (contracts_but_once(shot) && around.has_twins(shot.neutral))
-        keep_one(shot.cycle);
-      else if (around.attracts())
-        shot.cycle.stable = true;
-      else if (around.has_neighbour(closed.half))
-        decide(Outcome::family, "periodic, one of a family of periodic motions whose size depends on the start");
-      else
-        decide(Outcome::undecided, "periodic, but its stability was not determined (multiplier 1)");
-      tried_ += around.steps();
-      if (decided_) return true;
-    }
-    // Still far from the cycle, but nearer to it than at the last try: a slow approach.
-    const bool nearer =
-        candidate_ && std::abs(candidate_->period / shot.cycle.period - 1.0) < 1e-6 && mismatch < 0.8 * mismatch_;
-    if (!shot.cycle.stable || ((beside || mismatch > 0.1) && !nearer)) {
-      candidate_ = shot.cycle;
-      mismatch_ = mismatch;
-      return false;
-    }
-    result_.shot = std::move(shot);
-    decide(Outcome::cycle, nearer ? "approaches a cycle, confirmed by shooting" : "periodic, confirmed by shooting");
-    return true;
-  }
-
-  /// True if all multipliers but the largest, which is 1 as far as is known, are less than 1.
-  static bool contracts_but_once(const ShootingResult& shot) {
-    constexpr double clearly = 1e-3;
-    const auto& multipliers = shot.cycle.multipliers;
-    return shot.neutral.size() > 0 && !multipliers.empty() &&
-           std::all_of(multipliers.begin() + 1, multipliers.end(),
-                       [](std::complex<double> one) { return std::abs(one) < 1.0 - clearly; });
-  }
-
-  /// The cycle is stable but for a number that it keeps, whose multiplier is left out.
-  static void keep_one(Cycle& cycle) {
-    cycle.multipliers.erase(cycle.multipliers.begin());
-    ++cycle.remembered;
-    cycle.stable = true;
-  }
-
   const Loop& loop_;
   const SettleOptions& options_;
   LoopState start_;     ///< or the end of the last leap
@@ -457,19 +380,16 @@ class Settling {
   Swings of_y_, of_rubbing_, of_large_{TurningPoints(true)};
   const TurningPoints& turning_ = of_y_.turning;
   bool rubs_elsewhere_;
+  CycleTries tries_;
   Settled result_;
   State dx_;
-  std::optional<Cycle> candidate_;
-  double mismatch_ = 0.0;
-  double last_change_ = 0.0;     ///< of a period, at the last try
-  double unstable_swing_ = 0.0;  ///< of the last unstable cycle that a shot found
-  double beside_ = 0.0;          ///< change of a period at which a symmetric cycle was last found far beside the motion
   double low_ = infinite, high_ = -infinite;  ///< of y
   std::size_t large_turns_ = 0;
   std::size_t next_growth_ = 64;
   std::size_t next_irregular_ = 128;  ///< turns, and samples, of a sampled loop: see time_for_irregular()
   long next_readings_ = 1'000'000;
-  long tried_ = 0;                      ///< steps of return maps
+  std::size_t next_known_ = 16;         ///< turns at which it is compared with the permanent motions of other starts
+  long tried_ = 0;                      ///< steps of drifts that could not be followed
   long leapt_ = 0, steps_at_leap_ = 0;  ///< steps of return maps that made leaps, and of the march at the last
   long readings_ = 0;
   int restarts_ = 0;

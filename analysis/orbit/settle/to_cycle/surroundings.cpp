@@ -1,4 +1,4 @@
-#include "limcycle/analysis/orbit/settle/surroundings.hpp"
+#include "limcycle/analysis/orbit/settle/to_cycle/surroundings.hpp"
 
 #include <algorithm>
 #include <array>

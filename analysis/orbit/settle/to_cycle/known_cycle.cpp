@@ -1,4 +1,4 @@
-#include "limcycle/analysis/orbit/settle/known_cycle.hpp"
+#include "limcycle/analysis/orbit/settle/to_cycle/known_cycle.hpp"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "limcycle/analysis/orbit/settle/closed_motion.hpp"
+#include "limcycle/analysis/orbit/settle/to_cycle/closed_motion.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
-#include "limcycle/analysis/orbit/settle/known_cycle.hpp"
+#include "limcycle/analysis/orbit/settle/to_cycle/known_cycle.hpp"
 
 namespace limcycle {
 namespace {
