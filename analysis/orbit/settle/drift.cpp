@@ -13,19 +13,18 @@ namespace {
 
 constexpr double tight_map = 1e-12, loose_map = 1e-8;  ///< tolerances of the map
 constexpr double resolved = 1e4;                       ///< drift in units of that tolerance
-constexpr double slow = 0.02,
-                 farthest = 0.05;        ///< drift of a period, and of a leap, relative to the size of the motion
-constexpr double one_direction = 0.985;  ///< cosine
+constexpr double slow = 0.02, farthest = 0.05;         ///< drift of a period, and of a leap, in sizes of the motion
+constexpr double one_direction = 0.985;                ///< cosine
 constexpr double first_leap = 0.2, longest_leap = 0.5, shortest_leap = 0.02;  ///< in periods of |g - 1|
 constexpr double well_foretold = 0.2, refused = 0.5;                          ///< errors of a drift after a leap
 constexpr double still_alike = 0.3;  ///< way of all leaps in sizes of the motion, which are those of its beginning
 constexpr int fewest_periods = 4;
 
 /// Largest less least value of each state in a time; of one that stands still, its typical size.
-State ranges(const Loop& loop, const LoopState& from, double time, double rtol, long most_steps) {
+State ranges(const Loop& loop, const LoopState& from, double time, long most_steps) {
   LoopField field(loop);
   field.modes() = from.modes;
-  March march(field, StepperKind::automatic, loop_weights(loop, rtol));
+  March march(field, StepperKind::automatic, loop_weights(loop, loose_map));
   march.begin(from.x, 0.0);
   State low = from.x, high = from.x;
   while (march.t() < time && march.steps() < most_steps && march.step(time) == Status::converged)
@@ -43,8 +42,7 @@ class Leaps {
  public:
   Leaps(const Loop& loop, const NearlyClosed& motion, const ShootingOptions& options)
       : map_(map_of(loop, motion, options)),
-        sizes_(ranges(loop, motion.here, motion.period.t.back() - motion.period.t.front(), options.rtol,
-                      options.max_steps_per_map)) {}
+        sizes_(ranges(loop, motion.here, motion.period.t.back() - motion.period.t.front(), map_.options().max_steps)) {}
 
   Drift follow(const LoopState& here) {
     Drift drift;

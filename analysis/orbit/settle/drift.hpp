@@ -18,9 +18,10 @@ struct Drift {
 /// periods is d (g + g^2 + ... + g^m); two return maps follow, in the first of which other deviations die out. m is
 /// such that d changes by a fifth at first, by a factor of up to two later, and that the motion changes by at most 5 %
 /// of its size. A leap counts only if d has kept its direction (within ten degrees) and its size is as foretold to 50
-/// %, so that no cycle is passed; else a shorter one takes its place. Ends where d changes too fast for leaps, where it
-/// is lost in the tolerance of the maps, or where the motion no longer returns. Cost: two maps a leap, three leaps or
-/// fewer for each factor of two in d.
+/// %, so that no cycle is passed; else a shorter one takes its place. Ends where the state has moved on by 30 % of the
+/// size of the motion, where d changes too fast for leaps, where it is less than 1e4 times the tolerance of the maps
+/// (1e-8 to 1e-12, as d needs it), or where the motion no longer returns. Cost: two maps a leap, about three leaps for
+/// each factor of two in d.
 Drift follow_drift(const Loop& loop, const NearlyClosed& motion, const ShootingOptions& options);
 
 }  // namespace limcycle

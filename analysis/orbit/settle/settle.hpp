@@ -48,9 +48,10 @@ struct Settled {
 /// Simulates from `start` until the outcome is decided. A motion counts as a cycle only when shooting from it finds a
 /// stable periodic solution with the same swing, so never for a decaying stick-slip, whose swings shrink for ever. It
 /// counts as rest only when every rate has decayed faster than 1/t or is noise on the mean (see RestWatch), so never
-/// for slow hunting, which rests for thousands of seconds while an integrator winds up. If neither test decides within
-/// the step limit, the outcome is undecided. Throws std::invalid_argument for a loop with a dead time: see
-/// in_time_domain().
+/// for slow hunting, which rests for thousands of seconds while an integrator winds up. A motion that drifts on slowly
+/// from period to period is followed over many at once (follow_drift()): `trace` has gaps there, `time` has none, and
+/// the step limit begins anew. If neither test decides within the step limit, the outcome is undecided. Throws
+/// std::invalid_argument for a loop with a dead time: see in_time_domain().
 Settled settle(const Loop& loop, const LoopState& start, const SettleOptions& options);
 
 /// State in which a slow move has displaced y from the rest point of the linear part by `displacement`, elements
