@@ -1,6 +1,7 @@
 #include "limcycle/analysis/orbit/settle/drift.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -11,10 +12,10 @@
 namespace limcycle {
 namespace {
 
-constexpr double tight_map = 1e-12, loose_map = 1e-8;  ///< tolerances of the map
-constexpr double resolved = 1e4;                       ///< drift in units of that tolerance
-constexpr double slow = 0.02, farthest = 0.05;         ///< drift of a period, and of a leap, in sizes of the motion
-constexpr double one_direction = 0.985;                ///< cosine
+constexpr std::array tolerances{1e-8, 1e-9, 1e-10, 1e-11, 1e-12};  ///< of the map
+constexpr double resolved = 1e4;                                   ///< drift in units of that tolerance
+constexpr double slow = 0.02, farthest = 0.05;  ///< drift of a period, and of a leap, in sizes of the motion
+constexpr double one_direction = 0.985;         ///< cosine
 constexpr double first_leap = 0.2, longest_leap = 0.5, shortest_leap = 0.02;  ///< in periods of |g - 1|
 constexpr double well_foretold = 0.2, refused = 0.5;                          ///< errors of a drift after a leap
 constexpr double still_alike = 0.3;  ///< way of all leaps in sizes of the motion, which are those of its beginning
@@ -24,7 +25,7 @@ constexpr int fewest_periods = 4;
 State ranges(const Loop& loop, const LoopState& from, double time, long most_steps) {
   LoopField field(loop);
   field.modes() = from.modes;
-  March march(field, StepperKind::automatic, loop_weights(loop, loose_map));
+  March march(field, StepperKind::automatic, loop_weights(loop, tolerances.front()));
   march.begin(from.x, 0.0);
   State low = from.x, high = from.x;
   while (march.t() < time && march.steps() < most_steps && march.step(time) == Status::converged)
@@ -67,7 +68,7 @@ class Leaps {
   static ReturnMap map_of(const Loop& loop, const NearlyClosed& motion, const ShootingOptions& options) {
     const double period = motion.period.t.back() - motion.period.t.front();
     const Section section = choose_section(loop, motion.period);
-    ReturnMap::Options of_map{loose_map, std::max(2000L, 200 * motion.steps), options.stop};
+    ReturnMap::Options of_map{tolerances.front(), std::max(2000L, 200 * motion.steps), options.stop};
     of_map.longest = 3.0 * period;
     of_map.returns = returns_of(section, motion.period);
     return {loop, section, std::nullopt, of_map};
@@ -97,8 +98,8 @@ class Leaps {
   /// With the loosest tolerance that resolves the drift; false if none does, or if there is no slow drift along one
   /// direction.
   bool begin(const LoopState& here) {
-    for (double rtol = loose_map; rtol > 0.5 * tight_map; rtol *= 0.1) {
-      map_.set_rtol(rtol);
+    for (std::size_t level = 0; level < tolerances.size(); ++level) {
+      set_level(level);
       const auto at = map_.approach(here);
       const auto relaxed = at.status == Status::converged ? after(at.state, at.time) : std::nullopt;
       const auto first = relaxed ? after(relaxed->state, relaxed->time) : std::nullopt;
@@ -112,21 +113,30 @@ class Leaps {
     return false;
   }
 
-  bool is_resolved(const Place& place) const { return place.size > resolved * map_.options().rtol; }
+  bool is_resolved(const Place& place) const { return place.size > resolved * tolerances[level_]; }
+
+  void set_level(std::size_t level) {
+    level_ = level;
+    map_.set_rtol(tolerances[level]);
+  }
 
   /// A drift that has grown needs no tolerance as tight as before, one that has shrunk a tighter one.
   void adapt_tolerance() {
-    constexpr double small = 3.0, large = 30.0, step = 10.0;
-    const double before = map_.options().rtol, units = now_.size / (resolved * before);
-    const double rtol = units > large ? before * step : units < small ? before / step : before;
-    if (rtol == before || rtol > 2.0 * loose_map || rtol < 0.5 * tight_map) return;
-    map_.set_rtol(rtol);
+    constexpr double small = 3.0, large = 30.0;
+    const double units = now_.size / (resolved * tolerances[level_]);
+    const std::size_t before = level_;
+    if (units > large && before > 0)
+      set_level(before - 1);
+    else if (units < small && before + 1 < tolerances.size())
+      set_level(before + 1);
+    else
+      return;
     const auto relaxed = after(now_.state, now_.time);
     const auto place = relaxed ? after(relaxed->state, relaxed->time) : std::nullopt;
     if (place && cosine(*place, now_) > one_direction)
       now_ = *place;
     else
-      map_.set_rtol(before);
+      set_level(before);
   }
 
   /// Leaps, over fewer periods until what follows is as foretold; false if no leap is long enough for it.
@@ -161,6 +171,7 @@ class Leaps {
   ReturnMap map_;
   State sizes_;
   Place now_;
+  std::size_t level_ = 0;  ///< of the tolerances
   double growth_ = 1.0, share_ = first_leap;
 };
 
