@@ -84,6 +84,12 @@ class Leaps {
     return place;
   }
 
+  /// Two periods on: in the first one other deviations than the drift die out.
+  std::optional<Place> relaxed_after(const LoopState& from, double time) {
+    const auto relaxed = after(from, time);
+    return relaxed ? after(relaxed->state, relaxed->time) : std::nullopt;
+  }
+
   /// In sizes of the motion.
   double distance(const State& one, const State& other) const {
     double square = 0.0;
@@ -101,8 +107,7 @@ class Leaps {
     for (std::size_t level = 0; level < tolerances.size(); ++level) {
       set_level(level);
       const auto at = map_.approach(here);
-      const auto relaxed = at.status == Status::converged ? after(at.state, at.time) : std::nullopt;
-      const auto first = relaxed ? after(relaxed->state, relaxed->time) : std::nullopt;
+      const auto first = at.status == Status::converged ? relaxed_after(at.state, at.time) : std::nullopt;
       const auto second = first ? after(first->state, first->time) : std::nullopt;
       if (!second || second->size > slow) return false;
       if (!is_resolved(*second)) continue;
@@ -131,8 +136,7 @@ class Leaps {
       set_level(before + 1);
     else
       return;
-    const auto relaxed = after(now_.state, now_.time);
-    const auto place = relaxed ? after(relaxed->state, relaxed->time) : std::nullopt;
+    const auto place = relaxed_after(now_.state, now_.time);
     if (place && cosine(*place, now_) > one_direction)
       now_ = *place;
     else
@@ -158,14 +162,13 @@ class Leaps {
     return false;
   }
 
-  /// After a leap, and two periods in the first of which other deviations die out.
+  /// Two periods after a leap.
   std::optional<Place> beyond(double periods) {
     const double g = growth_;
     const double sum = std::abs(g - 1.0) < 1e-9 ? periods : g * std::expm1(periods * std::log(g)) / (g - 1.0);
     LoopState from = now_.state;
     for (std::size_t i = 0; i < from.x.size(); ++i) from.x[i] += sum * now_.drift[i] * sizes_[i];
-    const auto relaxed = after(from, now_.time + periods * now_.period);
-    return relaxed ? after(relaxed->state, relaxed->time) : std::nullopt;
+    return relaxed_after(from, now_.time + periods * now_.period);
   }
 
   ReturnMap map_;
