@@ -174,8 +174,10 @@ Status March::step(double t_end) {
     double from = 0.0, to = 1.0;
     std::size_t guard = 0;
     const bool event = negative_within(guards_start_, from, to, guard);
-    if (event) end_at(locate(guard, from, to));
-    if ((event && !ends_within_error()) || (tracks_ && !is_linearised())) {
+    const double at = event ? locate(guard, from, to) : 0.0;
+    const bool mistaken = event && !happens(guard, at, to);
+    if (event) end_at(at);
+    if (mistaken || (event && !ends_within_error()) || (tracks_ && !is_linearised())) {
       shortened = truncated_ = false;
       continue;
     }

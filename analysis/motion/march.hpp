@@ -111,6 +111,7 @@ class March {
   double crossing(std::size_t guard, double from, double to);
   std::size_t first_of_candidates(const std::vector<double>& at_start, double from, double to);
   double locate(std::size_t guard, double from, double to);
+  bool happens(std::size_t guard, double at, double to);
   void end_at(double h);
   Status land(std::size_t guard, double tried);
   Status land_by_clock(double tried);

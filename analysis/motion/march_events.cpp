@@ -105,6 +105,20 @@ double March::locate(std::size_t guard, double from, double to) {
   return just_beyond(by_step, now, found, last, 2e-16 * std::max(last, std::abs(step_.t0)));
 }
 
+/// False if only the interpolant has the event that was located at the length `at` and sought up to the fraction `to`:
+/// a motion that creeps towards a guard, slower than the tolerances resolve, does not reach it, but the cubic through
+/// the ends of a long step may. The state at that length must be in work_, and is again.
+bool March::happens(std::size_t guard, double at, double to) {
+  constexpr double near_zero = 0.01;  // of the value at the start; a crossing that was located leaves a rounding
+  if (guard == section_guard || at <= 4.0 * shortest_step()) return true;
+  if (!(event_value(guard, work_, step_.t0 + at) > near_zero * guards_start_[guard])) return true;
+  const double last = to * (step_.t1 - step_.t0);
+  repeat(last, work_);
+  const bool crossed = event_value(guard, work_, step_.t0 + last) < 0.0;
+  repeat(at, work_);
+  return crossed;
+}
+
 /// The guards of each element at the present state.
 std::vector<std::vector<double>> March::guards_by_element() {
   std::vector<double> values;

@@ -41,14 +41,14 @@ Line zero(const std::vector<std::pair<double, double>>& last, double power) {
   return {between(0), between(1)};
 }
 
-/// The last point and two before it, apart by a factor of 1.3 or more: neighbours after tiny steps carry no
+/// The last point and up to three before it, apart by a factor of 1.3 or more: neighbours after tiny steps carry no
 /// information.
 std::vector<std::pair<double, double>> history(const EndEvidence& evidence, double (*value)(const Cycle&)) {
   std::vector<std::pair<double, double>> list;
   for (const BranchPoint* point : evidence.last) {
     const double here = value(point->cycle);
     if (list.empty() || here > 1.3 * list.back().second) list.emplace_back(point->parameter, here);
-    if (list.size() == 3) break;
+    if (list.size() == 4) break;
   }
   return list;
 }
@@ -58,13 +58,19 @@ double rate_of(const Cycle& cycle) { return 1.0 / cycle.period; }
 double smallness_of(const Cycle& cycle) { return 1.0 / cycle.amplitude; }
 
 /// A zero counts if it lies ahead, and no farther than a few of the last steps, or than a part in 1e3 of the parameter.
-std::optional<Vanishing> zero_ahead(const EndEvidence& evidence, double (*value)(const Cycle&)) {
+std::optional<Vanishing> zero_ahead(const EndEvidence& evidence, double (*value)(const Cycle&), const auto& law) {
   const auto list = history(evidence, value);
-  const auto found = vanishing(list);
+  const auto found = law(list);
   if (!found) return std::nullopt;
   const double step = list[0].first - list[1].first, ahead = found->parameter - list[0].first;
   const bool near = std::abs(ahead) < 30.0 * std::abs(step) || std::abs(ahead) < 1e-3 * std::abs(list[0].first);
   return ahead * step >= 0.0 && near ? found : std::nullopt;
+}
+
+/// slowing() of points (p, 1/T).
+std::optional<Vanishing> slowing_of_rates(std::vector<std::pair<double, double>> list) {
+  for (auto& [p, rate] : list) rate = 1.0 / rate;
+  return slowing(list);
 }
 
 double relative(double error, double parameter) { return parameter != 0.0 ? error / std::abs(parameter) : error; }
@@ -75,7 +81,8 @@ std::optional<EndDiagnosis> faded(const EndEvidence& evidence) {
   const bool large = cycle.amplitude > 100.0 * evidence.first_amplitude;
   const bool slow = cycle.period > 30.0 * evidence.shortest_period;
   if (!small && !large && !slow) return std::nullopt;
-  const auto at = zero_ahead(evidence, small ? amplitude_of : large ? smallness_of : rate_of);
+  const auto at = small || large ? zero_ahead(evidence, small ? amplitude_of : smallness_of, vanishing)
+                                 : zero_ahead(evidence, rate_of, slowing_of_rates);
   if (!at) return std::nullopt;
   EndDiagnosis end{at->parameter, relative(at->error, at->parameter), "", true};
   const std::string place = short_number(at->parameter, 6);
@@ -136,6 +143,38 @@ std::optional<Vanishing> vanishing(const std::vector<std::pair<double, double>>&
   const Line& better = spread(straight) <= spread(squared) ? straight : squared;
   if (!std::isfinite(better.p) || !std::isfinite(better.previous)) return std::nullopt;
   return Vanishing{better.p, spread(better) + 1e-3 * std::abs(better.p - last[0].first)};
+}
+
+namespace {
+
+/// p* of p = p* + a exp(-b T) through three points of falling T, by bisection for b.
+double exponential_limit(const std::pair<double, double>* points) {
+  const auto [p0, T0] = points[0];
+  const auto [p1, T1] = points[1];
+  const auto [p2, T2] = points[2];
+  // (p1 - p0)/(p2 - p0) falls from the share of the T to 0 as b grows.
+  const double near = T0 - T1, far = T0 - T2, share = (p1 - p0) / (p2 - p0);
+  const auto of = [&](double b) { return std::expm1(b * near) / std::expm1(b * far); };
+  double low = 1e-9 / far, high = 700.0 / far;
+  if (!(of(low) > share && of(high) < share)) return unknown;
+  for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) {
+    const double b = 0.5 * (low + high);
+    (of(b) > share ? low : high) = b;
+  }
+  return p0 - (p2 - p0) / std::expm1(0.5 * (low + high) * far);
+}
+
+}  // namespace
+
+std::optional<Vanishing> slowing(const std::vector<std::pair<double, double>>& last) {
+  std::vector<std::pair<double, double>> rates;
+  rates.reserve(last.size());
+  for (const auto& [p, period] : last) rates.emplace_back(p, 1.0 / period);
+  const auto by_rate = vanishing(rates);
+  if (!by_rate || last.size() < 4) return by_rate;
+  const double here = exponential_limit(last.data()), before = exponential_limit(last.data() + 1);
+  const double error = std::abs(here - before) + 1e-3 * std::abs(here - last[0].first);
+  return std::isfinite(error) && error < by_rate->error ? Vanishing{here, error} : by_rate;
 }
 
 EndDiagnosis diagnose_end(BranchMap& map, const BranchSpot& spot, const EndEvidence& evidence) {

@@ -1,5 +1,7 @@
 #pragma once
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limcycle/analysis/orbit/branch/branch_step.hpp"
@@ -37,5 +39,11 @@ struct Vanishing {
   double parameter, error;
 };
 std::optional<Vanishing> vanishing(const std::vector<std::pair<double, double>>& last);
+
+/// Where a period grows without bound along p, from its last points (p, T), the last one first: by its rate 1/T (see
+/// vanishing()), or by p = p* + a exp(-b T), as where a motion only just reaches what it approaches exponentially (a
+/// relay the gain of whose loop falls to its hysteresis, a saddle), whichever agrees better with the point before. The
+/// latter needs four points. Error: as of vanishing(). Empty if it does not grow.
+std::optional<Vanishing> slowing(const std::vector<std::pair<double, double>>& last);
 
 }  // namespace limcycle

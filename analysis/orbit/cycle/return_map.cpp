@@ -72,6 +72,15 @@ March& ReturnMap::march() {
   return *march_;
 }
 
+/// A step far longer than any time constant, in which nothing moves: no return will follow.
+bool ReturnMap::rests(const Step& last) const {
+  constexpr double long_times = 1e6, rounding = 1e-12;
+  if (last.t1 - last.t0 < long_times * weights_.time) return false;
+  for (std::size_t i = 0; i < last.x1.size(); ++i)
+    if (std::abs(last.x1[i] - last.x0[i]) > rounding * std::max(std::abs(last.x1[i]), typical_[i])) return false;
+  return true;
+}
+
 ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
   Result result;
   field_->modes() = from.modes;
@@ -85,7 +94,8 @@ ReturnMap::Result ReturnMap::run(const LoopState& from, const Section& target) {
     if (options_.stop && options_.stop()) result.status = Status::interrupted;
     if (march.steps() > options_.max_steps || march.t() >= options_.longest) result.status = Status::max_iterations;
     if (result.status == Status::converged) result.status = march.step(options_.longest);
-    if (result.status == Status::converged && march.last().crept) result.status = Status::no_cycle;
+    if (result.status == Status::converged && (march.last().crept || rests(march.last())))
+      result.status = Status::no_cycle;
     if (result.status != Status::converged) break;
     if (options_.extremes) result.extremes.include(*field_, march, static_cast<std::size_t>(march.steps() - 1));
     if (options_.trace) append(result.trace, *field_, march);

@@ -85,6 +85,7 @@ class ReturnMap {
   void set_trace(bool trace) { options_.trace = trace; }
 
  private:
+  bool rests(const Step& last) const;
   Result run(const LoopState& from, const Section& target);
   Result once(const LoopState& from);
   March& march();

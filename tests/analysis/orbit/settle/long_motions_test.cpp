@@ -163,3 +163,24 @@ TEST_CASE("a body that sticks for seconds while its bristle rings at 300 Hz: its
   CHECK(settled.shot->cycle.amplitude == Approx(0.0010933).epsilon(1e-4));
   CHECK(settled.steps < 150000);
 }
+
+TEST_CASE(
+    "settle: a servo that creeps to the set-point with ever less speed comes to rest, and is not stopped on the way") {
+  // The rate of the integral balances the decay: v/y and the approach are those of the slow pole, for ever. The
+  // interpolant of a long step once had the body stop at 1e-11 m, from where the controller wound up for 17 years.
+  for (const double unit : {1.0, 1e-3}) {        // of length
+    for (const double times : {1.0, 7.62208}) {  // unit of time, with the forces unchanged
+      const double length = 0.3 * unit;
+      Pid controller = pid(9102.74 / unit, 4169.98 / (unit * times), 2382.13 * times / unit);
+      controller.lag = 0.00554725 * times;
+      controller.saturation = 45.7951;
+      Loop loop = loop_of(Mass{159.847 * times * times / unit, 0.0, 0.0}, controller, coulomb(31.4064, 13.0978));
+      for (const double start : {1.0, 0.01}) {
+        const Settled settled = from(loop, start * length, 1e-9 * unit);
+        CAPTURE(unit, times, start, settled.why);
+        CHECK(settled.outcome == Outcome::rest);
+        CHECK(settled.trace.t.back() < 1e3 * times);
+      }
+    }
+  }
+}

@@ -138,6 +138,22 @@ TEST_CASE("margin: the end of a branch that its steps pass over, where a relay j
   CHECK(down.error < 2e-3);
 }
 
+TEST_CASE("margin: a relay oscillates until its loop no longer reaches the hysteresis, ever more slowly") {
+  // In a half period y goes from -h towards the static gain 1, so that the cycle ends at h = 1 exactly, where the
+  // period grows like a logarithm. The triple pole approaches 1 like t^2 exp(-t) instead.
+  for (const bool triple : {false, true}) {
+    const auto loop = [triple](double h) -> std::optional<Loop> {
+      return triple ? forward(relay(1.0, h), {1.0}, {1.0, 3.0, 3.0, 1.0})
+                    : forward(relay(1.0, h), {30.0}, {1.0, 31.0, 30.0});
+    };
+    const auto report = margin(*loop(0.2), {{"loop.element.hysteresis", "1", 0.2, false, loop}}, {});
+    const MarginSide& up = named(report, "loop.element.hysteresis").up;
+    CAPTURE(triple, up.value, up.error, up.why);
+    CHECK(up.what == MarginSide::What::ends);
+    CHECK(up.value == Approx(1.0).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("margin: hunting begins where simulations find it, not where two unstable cycles are born") {
   // Two unstable cycles merge at 0.2627; what is stable, without a period, ends at 0.2583 (bisected with predict).
   constexpr double own = 0.27;

@@ -48,7 +48,10 @@ RemedyOptions quick(int threads = 1) {
 
 }  // namespace
 
-TEST_CASE("remedy: the leak of a servo, its edge confirmed by predict on both sides, in two units") {
+TEST_CASE("remedy: the leak of a servo, its edge where the slip no longer leads to the next break-away, in two units") {
+  // At the edge the body waits for ever at y* = Fs/(kp + ki/leak), and slips from there to -y*: by an independent
+  // integration of the slip. From the starts of predict() it comes to rest a little before that.
+  constexpr double edge = 0.109872788;
   std::vector<double> leaks, errors;
   for (const double unit : units()) {  // of length, with the forces unchanged
     LoopParts parts = servo_parts(coulomb(1.5, 1.0));
@@ -69,8 +72,10 @@ TEST_CASE("remedy: the leak of a servo, its edge confirmed by predict on both si
       const auto found = predict(build_loop(*candidate.parts(value)));
       return std::ranges::any_of(found.cycles, [](const Cycle& one) { return one.stable == true; });
     };
+    CHECK(remedy.edges[0] > edge);
+    CHECK(remedy.beyond[0] < edge);
     CHECK_FALSE(has_cycle(remedy.edges[0]));
-    CHECK(has_cycle(remedy.beyond[0]));
+    CHECK(has_cycle(0.99 * remedy.beyond[0]));
     REQUIRE(remedy.costs.steady_state_error);  // Fs/(kp + ki/leak)
     CHECK(remedy.costs.steady_state_error->high == Approx(1.5 * unit / (3.0 + 4.0 / remedy.value)).epsilon(1e-9));
     CHECK(remedy.costs.settling_time.value() > 0.0);
