@@ -50,6 +50,7 @@ March::March(LoopField& field, StepperKind kind, ErrorWeights weights)
   const Loop& loop = field.loop();
   steep_ = has_infinite_slope(loop);
   if (kind == StepperKind::automatic) wait_patiently();
+  if (loop.continuous) wait_.emplace(loop);
   for (std::size_t i = 0; i < loop.elements.size() && kind_ != StepperKind::exact; ++i)
     if (const double width = loop.elements[i].scales().velocity; loop.ports[i].rubs && std::isfinite(width))
       layers_.push_back({i, widths * width});
@@ -64,6 +65,7 @@ void March::begin(State x, double t, std::optional<Section> section) {
   step_.switched.reset();
   step_.on_section = step_.by_clock = step_.crept = false;
   event_times_.clear();
+  if (wait_) wait_->interrupt();
 }
 
 void March::reset() {
@@ -154,7 +156,8 @@ Status March::step(double t_end) {
   if (due < 16.0 * shortest_step()) return land_by_clock(0.0);
   const auto lasts = [](double guard) { return guard > 0.0; };
   if (due <= t_end - t_ && field_.only_clocks_run(step_.dx0) && std::ranges::all_of(guards_start_, lasts))
-    return wait_for_clock(due);
+    return wait_for_clock(due, t_end);
+  if (wait_) wait_->interrupt();
   double dt = std::min({dt_, dt_max_, t_end - t_, due});
   bool shortened = dt < dt_;  // by the requested end, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_ || dt == due;

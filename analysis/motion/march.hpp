@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "limcycle/analysis/motion/clock_wait.hpp"
 #include "limcycle/analysis/motion/error_weights.hpp"
 #include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/motion/steppers/stepper_kind.hpp"
@@ -115,7 +116,7 @@ class March {
   void end_at(double h);
   Status land(std::size_t guard, double tried);
   Status land_by_clock(double tried);
-  Status wait_for_clock(double due);
+  Status wait_for_clock(double due, double t_end);
   std::vector<std::vector<double>> guards_by_element();
   std::optional<std::size_t> passed_by_jump(const std::vector<std::vector<double>>& before);
   bool release(SwitchSlopes& first, std::vector<std::vector<double>> before);
@@ -131,6 +132,7 @@ class March {
   std::unique_ptr<Stepper> stepper_;
   ErrorWeights weights_;
   std::optional<Section> section_;
+  std::optional<ClockWait> wait_;  ///< of a loop with sampled controllers
   bool armed_ = false;
   State x_, work_, repeat_error_;
   double t_ = 0.0, dt_ = 0.0, dt_max_ = infinite;

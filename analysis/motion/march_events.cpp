@@ -218,9 +218,18 @@ Status March::land(std::size_t guard, double tried) {
   return accumulate ? Status::chattering : Status::converged;
 }
 
-/// The step to the next switch of a clock while nothing else moves: a body that waits for an integrator may do so for
-/// millions of samples.
-Status March::wait_for_clock(double due) {
+/// The step to the next switch of a clock while nothing else moves, or over many of them: a body that waits for an
+/// integrator may do so for millions of samples.
+Status March::wait_for_clock(double due, double t_end) {
+  if (wait_ && !tracks_ && !field_.driven())
+    if (auto leap = wait_->look(field_, x_, t_, guards_start_, t_end)) {
+      step_.x1 = x_ = std::move(leap->x);
+      step_.t1 = t_ = leap->t;
+      step_.dx1 = step_.dx0;
+      step_.by_clock = fresh_ = true;
+      ++steps_;
+      return Status::converged;
+    }
   step_.x1 = step_.x0;
   for (std::size_t i = 0; i < x_.size(); ++i) step_.x1[i] += due * step_.dx0[i];
   step_.t1 = t_ + due;

@@ -67,10 +67,12 @@ std::optional<Vanishing> zero_ahead(const EndEvidence& evidence, double (*value)
   return ahead * step >= 0.0 && near ? found : std::nullopt;
 }
 
-/// slowing() of points (p, 1/T).
-std::optional<Vanishing> slowing_of_rates(std::vector<std::pair<double, double>> list) {
-  for (auto& [p, rate] : list) rate = 1.0 / rate;
-  return slowing(list);
+/// Points (p, 1/T) of points (p, T), and back.
+std::vector<std::pair<double, double>> inverse(const std::vector<std::pair<double, double>>& points) {
+  std::vector<std::pair<double, double>> found;
+  found.reserve(points.size());
+  for (const auto& [p, value] : points) found.emplace_back(p, 1.0 / value);
+  return found;
 }
 
 double relative(double error, double parameter) { return parameter != 0.0 ? error / std::abs(parameter) : error; }
@@ -81,8 +83,9 @@ std::optional<EndDiagnosis> faded(const EndEvidence& evidence) {
   const bool large = cycle.amplitude > 100.0 * evidence.first_amplitude;
   const bool slow = cycle.period > 30.0 * evidence.shortest_period;
   if (!small && !large && !slow) return std::nullopt;
-  const auto at = small || large ? zero_ahead(evidence, small ? amplitude_of : smallness_of, vanishing)
-                                 : zero_ahead(evidence, rate_of, slowing_of_rates);
+  const auto at = small || large
+                      ? zero_ahead(evidence, small ? amplitude_of : smallness_of, vanishing)
+                      : zero_ahead(evidence, rate_of, [](const auto& list) { return slowing(inverse(list)); });
   if (!at) return std::nullopt;
   EndDiagnosis end{at->parameter, relative(at->error, at->parameter), "", true};
   const std::string place = short_number(at->parameter, 6);
@@ -167,10 +170,7 @@ double exponential_limit(const std::pair<double, double>* points) {
 }  // namespace
 
 std::optional<Vanishing> slowing(const std::vector<std::pair<double, double>>& last) {
-  std::vector<std::pair<double, double>> rates;
-  rates.reserve(last.size());
-  for (const auto& [p, period] : last) rates.emplace_back(p, 1.0 / period);
-  const auto by_rate = vanishing(rates);
+  const auto by_rate = vanishing(inverse(last));
   if (!by_rate || last.size() < 4) return by_rate;
   const double here = exponential_limit(last.data()), before = exponential_limit(last.data() + 1);
   const double error = std::abs(here - before) + 1e-3 * std::abs(here - last[0].first);

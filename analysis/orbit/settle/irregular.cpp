@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "limcycle/analysis/orbit/settle/watch/outcome_watch.hpp"
@@ -103,9 +104,20 @@ bool repeats(const Returns& returns, double range) {
 
 }  // namespace
 
-std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat, long fewest_returns) {
-  if (trace.t.size() < 1000) return std::nullopt;
-  const double end = trace.t.back(), begin = trace.t.front() + (end - trace.t.front()) / 3.0;
+namespace {
+
+/// True if the first part reaches farther than the others, which are alike: the motion was still settling.
+bool settles_in_first(const std::array<Part, part_count>& all) {
+  constexpr double farther = 0.03, times = 3.0;
+  const auto range = [](const Part& part) { return part.high - part.low; };
+  const auto [least, most] = std::ranges::minmax(std::span(all).subspan(1), {}, range);
+  const double apart = range(most) / range(least) - 1.0;
+  return range(all.front()) > range(most) * (1.0 + std::max(farther, times * apart));
+}
+
+/// permanent_motion() of what follows that share of the record.
+std::optional<IrregularMotion> motion_after(double share, const Trace& trace, bool may_repeat, long fewest_returns) {
+  const double end = trace.t.back(), begin = trace.t.front() + share * (end - trace.t.front());
   std::array<Part, part_count> all;
   const auto part_at = [&](double t) -> Part& {
     const auto k = static_cast<std::size_t>(static_cast<double>(part_count) * (t - begin) / (end - begin));
@@ -130,6 +142,9 @@ std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_rep
       static_cast<double>(most.returns - fewest.returns) > uneven)
     return std::nullopt;
   if (goes_one_way(all) || (!may_repeat && repeats(returns, high - low))) return std::nullopt;
+  constexpr double later = 0.5;
+  if (share < later && settles_in_first(all))
+    if (auto settled = motion_after(later, trace, may_repeat, fewest_returns)) return settled;
   const std::vector<double> sizes = returns.amplitudes();
   const auto [shortest, longest] = std::ranges::minmax(returns.periods());
   const auto [smallest, largest] = std::ranges::minmax(sizes);
@@ -141,6 +156,13 @@ std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_rep
                          std::accumulate(sizes.begin(), sizes.end(), 0.0) / static_cast<double>(sizes.size()),
                          smallest,
                          largest};
+}
+
+}  // namespace
+
+std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat, long fewest_returns) {
+  if (trace.t.size() < 1000) return std::nullopt;
+  return motion_after(1.0 / 3.0, trace, may_repeat, fewest_returns);
 }
 
 bool agree(const IrregularMotion& one, const IrregularMotion& other) {

@@ -15,7 +15,8 @@ struct IrregularMotion {
   double smallest_amplitude = 0.0, largest_amplitude = 0.0;
 };
 
-/// The numbers of a recorded motion without its first third, if it looks permanent: over four equal parts of the rest
+/// The numbers of a recorded motion without its first third (half, if its swings were larger until then and are alike
+/// since), if it looks permanent: over four equal parts of the rest
 /// its range, its spread and its returns stay the same within the scatter of such numbers, its spread neither falls nor
 /// rises from each part to the next (a slow decay, a slow approach), and the returns do not repeat themselves, unless
 /// they may: those of a sampled loop differ by less than the resolution of a run if its samples are short. agree()
