@@ -43,7 +43,7 @@ bool ClockWait::is_affine(const LoopField& field) const {
 
 void ClockWait::begin(const LoopField& field, const State& x, double t) {
   repetitions_ = applies_ && is_affine(field) ? 0 : none;
-  t_ = first_t_ = t;
+  t_ = t;
   x_ = first_x_ = x;
   modes_ = field.modes();
   first_guards_ = lowest_ = guards_ = quiet_;

@@ -53,7 +53,7 @@ class ClockWait {
   std::vector<double> quiet_;  ///< guards of the elements without a clock
   int repetitions_ = none;     ///< since the wait, or the last leap, began
   double trusted_ = 0.0;       ///< repetitions that had the same change
-  double t_ = 0.0, first_t_ = 0.0;
+  double t_ = 0.0;
   State x_, first_x_, change_;
   std::vector<Mode> modes_;
   std::vector<double> inputs_, first_guards_, slopes_;
