@@ -15,6 +15,16 @@ constexpr int at_first = 32;  ///< repetitions before the first leap
 
 const Sampled<double>* sampled_in(const Loop& loop, std::size_t i) { return loop.elements[i].as<Sampled<double>>(); }
 
+/// The inputs that are read in quanta.
+std::vector<double> quantized_inputs(const LoopField& field) {
+  std::vector<double> inputs;
+  const auto& elements = field.loop().elements;
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    if (const auto* sampled = sampled_in(field.loop(), i); sampled && sampled->input_quantum > 0.0)
+      inputs.push_back(field.input(i).x);
+  return inputs;
+}
+
 bool as_expected(double change, double expected, double size) {
   return std::abs(change - expected) <= 1e-9 * std::abs(expected) + roundings_of_terms * size;
 }
@@ -48,10 +58,7 @@ void ClockWait::begin(const LoopField& field, const State& x, double t) {
   modes_ = field.modes();
   first_guards_ = lowest_ = guards_ = quiet_;
   trusted_ = 0.0;
-  inputs_.clear();
-  for (std::size_t i = 0; i < loop_.elements.size(); ++i)
-    if (const auto* sampled = sampled_in(loop_, i); sampled && sampled->input_quantum > 0.0)
-      inputs_.push_back(field.input(i).x);
+  inputs_ = quantized_inputs(field);
 }
 
 /// The guards of the elements without a clock.
@@ -93,11 +100,7 @@ State ClockWait::term_sizes(const LoopField& field, const State& x) const {
 
 /// True if the last repetition had the change of the first one.
 bool ClockWait::goes_on(const LoopField& field, const State& x) const {
-  if (field.modes() != modes_ || quiet_.size() != lowest_.size()) return false;
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < loop_.elements.size(); ++i)
-    if (const auto* sampled = sampled_in(loop_, i); sampled && sampled->input_quantum > 0.0)
-      if (field.input(i).x != inputs_[k++]) return false;
+  if (field.modes() != modes_ || quiet_.size() != lowest_.size() || quantized_inputs(field) != inputs_) return false;
   // After a leap an output, and those that wait for their delay, are those of the states but for the error of the leap.
   if (repetitions_ < catch_up_) return true;
   const State sizes = term_sizes(field, x);

@@ -41,6 +41,22 @@ Line zero(const std::vector<std::pair<double, double>>& last, double power) {
   return {between(0), between(1)};
 }
 
+/// p* of p = p* + a exp(-b T) through three points (p, 1/T) of falling T, by bisection for b.
+double exponential_limit(const std::pair<double, double>* points) {
+  const double p0 = points[0].first, T0 = 1.0 / points[0].second, to_next = points[1].first - p0,
+               to_last = points[2].first - p0;
+  // The share of p falls from the share of the T to 0 as b grows.
+  const double near = T0 - 1.0 / points[1].second, far = T0 - 1.0 / points[2].second, share = to_next / to_last;
+  const auto of = [&](double b) { return std::expm1(b * near) / std::expm1(b * far); };
+  double low = 1e-9 / far, high = 700.0 / far;
+  if (!(of(low) > share && of(high) < share)) return unknown;
+  for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) {
+    const double b = 0.5 * (low + high);
+    (of(b) > share ? low : high) = b;
+  }
+  return p0 - to_last / std::expm1(0.5 * (low + high) * far);
+}
+
 /// The last point and up to three before it, apart by a factor of 1.3 or more: neighbours after tiny steps carry no
 /// information.
 std::vector<std::pair<double, double>> history(const EndEvidence& evidence, double (*value)(const Cycle&)) {
@@ -67,14 +83,6 @@ std::optional<Vanishing> zero_ahead(const EndEvidence& evidence, double (*value)
   return ahead * step >= 0.0 && near ? found : std::nullopt;
 }
 
-/// Points (p, 1/T) of points (p, T), and back.
-std::vector<std::pair<double, double>> inverse(const std::vector<std::pair<double, double>>& points) {
-  std::vector<std::pair<double, double>> found;
-  found.reserve(points.size());
-  for (const auto& [p, value] : points) found.emplace_back(p, 1.0 / value);
-  return found;
-}
-
 double relative(double error, double parameter) { return parameter != 0.0 ? error / std::abs(parameter) : error; }
 
 std::optional<EndDiagnosis> faded(const EndEvidence& evidence) {
@@ -83,9 +91,8 @@ std::optional<EndDiagnosis> faded(const EndEvidence& evidence) {
   const bool large = cycle.amplitude > 100.0 * evidence.first_amplitude;
   const bool slow = cycle.period > 30.0 * evidence.shortest_period;
   if (!small && !large && !slow) return std::nullopt;
-  const auto at = small || large
-                      ? zero_ahead(evidence, small ? amplitude_of : smallness_of, vanishing)
-                      : zero_ahead(evidence, rate_of, [](const auto& list) { return slowing(inverse(list)); });
+  const auto at = small || large ? zero_ahead(evidence, small ? amplitude_of : smallness_of, vanishing)
+                                 : zero_ahead(evidence, rate_of, slowing);
   if (!at) return std::nullopt;
   EndDiagnosis end{at->parameter, relative(at->error, at->parameter), "", true};
   const std::string place = short_number(at->parameter, 6);
@@ -148,29 +155,8 @@ std::optional<Vanishing> vanishing(const std::vector<std::pair<double, double>>&
   return Vanishing{better.p, spread(better) + 1e-3 * std::abs(better.p - last[0].first)};
 }
 
-namespace {
-
-/// p* of p = p* + a exp(-b T) through three points of falling T, by bisection for b.
-double exponential_limit(const std::pair<double, double>* points) {
-  const auto [p0, T0] = points[0];
-  const auto [p1, T1] = points[1];
-  const auto [p2, T2] = points[2];
-  // (p1 - p0)/(p2 - p0) falls from the share of the T to 0 as b grows.
-  const double near = T0 - T1, far = T0 - T2, share = (p1 - p0) / (p2 - p0);
-  const auto of = [&](double b) { return std::expm1(b * near) / std::expm1(b * far); };
-  double low = 1e-9 / far, high = 700.0 / far;
-  if (!(of(low) > share && of(high) < share)) return unknown;
-  for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) {
-    const double b = 0.5 * (low + high);
-    (of(b) > share ? low : high) = b;
-  }
-  return p0 - (p2 - p0) / std::expm1(0.5 * (low + high) * far);
-}
-
-}  // namespace
-
 std::optional<Vanishing> slowing(const std::vector<std::pair<double, double>>& last) {
-  const auto by_rate = vanishing(inverse(last));
+  const auto by_rate = vanishing(last);
   if (!by_rate || last.size() < 4) return by_rate;
   const double here = exponential_limit(last.data()), before = exponential_limit(last.data() + 1);
   const double error = std::abs(here - before) + 1e-3 * std::abs(here - last[0].first);

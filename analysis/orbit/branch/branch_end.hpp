@@ -40,7 +40,7 @@ struct Vanishing {
 };
 std::optional<Vanishing> vanishing(const std::vector<std::pair<double, double>>& last);
 
-/// Where a period grows without bound along p, from its last points (p, T), the last one first: by its rate 1/T (see
+/// Where a period grows without bound along p, from its last points (p, 1/T), the last one first: by its rate (see
 /// vanishing()), or by p = p* + a exp(-b T), as where a motion only just reaches what it approaches exponentially (a
 /// relay the gain of whose loop falls to its hysteresis, a saddle), whichever agrees better with the point before. The
 /// latter needs four points. Error: as of vanishing(). Empty if it does not grow.

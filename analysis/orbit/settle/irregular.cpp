@@ -33,6 +33,7 @@ struct Part {
     square += h * (y0 * y0 + y0 * y1 + y1 * y1) / 3.0;
     time += h;
   }
+  double range() const { return high - low; }
   double spread() const { return std::sqrt(std::max(0.0, square / time - (sum / time) * (sum / time))); }
 };
 
@@ -102,17 +103,12 @@ bool repeats(const Returns& returns, double range) {
   return false;
 }
 
-}  // namespace
-
-namespace {
-
 /// True if the first part reaches farther than the others, which are alike: the motion was still settling.
 bool settles_in_first(const std::array<Part, part_count>& all) {
   constexpr double farther = 0.03, times = 3.0;
-  const auto range = [](const Part& part) { return part.high - part.low; };
-  const auto [least, most] = std::ranges::minmax(std::span(all).subspan(1), {}, range);
-  const double apart = range(most) / range(least) - 1.0;
-  return range(all.front()) > range(most) * (1.0 + std::max(farther, times * apart));
+  const auto [least, most] = std::ranges::minmax(std::span(all).subspan(1), {}, &Part::range);
+  const double apart = most.range() / least.range() - 1.0;
+  return all.front().range() > most.range() * (1.0 + std::max(farther, times * apart));
 }
 
 /// permanent_motion() of what follows that share of the record.
@@ -135,10 +131,9 @@ std::optional<IrregularMotion> motion_after(double share, const Trace& trace, bo
   for (const double t : returns.times) ++part_at(t).returns;
   const auto is_short = [&](const Part& part) { return part.returns < fewest_returns || !(part.time > 0.0); };
   if (std::ranges::any_of(all, is_short)) return std::nullopt;
-  const auto range = [](const Part& part) { return part.high - part.low; };
   const auto [fewest, most] = std::ranges::minmax(all, {}, &Part::returns);
   const double uneven = std::max(1.0, returns_scatter * static_cast<double>(fewest.returns));
-  if (scatter(all, range) > range_scatter || scatter(all, &Part::spread) > spread_scatter ||
+  if (scatter(all, &Part::range) > range_scatter || scatter(all, &Part::spread) > spread_scatter ||
       static_cast<double>(most.returns - fewest.returns) > uneven)
     return std::nullopt;
   if (goes_one_way(all) || (!may_repeat && repeats(returns, high - low))) return std::nullopt;

@@ -271,7 +271,7 @@ TEST_CASE("continuation: where a falling quantity comes to zero") {
 TEST_CASE("continuation: where a period grows without bound, like a logarithm, a pole or a root") {
   const auto limit_of = [](auto place) {
     std::vector<std::pair<double, double>> last;
-    for (const double period : {12.0, 9.0, 6.5, 5.0}) last.emplace_back(place(period), period);
+    for (const double period : {12.0, 9.0, 6.5, 5.0}) last.emplace_back(place(period), 1.0 / period);
     return slowing(last);
   };
   const auto logarithm = limit_of([](double T) { return 2.0 - 3.0 * std::exp(-0.7 * T); });
@@ -283,7 +283,7 @@ TEST_CASE("continuation: where a period grows without bound, like a logarithm, a
   const auto root = limit_of([](double T) { return 5.0 + 2.0 / (T * T); });
   REQUIRE(root);
   CHECK(root->parameter == Approx(5.0).epsilon(1e-9));
-  CHECK_FALSE(slowing({{1.0, 3.0}, {1.1, 4.0}, {1.2, 5.0}, {1.3, 6.0}}));
+  CHECK_FALSE(slowing({{1.0, 1.0 / 3.0}, {1.1, 1.0 / 4.0}, {1.2, 1.0 / 5.0}, {1.3, 1.0 / 6.0}}));
 }
 
 TEST_CASE("continuation: what is not a cycle, not a range or not to be finished is said") {
