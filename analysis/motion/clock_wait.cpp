@@ -13,14 +13,12 @@ constexpr double nearly_all = 1.0 - 1e-9;
 constexpr double roundings_of_terms = 64.0 * std::numeric_limits<double>::epsilon();
 constexpr int at_first = 32;  ///< repetitions before the first leap
 
-const Sampled<double>* sampled_in(const Loop& loop, std::size_t i) { return loop.elements[i].as<Sampled<double>>(); }
-
 /// The inputs that are read in quanta.
 std::vector<double> quantized_inputs(const LoopField& field) {
   std::vector<double> inputs;
   const auto& elements = field.loop().elements;
   for (std::size_t i = 0; i < elements.size(); ++i)
-    if (const auto* sampled = sampled_in(field.loop(), i); sampled && sampled->input_quantum > 0.0)
+    if (const auto* sampled = sampled_at(field.loop(), i); sampled && sampled->input_quantum > 0.0)
       inputs.push_back(field.input(i).x);
   return inputs;
 }
@@ -37,9 +35,9 @@ double steps_within(double bound, double value, double change) {
 
 }  // namespace
 
-ClockWait::ClockWait(const Loop& loop) : loop_(loop), repetition_(repetition_time(loop)), applies_(repetition_ > 0.0) {
+ClockWait::ClockWait(const Loop& loop) : loop_(loop), repetition_(repetition_time(loop)) {
   for (std::size_t i = 0; i < loop.elements.size(); ++i) {
-    const auto* sampled = sampled_in(loop, i);
+    const auto* sampled = sampled_at(loop, i);
     if (!sampled) continue;
     catch_up_ = std::max(catch_up_, 1 + static_cast<int>(std::ceil(sampled->delay() / repetition_)));
   }
@@ -52,7 +50,7 @@ bool ClockWait::is_affine(const LoopField& field) const {
 }
 
 void ClockWait::begin(const LoopField& field, const State& x, double t) {
-  repetitions_ = applies_ && is_affine(field) ? 0 : none;
+  repetitions_ = is_affine(field) ? 0 : none;
   t_ = t;
   x_ = first_x_ = x;
   modes_ = field.modes();
@@ -81,7 +79,7 @@ State ClockWait::term_sizes(const LoopField& field, const State& x) const {
   State sizes(x.size());
   std::ranges::transform(x, sizes.begin(), [](double value) { return std::abs(value); });
   for (std::size_t i = 0; i < loop_.elements.size(); ++i) {
-    const auto* sampled = sampled_in(loop_, i);
+    const auto* sampled = sampled_at(loop_, i);
     if (!sampled) continue;
     const std::size_t first = field.first_state(i), own = first + Sampled<double>::first_own, n = sampled->C.size();
     const double read = std::abs(sampled->reading(field.input(i).x));
@@ -130,7 +128,7 @@ double ClockWait::room(const LoopField& field, const State& x) const {
   for (std::size_t j = 0; j < lowest_.size(); ++j)
     if (slopes_[j] < 0.0) most = std::min(most, lowest_[j] / -slopes_[j] - spare());
   for (std::size_t i = 0; i < loop_.elements.size(); ++i) {
-    const auto* sampled = sampled_in(loop_, i);
+    const auto* sampled = sampled_at(loop_, i);
     if (!sampled) continue;
     const auto [output, change] = next_output(*sampled, field.input(i).x, field.first_state(i), x);
     most = std::min(most, steps_within(sampled->limit, output, change) - spare());
@@ -156,7 +154,6 @@ ClockWait::Leap ClockWait::over(const State& x, double t, double times) {
 
 std::optional<ClockWait::Leap> ClockWait::look(const LoopField& field, const State& x, double t,
                                                const std::vector<double>& guards, double t_end) {
-  if (!applies_) return std::nullopt;
   observe(field, guards);
   if (repetitions_ == none) {
     begin(field, x, t);

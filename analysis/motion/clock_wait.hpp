@@ -19,6 +19,7 @@ namespace limcycle {
 /// leapt over are waits in which a quantized input moves, or an element is neither held nor affine in its mode.
 class ClockWait {
  public:
+  /// Of a loop with sampled controllers.
   explicit ClockWait(const Loop& loop);
 
   /// Something else than clocks moved.
@@ -47,9 +48,8 @@ class ClockWait {
   Leap over(const State& x, double t, double times);
 
   const Loop& loop_;
-  double repetition_ = 0.0;
-  int catch_up_ = 1;  ///< repetitions after which an output is that of a reading after the leap
-  bool applies_ = false;
+  double repetition_;
+  int catch_up_ = 1;           ///< repetitions after which an output is that of a reading after the leap
   std::vector<double> quiet_;  ///< guards of the elements without a clock
   int repetitions_ = none;     ///< since the wait, or the last leap, began
   double trusted_ = 0.0;       ///< repetitions that had the same change

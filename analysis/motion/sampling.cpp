@@ -9,10 +9,10 @@
 #include "limcycle/models/element/of_controllers/sampled.hpp"
 
 namespace limcycle {
-namespace {
 
-/// The reading or part of a controller in this place; empty for any other element.
 const Sampled<double>* sampled_at(const Loop& loop, std::size_t k) { return loop.elements[k].as<Sampled<double>>(); }
+
+namespace {
 
 /// Number of its states that the continuous controller has too; the others are past inputs.
 std::size_t states_of_controller(const Sampled<double>& sampled) {

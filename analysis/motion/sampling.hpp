@@ -5,6 +5,12 @@
 
 namespace limcycle {
 
+template <class S>
+struct Sampled;
+
+/// The reading or part of a controller in this place of a loop; null for any other element.
+const Sampled<double>* sampled_at(const Loop& loop, std::size_t k);
+
 /// Time between two readings of the sampled controller of a loop, s; infinite without one.
 double sample_time(const Loop& loop);
 
