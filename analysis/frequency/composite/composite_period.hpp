@@ -221,6 +221,10 @@ class CompositePeriod {
     const double delta = march_.has_modes() ? std::clamp(0.3 * std::sqrt(tolerance_.relative), 1e-6, 1e-3) : 1e-6;
     std::vector<double> r;
     for (std::size_t j = 0; j < n; ++j) {
+      if (j > 0 && j < march_.size() && march_.law().unused(state_.mode, static_cast<int>(j) - 1)) {
+        jacobian_[j * n + j] = -1.0;
+        continue;
+      }
       State moved = state_;
       double bias = bias_;
       if (j < march_.size()) {

@@ -36,6 +36,7 @@ class CompositeStep {
     seeds_.reserve(d_ + 1);
     jacobian_.resize(d_ * d_);
     lu_.resize(d_ * d_);
+    moving_.reserve(d_);
   }
 
   const Element& law() const { return law_; }
@@ -117,6 +118,25 @@ class CompositeStep {
     }
   }
 
+  /// Calls f(i) for every unknown i that moves in this step. Return points kept for later, and elements that are stuck
+  /// or fully stretched, have a rate of zero whatever the state is.
+  template <class Function>
+  void each_moving(const Function& f) const {
+    if constexpr (D == 0)
+      for (const std::size_t i : moving_) f(i);
+    else
+      for (std::size_t i = 0; i < std::size_t(D); ++i) f(i);
+  }
+  void find_moving() {
+    if constexpr (D != 0) return;
+    moving_.assign(1, 0);
+    for (std::size_t k = 1; k < d_; ++k) {
+      const double* row = &jacobian_[k * d_];
+      if (rate0_[k] != 0.0 || std::any_of(row, row + d_, [](double slope) { return slope != 0.0; }))
+        moving_.push_back(k);
+    }
+  }
+
   /// Quantities that do not depend on the length of the step.
   void begin(const State& s) {
     y0_ = &s.y;
@@ -126,6 +146,9 @@ class CompositeStep {
     field(s.y, mode_, sine0_, rate0_);
     friction0_ = friction_;
     differentiate(s.y, mode_, sine0_);
+    find_moving();
+    stage_ = y1_ = s.y;
+    std::fill(error_.begin(), error_.end(), 0.0);
     std::fill(dfdt_.begin(), dfdt_.end(), 0.0);
     dfdt_[0] = (1.0 - friction_by_force_) * force_.amplitude * cosine0_ / (mass_ * force_.frequency);
   }
@@ -158,11 +181,11 @@ class CompositeStep {
         std::copy(y0_->begin(), y0_->end(), stage_.begin());
         friction_ = friction0_;
       } else {
-        for (std::size_t i = 0; i < d_; ++i) {
+        each_moving([&](std::size_t i) {
           double sum = (*y0_)[i];
           for (std::size_t j = 0; j < s; ++j) sum += A[s][j] * k_[j][i];
           stage_[i] = sum;
-        }
+        });
         if (s < 6) {
           sine_ = std::sin(phase_ + node[s] * h);
           cosine_ = std::cos(phase_ + node[s] * h);
@@ -171,11 +194,11 @@ class CompositeStep {
         cosine = cosine_;
         field(stage_, mode_, sine, rate_);
       }
-      for (std::size_t i = 0; i < d_; ++i) {
+      each_moving([&](std::size_t i) {
         double sum = rate_[i] + h * time_weight[s] * dfdt_[i];
         for (std::size_t j = 0; j < s; ++j) sum += C[s][j] / h * k_[j][i];
         k_[s][i] = sum;
-      }
+      });
       solve(k_[s]);
       integrands(stage_[0], friction_, sine, cosine, g);
       carry_integrals(s, h, g);
@@ -196,7 +219,7 @@ class CompositeStep {
     }
     own[0] += kv;
     own[1] += friction0_ * kv;
-    for (std::size_t i = 0; i < d_; ++i) own[1] += v0 * friction_gradient_[i] * k_[s][i];
+    each_moving([&](std::size_t i) { own[1] += v0 * friction_gradient_[i] * k_[s][i]; });
     own[1] += friction_by_force_ * v0 * h * time_weight[s] * force_.amplitude * cosine0_;
     double sk = sine0_, ck = cosine0_;
     for (std::size_t k = 0; k < orders_; ++k) {
@@ -212,10 +235,10 @@ class CompositeStep {
 
   void finish() {
     using namespace rodas5p;
-    for (std::size_t i = 0; i < d_; ++i) {
+    each_moving([&](std::size_t i) {
       y1_[i] = stage_[i] + k_[stages - 1][i];
       error_[i] = k_[stages - 1][i];
-    }
+    });
     for (std::size_t q = 0; q < nq_; ++q) {
       double sum = 0.0;
       for (std::size_t j = 0; j + 1 < stages; ++j) sum += A[stages - 1][j] * kq_[j * nq_ + q];
@@ -226,15 +249,17 @@ class CompositeStep {
 
   /// LU of shift - J; pivots stay on the diagonal for one and two unknowns unless they vanish.
   bool factorise(double shift) {
-    if (d_ > 2) {
-      system_.assign(d_ * (2 * d_), 0.0);
-      for (std::size_t i = 0; i < d_; ++i) {
-        for (std::size_t j = 0; j < d_; ++j) system_[i * 2 * d_ + j] = (i == j ? shift : 0.0) - jacobian_[i * d_ + j];
-        system_[i * 2 * d_ + d_ + i] = 1.0;
+    if constexpr (D == 0) {
+      const std::size_t n = moving_.size();
+      system_.assign(n * (2 * n), 0.0);
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j)
+          system_[i * 2 * n + j] = (i == j ? shift : 0.0) - jacobian_[moving_[i] * d_ + moving_[j]];
+        system_[i * 2 * n + n + i] = 1.0;
       }
-      if (!eliminate(system_, d_, d_)) return false;
-      for (std::size_t i = 0; i < d_; ++i)
-        for (std::size_t j = 0; j < d_; ++j) lu_[i * d_ + j] = system_[i * 2 * d_ + d_ + j];
+      if (!eliminate(system_, n, n)) return false;
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) lu_[i * n + j] = system_[i * 2 * n + n + j];
       return true;
     }
     if (d_ == 1) {
@@ -252,12 +277,13 @@ class CompositeStep {
 
   /// x := (shift - J)^-1 x.
   void solve(Vector& x) {
-    for (std::size_t i = 0; i < d_; ++i) {
+    std::size_t row = 0;
+    each_moving([&](std::size_t i) {
       double sum = 0.0;
-      for (std::size_t j = 0; j < d_; ++j) sum += lu_[i * d_ + j] * x[j];
+      each_moving([&](std::size_t j) { sum += lu_[row++] * x[j]; });
       reach_[i] = sum;
-    }
-    std::copy(reach_.begin(), reach_.end(), x.begin());
+    });
+    each_moving([&](std::size_t i) { x[i] = reach_[i]; });
   }
 
   double error_norm() const {
@@ -298,7 +324,7 @@ class CompositeStep {
   std::array<double, 2 + 2 * 64> g_{};
   std::vector<double> kq_, q_error_, friction_gradient_, jacobian_, lu_, system_;
   std::vector<DualS> dual_z_, dual_dz_;
-  std::vector<std::size_t> seeds_;
+  std::vector<std::size_t> seeds_, moving_;
 };
 
 }  // namespace limcycle

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
+#include "limcycle/analysis/frequency/kernels/gms_period.hpp"
 #include "limcycle/analysis/frequency/kernels/linear_period.hpp"
 #include "limcycle/analysis/frequency/march/harmonic_sums.hpp"
 #include "limcycle/analysis/frequency/march/periodic_state.hpp"
@@ -29,7 +30,9 @@ class QuadratureRoute {
         options_(options),
         tolerance_(1e-4 * options.accuracy),
         sums_(options.harmonics) {
-    if (options.method == DfMethod::automatic) linear_ = LinearPeriod::of(element_);
+    if (options.method != DfMethod::automatic) return;
+    linear_ = LinearPeriod::of(element_);
+    if (try_symmetric) gms_ = GmsPeriod::of(element_);
   }
 
   /// A first harmonic below this share of the mean |output| that two meshes cannot distinguish from zero is reported as
@@ -77,6 +80,9 @@ class QuadratureRoute {
     sums_.restart();
     if (auto periodic = linear_ ? linear_->find(motion_, mesh, settings.stages, try_symmetric_, sums_) : std::nullopt)
       return take(std::move(*periodic), linear_->evaluations());
+    if (auto periodic = gms_ ? gms_->find(motion_, mesh, settings.stages, sums_) : std::nullopt)
+      return take(std::move(*periodic), gms_->evaluations());
+    sums_.restart();
     ElementMarch march(element_, motion_, settings.stages);
     PeriodicStateSearch search(march, mesh, try_symmetric_, tolerance_);
     PeriodicState periodic = search.find(sums_, has_guess_ ? &guess_ : nullptr);
@@ -153,6 +159,7 @@ class QuadratureRoute {
   bool try_symmetric_;
   DfOptions options_;
   std::optional<LinearPeriod> linear_;
+  std::optional<GmsPeriod> gms_;
   double tolerance_;   ///< of the periodic state
   double size_ = 0.0;  ///< mean |output| of the last mesh
   HarmonicSums sums_;

@@ -15,7 +15,7 @@ namespace limcycle {
 
 /// Describing functions of laws without direction dependence, computed for many points at a time in lanes, from the
 /// half period of the periodic state. Laws linear in their state (LuGre, Dahl with exponent 1) take one pass
-/// (linear_kernel.hpp). Others with independent states (elasto-plastic, Dahl, Bouc-Wen, GMS, Xiong; see MarchedLaw) are
+/// (linear_kernel.hpp). Others with independent states (elasto-plastic, Dahl, Bouc-Wen, Xiong; see MarchedLaw) are
 /// marched through their switches (march_kernel.hpp).
 ///
 /// Error for laws linear in their state: in units of Fs/sigma0 and vs the problem has four numbers: alpha = A

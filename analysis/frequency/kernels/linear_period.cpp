@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
-#include <stdexcept>
-
-#include "limcycle/analysis/lanes/elimination.hpp"
 
 namespace limcycle {
 
@@ -49,49 +46,14 @@ void LinearPeriod::place(const PrescribedMotion& motion, const std::vector<Panel
   }
 }
 
-template <int S>
-void LinearPeriod::solve(const RadauIIA& table, double frequency) {
-  double particular = 0.0, homogeneous = 1.0;
-  for (std::size_t first = 0; first < nodes_.size(); first += S) {
-    const double step = nodes_[first].width / frequency;
-    double m[S][S], x[S], y[S];
-    for (int i = 0; i < S; ++i) {
-      const auto row = static_cast<std::size_t>(i);
-      const LinearRate<double>& rate = nodes_[first + row].rate;
-      for (int j = 0; j < S; ++j) m[i][j] = table.inverse[row * S + static_cast<std::size_t>(j)];
-      m[i][i] += rate.decay * step;
-      x[i] = rate.source * step + table.row_sum[row] * particular;
-      y[i] = table.row_sum[row] * homogeneous;
-    }
-    eliminate(m, x, y);
-    for (int i = 0; i < S; ++i) {
-      nodes_[first + static_cast<std::size_t>(i)].particular = x[i];
-      nodes_[first + static_cast<std::size_t>(i)].homogeneous = y[i];
-    }
-    particular = x[S - 1];
-    homogeneous = y[S - 1];
-  }
-}
-
 void LinearPeriod::march(const RadauIIA& table, double frequency) {
-  switch (table.stages) {
-    case 4:
-      return solve<4>(table, frequency);
-    case 5:
-      return solve<5>(table, frequency);
-    case 6:
-      return solve<6>(table, frequency);
-    case 7:
-      return solve<7>(table, frequency);
-    case 8:
-      return solve<8>(table, frequency);
-    case 9:
-      return solve<9>(table, frequency);
-    case 10:
-      return solve<10>(table, frequency);
-    default:
-      throw std::invalid_argument("period of a linear law: 4 to 10 stages");
-  }
+  with_stages(table.stages, [&]<int S> {
+    LinearPair pair;
+    for (std::size_t first = 0; first < nodes_.size(); first += S)
+      pair = solve_linear_panel<S>(
+          table, nodes_[first].width / frequency, pair, [&](std::size_t i) { return nodes_[first + i].rate; },
+          [&](std::size_t i, const LinearPair& here) { nodes_[first + i].pair = here; });
+  });
 }
 
 /// The output of the motion that begins in the state `start`, into `sums`; its largest state. Empty if the rate is not
@@ -102,7 +64,7 @@ std::optional<double> LinearPeriod::integrate(double start, HarmonicSums& sums) 
         double peak = std::abs(start);
         for (const Node& node : nodes_) {
           const Input<double>& in = node.motion.in;
-          const double z = node.particular + start * node.homogeneous;
+          const double z = node.pair.from(start);
           peak = std::max(peak, std::abs(z));
           if constexpr (std::same_as<L, Supposed>) {
             if (!law.agrees(in, node.rate, z)) return std::nullopt;
@@ -132,9 +94,9 @@ std::optional<PeriodicState> LinearPeriod::find(const PrescribedMotion& motion, 
       law_);
   march(table, motion.frequency());
   const Node& last = nodes_.back();
-  const double lost = half ? 1.0 + last.homogeneous : 1.0 - last.homogeneous;
+  const double lost = half ? 1.0 + last.pair.homogeneous : 1.0 - last.pair.homogeneous;
   if (lost < 1e-12) return std::nullopt;
-  const double start = (half ? -last.particular : last.particular) / lost;
+  const double start = (half ? -last.pair.particular : last.pair.particular) / lost;
   const auto peak = integrate(start, sums);
   is_linear_ = peak.has_value();
   if (!peak) return std::nullopt;
@@ -142,7 +104,7 @@ std::optional<PeriodicState> LinearPeriod::find(const PrescribedMotion& motion, 
   PeriodicState found;
   found.status = std::isfinite(*peak) ? Status::converged : Status::not_finite;
   found.state.z = {start};
-  found.state.sensitivity = {last.homogeneous};
+  found.state.sensitivity = {last.pair.homogeneous};
   found.symmetric = half;
   found.defect = 1e-15 * std::max(1.0, 1.0 / lost);
   found.scale = {*peak > 0.0 ? std::min(own, *peak) : own};

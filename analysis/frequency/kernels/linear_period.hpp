@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "limcycle/analysis/frequency/kernels/linear_panel.hpp"
 #include "limcycle/analysis/frequency/march/harmonic_sums.hpp"
 #include "limcycle/analysis/frequency/march/periodic_state.hpp"
 #include "limcycle/analysis/frequency/march/prescribed_motion.hpp"
@@ -56,13 +57,11 @@ class LinearPeriod {
     double weight = 0.0;  ///< of phase
     double width = 0.0;   ///< of the panel, rad
     LinearRate<double> rate;
-    double particular = 0.0, homogeneous = 0.0;
+    LinearPair pair;
   };
   explicit LinearPeriod(Law law) : law_(std::move(law)) {}
   void place(const PrescribedMotion& motion, const std::vector<Panel>& panels, const RadauIIA& table);
   void march(const RadauIIA& table, double frequency);
-  template <int S>
-  void solve(const RadauIIA& table, double frequency);
   std::optional<double> integrate(double start, HarmonicSums& sums) const;
 
   Law law_;

@@ -9,16 +9,15 @@ namespace limcycle {
 /// function of speed sin(phi).
 ///
 ///   elasto-plastic  du/dphi = reach sin(phi) (1 - a(u) u/g), a as in the law
-///   slider          sticks, du/dphi = reach sin(phi), while |u| < g; then du/dphi = tempo (1 - u/g)   (an element of
-///   GMS) capped          the same while |u + drag sin(phi)| < b, else du/dphi = tempo (+-b - u);
+///   capped          du/dphi = reach sin(phi) while |u + drag sin(phi)| < b, else du/dphi = tempo (+-b - u);
 ///                   db/dphi = lag (g - b)                                                       (an element of Xiong)
 ///   dahl            du/dphi = reach sin(phi) (1 - u)^exponent, exponent >= 1
 ///   bouc-wen        du/dphi = reach sin(phi) (1 - |u|^exponent), u > 0; (1 - curvature |u|^exponent), u < 0
 ///
 /// Raw arrays only: the same source is compiled for each instruction set (see Pack).
 
-enum class MarchLaw { elasto_plastic, slider, capped, dahl, bouc_wen };
-inline constexpr int march_laws = 5;
+enum class MarchLaw { elasto_plastic, capped, dahl, bouc_wen };
+inline constexpr int march_laws = 4;
 
 /// Parameters of the equations above that all lanes share.
 struct MarchNumbers {

@@ -209,7 +209,7 @@ class MarchPass {
     const Mask up = taken & (high[S] < room) & (high_slope < 0.0);
     const Mask ends = up | (taken & (low[S] < room) & (low_slope < 0.0));
     take(h, taken, b_end, db_end);
-    if constexpr (Law::sticks && (!Law::gentle || Law::lags)) {
+    if constexpr (Law::sticks && Law::lags) {
       const Mask sticking = taken & (abs(mode_) < 0.5);
       const Mask near = nearly_met(low, low_slope, fell_low_) | nearly_met(high, high_slope, fell_high_);
       doubt_ = select(sticking & near, P(1.0), doubt_);
@@ -368,15 +368,13 @@ template <class P>
 constexpr MarchKernels march_kernels() {
   MarchKernels k;
   k.of[0][5] = march<P, 5, ElastoPlasticMarch>;
-  k.of[1][5] = march<P, 5, SliderMarch>;
-  k.of[2][5] = march<P, 5, CappedMarch>;
-  k.of[3][5] = march<P, 5, DahlMarch>;
-  k.of[4][5] = march<P, 5, BoucWenMarch>;
+  k.of[1][5] = march<P, 5, CappedMarch>;
+  k.of[2][5] = march<P, 5, DahlMarch>;
+  k.of[3][5] = march<P, 5, BoucWenMarch>;
   k.of[0][8] = march<P, 8, ElastoPlasticMarch>;
-  k.of[1][8] = march<P, 8, SliderMarch>;
-  k.of[2][8] = march<P, 8, CappedMarch>;
-  k.of[3][8] = march<P, 8, DahlMarch>;
-  k.of[4][8] = march<P, 8, BoucWenMarch>;
+  k.of[1][8] = march<P, 8, CappedMarch>;
+  k.of[2][8] = march<P, 8, DahlMarch>;
+  k.of[3][8] = march<P, 8, BoucWenMarch>;
   return k;
 }
 

@@ -108,33 +108,6 @@ struct ElastoPlasticMarch {
   P next(const P& mode, const typename P::Mask& up) const { return mode + select(up, P(1.0), P(-1.0)); }
 };
 
-/// Modes: 0 sticks, 1 slips.
-template <class P>
-struct SliderMarch {
-  static constexpr bool sticks = true, lags = false, gentle = false;
-  MarchLevel<P> level;
-
-  explicit SliderMarch(const MarchNumbers& n) : level(n) {}
-
-  MarchPlace<P> place(const MarchLane<P>& lane, const P& sine, const P&) const {
-    const P g = level.at(lane.speed * sine);
-    return {lane.reach * sine, g, lane.tempo, lane.tempo / g, 0.0};
-  }
-  MarchRate<P> rate(const MarchPlace<P>& at, const P& mode, const P& u, const MarchLane<P>&) const {
-    const auto slips = mode > 0.5;
-    const P& decay = at.per;
-    return {select(slips, at.extra - decay * u, at.drive), select(slips, -decay, P(0.0))};
-  }
-  MarchBand<P> band(const MarchPlace<P>& at, const P& mode) const {
-    const P high = select(mode > 0.5, P(beyond), at.level);
-    return {-high, high};
-  }
-  P stiffness(const MarchPlace<P>& at, const P& mode, const MarchLane<P>&) const {
-    return select(mode > 0.5, at.per, P(0.0));
-  }
-  P next(const P&, const typename P::Mask&) const { return 1.0; }
-};
-
 /// Modes: 0 below the cap, 1 and -1 at the upper and the lower one.
 template <class P>
 struct CappedMarch {

@@ -103,30 +103,13 @@ class MarchedHalfPeriod::Batch {
     }
   }
 
-  /// Rough periodic states; removes from `wanted` the points that have more than one, or none.
-  void guess(std::vector<std::size_t>& wanted) {
+  /// Rough periodic states, from which those on finer meshes start.
+  void guess(const std::vector<std::size_t>& wanted) {
     Mesh rough = march_meshes.front();
     rough.least = 5e-3;
     guessing_ = true;
-    if (law_.states.front().law != MarchLaw::slider) {
-      run(rough, wanted);
-      guessing_ = false;
-      return;
-    }
-    // A slider that is stretched to its level may begin to slip at once, and then return there without any motion:
-    // there may be a periodic state besides the one reached from rest.
-    for (Start& start : starts_) start = {-0.999, 1.0, true};
-    run(rough, wanted);
-    const std::vector<Start> stretched = starts_;
-    for (Start& start : starts_) start.known = false;
     run(rough, wanted);
     guessing_ = false;
-    const std::size_t n = law_.states.size();
-    std::erase_if(wanted, [&](std::size_t point) -> bool {
-      for (std::size_t i = point * n; i < (point + 1) * n; ++i)
-        if (!(std::abs(starts_[i].u - stretched[i].u) <= 0.1)) return true;
-      return failed_[point];
-    });
   }
 
   bool failed(std::size_t point) const { return failed_[point]; }

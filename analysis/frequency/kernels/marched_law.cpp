@@ -5,7 +5,6 @@
 #include "limcycle/models/friction/bristle/bouc_wen.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
-#include "limcycle/models/friction/sliders/gms.hpp"
 #include "limcycle/models/friction/sliders/xiong.hpp"
 
 namespace limcycle {
@@ -38,20 +37,6 @@ MarchedLaw marched(const ElastoPlastic<double>& law) {
   state.force = law.Fs;
   state.damping = law.sigma1 * law.Fs / law.sigma0;
   return {{state}, 0.0, law.sigma2, kink_of(law), 1.5};
-}
-
-MarchedLaw marched(const Gms<double>& law) {
-  MarchedLaw all{{}, 0.0, law.sigma2, kink_of(law), 4.0, 5e-8};
-  for (std::size_t i = 0; i < law.k.size(); ++i) {
-    MarchedState state{.law = MarchLaw::slider, .numbers = level_of(law)};
-    state.force = law.alpha[i] * law.Fs;
-    state.reach = law.k[i] / state.force;
-    state.speed = 1.0 / law.vs;
-    state.tempo = law.C / law.Fs;
-    if (!law.sigma1.empty()) state.damping = law.sigma1[i] / law.k[i] * state.force;
-    all.states.push_back(state);
-  }
-  return all;
 }
 
 MarchedLaw marched(const Xiong<double>& law) {
@@ -101,8 +86,6 @@ MarchedLaw marched(const BoucWen<double>& law) {
 std::optional<MarchedLaw> MarchedLaw::of(const Element& element) {
   if (const auto* law = element.as<ElastoPlastic<double>>())
     return law->odd() && law->vd == 0.0 && law->zba_ratio < 1.0 ? std::optional(marched(*law)) : std::nullopt;
-  if (const auto* law = element.as<Gms<double>>())
-    return law->odd() && kink_of(*law) == 0.0 ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = element.as<Xiong<double>>()) return law->odd() ? std::optional(marched(*law)) : std::nullopt;
   if (const auto* law = element.as<Dahl<double>>())
     return law->exponent > 1.0 ? std::optional(marched(*law)) : std::nullopt;

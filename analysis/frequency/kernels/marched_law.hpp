@@ -26,8 +26,8 @@ struct MarchedLaw {
   double least = 0.0;      ///< lower bound of that error
   bool knows_rate = true;  ///< false: the gain depends on the amplitude only
 
-  /// Laws without direction dependence: elasto-plastic (constant damping), Xiong, and GMS with a level that is smooth
-  /// at rest; Dahl with an exponent above 1; Bouc-Wen with beta >= 0 and n = 1 or n >= 2. Empty for the others.
+  /// Laws without direction dependence: elasto-plastic (constant damping), Xiong; Dahl with an exponent above 1;
+  /// Bouc-Wen with beta >= 0 and n = 1 or n >= 2. Empty for the others.
   static std::optional<MarchedLaw> of(const Element& element);
 };
 

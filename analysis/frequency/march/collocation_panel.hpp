@@ -89,8 +89,7 @@ class CollocationPanel {
     find_used(state.mode);
     find_depended(state);
     const double step = (to - from) / motion_.frequency();
-    for (std::size_t i = 0; i < s_; ++i)
-      for (std::size_t p = 0; p < n_; ++p) z_[i * n_ + p] = state.z[p];
+    guess({anchor, from, to, state.mode}, state);
     // The derivatives of many states cost more than a second elimination: they are found when Newton has converged.
     const bool at_once = n_ <= 2;
     double before = infinite;
@@ -112,8 +111,10 @@ class CollocationPanel {
         size += 0.01 * stiffness / (1.0 + stiffness) * element_.state_scale(static_cast<int>(p));
         worst = std::max(worst, defect / size);
       }
-      if (worst <= 2e-14 * (1.0 + stiffness))
+      if (worst <= 2e-14 * (1.0 + stiffness)) {
+        solved_ = Stretch{anchor, from, to, state.mode};
         return at_once || correct(step, state, {.states = false, .derivatives = true});
+      }
       if (!(worst < before) || iteration > 6) return false;
       before = worst;
     }
@@ -143,6 +144,7 @@ class CollocationPanel {
       (residual_at(middle) < 0.0 ? low : high) = middle;
     }
     const double end = 0.5 * (low + high);
+    solved_.reset();
     const bool holds = std::abs(end - start) <= 2e-13 * scale;  // ten times the tolerance of Newton
     if (!holds && !force) return false;
     for (std::size_t i = 0; i < s_; ++i) z_[i] = holds ? start : start + table_.c[i] * (end - start);
@@ -156,6 +158,31 @@ class CollocationPanel {
   struct Wanted {
     bool states, derivatives;
   };
+
+  /// What was solved last.
+  struct Stretch {
+    int anchor;
+    double from, to;
+    Mode mode;
+  };
+
+  /// First states of Newton at the nodes: those of the panel solved last where it began here, too, since one that is
+  /// cut at a switch is hardly shorter; elsewhere the state at the beginning.
+  void guess(const Stretch& now, const ElementState& state) {
+    constexpr double farthest = 1.2;
+    const bool again = solved_ && solved_->anchor == now.anchor && solved_->from == now.from &&
+                       solved_->mode == now.mode && now.to - now.from <= farthest * (solved_->to - solved_->from);
+    guessed_.resize(s_ * n_);
+    for (std::size_t i = 0; i < s_; ++i) {
+      const std::span<double> z{&guessed_[i * n_], n_};
+      if (again)
+        interpolate(table_.c[i] * (now.to - now.from) / (solved_->to - solved_->from), state, z);
+      else
+        std::ranges::copy(state.z, z.begin());
+    }
+    z_.swap(guessed_);
+    solved_.reset();
+  }
 
   void place_nodes(int anchor, double from, double to) {
     direction_ = motion_.at(anchor, 0.5 * (from + to)).in.v < 0.0 ? -1.0 : 1.0;
@@ -426,7 +453,9 @@ class CollocationPanel {
   double direction_ = 1.0;
   long evaluations_ = 0;
   std::vector<MotionNode> nodes_;
-  std::vector<double> z_, rates_, sensitivities_, jacobians_, system_, carried_, corrections_, trial_, trial_rate_;
+  std::optional<Stretch> solved_;
+  std::vector<double> z_, guessed_, rates_, sensitivities_, jacobians_, system_, carried_, corrections_, trial_,
+      trial_rate_;
   Mode used_in_;
   std::vector<std::size_t> used_, depended_, moving_, order_;
   std::size_t columns_ = 1;  ///< right-hand sides: the step of the states, and the derivatives where they are wanted

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "limcycle/analysis/frequency/march/collocation_panel.hpp"
@@ -132,7 +133,7 @@ class ElementMarch {
       double at = from + event->t * (to - from);
       if (at > from) {
         bool arrived = false;
-        if (!solve_to_switch(panel.anchor, from, at, event->guard, state, arrived)) return Status::stalled;
+        if (!solve_to_switch(panel.anchor, from, at, to, event->guard, state, arrived)) return Status::stalled;
         accept(panel.anchor, from, at, state, visitor);
         // A guard that is crossed slowly stays on a plateau of roundings.
         arrived = arrived || at - from <= 1e-10 * (panel.to - panel.from);
@@ -153,22 +154,57 @@ class ElementMarch {
     return Status::converged;
   }
 
-  /// Solves up to the switch found on a longer panel, moving `at` back while the shorter panel, which is more accurate,
-  /// switches earlier. `arrived` is false if it does not switch yet: the rest of the panel will decide.
-  bool solve_to_switch(int anchor, double from, double& at, int guard, const ElementState& state, bool& arrived) {
-    for (int k = 0; k < 20; ++k) {
+  /// Solves up to the switch found on a longer panel, moving `at` to where the shorter panel, which is more accurate,
+  /// switches, but not beyond `last`. `arrived` is false if it does not switch yet: the rest of the panel will decide.
+  bool solve_to_switch(int anchor, double from, double& at, double last, int guard, const ElementState& state,
+                       bool& arrived) {
+    const auto k = static_cast<std::size_t>(guard);
+    double before = from;     // the end of a panel without a switch
+    double moved = infinite;  // in the last try
+    // Among roundings, where the next try moves as far as the last one.
+    const auto settled = [&](double next) {
+      const double way = std::abs(next - at), last_way = std::exchange(moved, way);
+      return way > 0.5 * last_way && way <= 1e-6 * (at - from) + 4e-16 * std::abs(at);
+    };
+    for (int tries = 0; tries < 20; ++tries) {
       if (!panel_.solve(anchor, from, at, state)) return false;
       const auto earlier = first_event(anchor, from, at, state);
-      if (!earlier) break;
-      const double sooner = from + earlier->t * (at - from);
-      if (earlier->guard != guard || !(sooner > from) || at - sooner <= 1e-14 * (at - from)) break;
-      at = sooner;
+      if (earlier && earlier->guard == guard) {
+        const double sooner = from + earlier->t * (at - from);
+        if (!(sooner > from) || at - sooner <= 1e-14 * (at - from) || settled(sooner)) break;
+        at = sooner;
+      } else if (earlier) {  // what lies before the switch is for the shorter panel
+        if (before == from) break;
+        at = before;
+        arrived = false;
+        return panel_.solve(anchor, from, at, state);
+      } else if (has_arrived(anchor, from, at, state, k)) {
+        break;
+      } else {
+        const double later = later_zero(anchor, from, at, state, k);
+        arrived = later - at <= 1e-13 * (at - from) + 4e-16 * std::abs(at);
+        if (arrived) return true;
+        if (!(later > at && later <= last) || settled(later)) break;
+        before = at;
+        at = later;
+      }
     }
-    const auto k = static_cast<std::size_t>(guard);
-    // Within a rounding of the switch a guard may stay at its last positive value: that has arrived too.
-    arrived = at - from <= 1e-13 * std::abs(at) ||
-              guard_at(anchor, from, at, state, k, 1.0) <= 1e-12 * std::abs(guard_at(anchor, from, at, state, k, 0.0));
+    arrived = has_arrived(anchor, from, at, state, k);
     return true;
+  }
+
+  /// Within a rounding of the switch a guard may stay at its last positive value: that has arrived too.
+  bool has_arrived(int anchor, double from, double at, const ElementState& state, std::size_t guard) {
+    return at - from <= 1e-13 * std::abs(at) || guard_at(anchor, from, at, state, guard, 1.0) <=
+                                                    1e-12 * std::abs(guard_at(anchor, from, at, state, guard, 0.0));
+  }
+
+  /// Zero of a guard that is still positive at the end of the panel, by its slope there; NaN where it is far or absent.
+  double later_zero(int anchor, double from, double at, const ElementState& state, std::size_t guard) {
+    constexpr double part = 1e-3, farthest = 0.1;  // of the panel
+    const double end = guard_at(anchor, from, at, state, guard, 1.0);
+    const double fall = guard_at(anchor, from, at, state, guard, 1.0 - part) - end, way = part * end / fall;
+    return fall > 0.0 && way < farthest ? at + way * (at - from) : std::nan("");
   }
 
   template <class Visitor>

@@ -174,7 +174,8 @@ class PeriodicStateSearch {
       if (without_gain > 3 && distance <= 100.0 * tolerance_) return result;
       if (distance <= tolerance_ || (now >= 0.25 * before && distance <= 1e-11) || (indifferent && now <= 1e-14))
         return result;
-      const bool newton = turns.newton(now < 0.5 * before) && size(step) > 0.0;
+      // Where the map itself arrives, a step of Newton would only leave its range.
+      const bool newton = turns.newton(now < 0.5 * before) && size(step) > 0.0 && size(step - r) > 0.5 * tolerance_;
       for (std::size_t p = 0; p < n_; ++p)
         result.state.z[p] = newton ? result.state.z[p] + step(static_cast<Eigen::Index>(p)) : image.z[p];
       result.state.mode = image.mode;

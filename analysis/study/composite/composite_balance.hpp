@@ -36,8 +36,10 @@ struct CompositeSearchOptions {
   double force_min = 0.0, force_max = 0.0;              ///< N; 0: 0.2 and 100 times the level of the friction
   double coarse_accuracy = 1e-3;                        ///< of N in the search, 1e-8..1e-2
   double accuracy = 1e-8;                               ///< of N at a root, 1e-10..1e-4
-  long max_steps = 2'000'000;                           ///< of the integrator, for the whole search: some seconds
-  std::function<bool()> stop;                           ///< called often; true ends the search
+  /// Of the integrator, for the whole search of a law with one state, some seconds; in inverse proportion to the number
+  /// of unknowns of laws with more.
+  long max_steps = 2'000'000;
+  std::function<bool()> stop;  ///< called often; true ends the search
 };
 
 /// All roots found by a search of the composite balance.

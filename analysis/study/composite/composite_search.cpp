@@ -214,7 +214,7 @@ CompositeSearch CompositeBalance::find(const CompositeSearchOptions& options) {
 CompositeSearch CompositeBalance::find_between(const CompositeSearchOptions& options) {
   CompositeSearch found;
   const long evaluations = evaluations_, steps = element_.steps();
-  last_step_ = steps + options.max_steps;
+  last_step_ = steps + 2 * options.max_steps / std::max(2, 1 + loop_->elements.back().states());
   fronts_.clear();
   smooth_fronts_.clear();
   bound(options);

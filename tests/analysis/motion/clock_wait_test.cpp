@@ -17,10 +17,10 @@ using namespace limcycle::test;
 
 namespace {
 
-constexpr double Fs = 1.5, place = 1e-5;
+constexpr double sticking = 1.5, held_at = 1e-5;
 
 LoopParts waiting_servo(const Pid& controller) {
-  LoopParts parts = servo_parts(coulomb(Fs, 1.0));
+  LoopParts parts = servo_parts(coulomb(sticking, 1.0));
   parts.controller = controller;
   return parts;
 }
@@ -39,7 +39,7 @@ struct Waited {
 
 Waited wait_of(const LoopParts& parts, double longest) {
   const Loop loop = in_time_domain(build_loop(parts), 1).loop;
-  const LoopState start = sampled_state(loop, Eigen::Vector3d(place, 0.0, 0.0));
+  const LoopState start = sampled_state(loop, Eigen::Vector3d(held_at, 0.0, 0.0));
   LoopField field(loop);
   field.modes() = start.modes;
   March march(field, StepperKind::exact, loop_weights(loop, 1e-10));
@@ -48,7 +48,7 @@ Waited wait_of(const LoopParts& parts, double longest) {
     REQUIRE(march.step(longest) == Status::converged);
     if (march.last().switched == loop.elements.size() - 1) return {march.t(), march.steps()};
   }
-  CHECK(field.y(march.x()) == place);
+  CHECK(field.y(march.x()) == held_at);
   return {infinite, march.steps()};
 }
 
@@ -61,9 +61,9 @@ TEST_CASE("waiting for a sampled controller: it breaks the body away at the samp
   Pid controller = sampled_pid(time, delay * unit);
   controller.output_step = quantum;
   const Waited found = wait_of(waiting_servo(controller), 1e9);
-  // The command of reading k = 0, 1, ... is (kp + ki T (k + 1)) place; of its quanta, the first beyond Fs.
-  const double enough = quantum > 0.0 ? quantum * (std::floor(Fs / quantum) + 0.5) : Fs;
-  const double readings = std::ceil((enough / place - 3.0) / (4.0 * time)) - 1.0;
+  // The command of reading k = 0, 1, ... is (kp + ki T (k + 1)) held_at; of its quanta, the first beyond it.
+  const double enough = quantum > 0.0 ? quantum * (std::floor(sticking / quantum) + 0.5) : sticking;
+  const double readings = std::ceil((enough / held_at - 3.0) / (4.0 * time)) - 1.0;
   CHECK(found.time == Approx(readings * time + delay * unit).margin(1.5 * time));
   CHECK(found.steps < (quantum > 0.0 ? 100'000 : 3000));
 }
@@ -77,7 +77,7 @@ TEST_CASE("waiting for a sampled controller: at its limit, or without an integra
     CHECK(found.time == infinite);
   }
   limited.saturation = 1.6;
-  CHECK(wait_of(waiting_servo(limited), 1e9).time == Approx((Fs / place - 3.0) / 4.0).margin(0.03));
+  CHECK(wait_of(waiting_servo(limited), 1e9).time == Approx((sticking / held_at - 3.0) / 4.0).margin(0.03));
 }
 
 TEST_CASE("waiting for a sampled controller: leaps end in the state of the wait sample by sample, at two rates") {
@@ -92,7 +92,7 @@ TEST_CASE("waiting for a sampled controller: leaps end in the state of the wait 
   LoopParts parts = waiting_servo(pid(0.0, 0.0, 0.0));
   parts.controller = law;
   const Loop loop = in_time_domain(build_loop(parts), 1).loop;
-  const LoopState start = sampled_state(loop, Eigen::Vector3d(place, 0.0, 0.0));
+  const LoopState start = sampled_state(loop, Eigen::Vector3d(held_at, 0.0, 0.0));
   const double until = 300.0 + 0.37 * law.sample_time;
   const auto state_after = [&](double stride) {
     LoopField field(loop);

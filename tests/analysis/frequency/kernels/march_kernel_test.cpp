@@ -8,7 +8,6 @@
 #include "limcycle/models/friction/bristle/bouc_wen.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/models/friction/bristle/elasto_plastic.hpp"
-#include "limcycle/models/friction/sliders/gms.hpp"
 #include "limcycle/models/friction/sliders/xiong.hpp"
 #include "limcycle/tests/analysis/frequency/random_points.hpp"
 
@@ -21,17 +20,17 @@ namespace {
 using Complex = std::complex<double>;
 
 template <class Law>
-void random_level(Random& random, Law& law, bool smooth) {
+void random_level(Random& random, Law& law) {
   law.Fc = law.Fc_minus = random.spread(0.1, 10.0);
   law.Fs = law.Fs_minus = law.Fc * random.uniform(1.0, 3.0);
   law.vs = random.spread(1e-5, 1e-2);
-  law.delta = smooth || random.coin() ? 2.0 : random.uniform(0.5, 2.5);
-  law.curve.index = smooth || random.coin() ? 0 : static_cast<int>(random.uniform(0.0, 3.0));
+  law.delta = random.coin() ? 2.0 : random.uniform(0.5, 2.5);
+  law.curve.index = random.coin() ? 0 : static_cast<int>(random.uniform(0.0, 3.0));
 }
 
 Element random_elasto_plastic(Random& random) {
   ElastoPlastic<double> law;
-  random_level(random, law, false);
+  random_level(random, law);
   law.sigma0 = random.spread(1e4, 1e7);
   law.sigma1 = random.coin() ? 0.0 : random.spread(1.0, 1e3);
   law.sigma2 = random.coin() ? 0.0 : random.spread(1e-3, 10.0);
@@ -49,20 +48,9 @@ std::vector<double> random_shares(Random& random, std::size_t count) {
   return shares;
 }
 
-Element random_gms(Random& random) {
-  Gms<double> law;
-  random_level(random, law, true);
-  law.alpha = random_shares(random, 3);
-  for (std::size_t i = 0; i < 3; ++i) law.k.push_back(random.spread(1e3, 1e6));
-  if (random.coin()) law.sigma1.assign(3, random.spread(0.1, 10.0));
-  law.C = random.spread(1.0, 1e4);
-  law.sigma2 = 0.1;
-  return law;
-}
-
 Element random_xiong(Random& random) {
   Xiong<double> law;
-  random_level(random, law, false);
+  random_level(random, law);
   law.lambda = random_shares(random, 3);
   for (std::size_t i = 0; i < 3; ++i) {
     law.K.push_back(random.spread(1e3, 1e6));
@@ -175,14 +163,6 @@ Xiong<double> xiong() {
   return law;
 }
 
-Gms<double> gms() {
-  auto law = with_elements<Gms<double>>();
-  law.k = {5e4, 3e4, 2e4};
-  law.alpha = {0.3, 0.3, 0.4};
-  law.C = 100.0;
-  return law;
-}
-
 }  // namespace
 
 TEST_CASE("march: the error is not above its estimate", "[df][kernel][march][error]") {
@@ -191,9 +171,8 @@ TEST_CASE("march: the error is not above its estimate", "[df][kernel][march][err
     Element (*law)(Random&);
     int unanswered;  ///< of a hundred, at most
   };
-  for (const Kind& kind :
-       {Kind{"elasto-plastic", random_elasto_plastic, 1}, Kind{"xiong", random_xiong, 4}, Kind{"dahl", random_dahl, 1},
-        Kind{"bouc-wen", random_bouc_wen, 10}, Kind{"gms", random_gms, 45}}) {
+  for (const Kind& kind : {Kind{"elasto-plastic", random_elasto_plastic, 1}, Kind{"xiong", random_xiong, 4},
+                           Kind{"dahl", random_dahl, 1}, Kind{"bouc-wen", random_bouc_wen, 10}}) {
     const Tally t = tally(kind.law, 50, 21);
     CAPTURE(kind.name, t.points, t.unanswered, t.broken, t.which);
     CHECK(t.points == 2000);
@@ -207,8 +186,7 @@ TEST_CASE("march: the error is not above its estimate", "[df][kernel][march][err
 
 TEST_CASE("march: agrees with quadrature and FFT, all harmonics", "[df][kernel][march]") {
   Random random(9);
-  for (const Element& element :
-       {Element(elasto_plastic()), Element(xiong()), Element(gms()), Element(dahl(2.0)), Element(bouc_wen())})
+  for (const Element& element : {Element(elasto_plastic()), Element(xiong()), Element(dahl(2.0)), Element(bouc_wen())})
     for (int i = 0; i < 6; ++i) {
       const DfPoint point{random.spread(1e-6, 1e-2), random.spread(0.1, 100.0), 0.0};
       const double accuracy = random.spread(1e-8, 1e-4);
@@ -255,8 +233,6 @@ TEST_CASE("march: what never slips is a spring", "[df][kernel][march]") {
     const auto below = describing_function(xiong(), {1e-6, w, 0.0}, asking(1e-8));
     CHECK(below.method == "kernel");
     CHECK(apart(below.gain, {1e5, w * (100.0 + 0.4)}) < 1e-10);
-    const auto sticks = describing_function(gms(), {1e-6, w, 0.0}, asking(1e-8));
-    CHECK(apart(sticks.gain, {1e5, w * 0.4}) < 1e-10);
   }
 }
 
@@ -281,7 +257,7 @@ TEST_CASE("march: instruction sets agree, neither threads nor the other points c
           "[df][kernel][march][isa][threads]") {
   const auto points = grid(11, 13);
   for (const Element& element :
-       {Element(elasto_plastic()), Element(xiong()), Element(gms()), Element(dahl(1.5)), Element(bouc_wen())}) {
+       {Element(elasto_plastic()), Element(xiong()), Element(dahl(1.5)), Element(bouc_wen())}) {
     const auto portable = describing_function_table(element, points, asking(1e-6));
     for (const Isa isa : all_isas()) {
       CAPTURE(std::string(element.kind()), to_string(isa));
@@ -337,9 +313,6 @@ TEST_CASE("march: what it leaves to other methods", "[df][kernel][march]") {
   auto fading = elasto_plastic();
   fading.vd = 0.1;
   CHECK_FALSE(DfKernel::of(fading, asking(1e-6)));
-  auto sharp = gms();
-  sharp.delta = 1.0;
-  CHECK_FALSE(DfKernel::of(sharp, asking(1e-6)));
   auto growing = bouc_wen();
   growing.beta = -0.1;
   CHECK_FALSE(DfKernel::of(growing, asking(1e-6)));
