@@ -36,7 +36,7 @@ LinearPair solve_linear_panel(const RadauIIA& table, double step, LinearPair sta
   return {x[S - 1], y[S - 1]};
 }
 
-/// Calls f.operator()<S>() with S = stages, 4 to 10.
+/// Calls f with the number of stages, 4 to 10, as its template argument.
 template <class Function>
 decltype(auto) with_stages(int stages, const Function& f) {
   switch (stages) {
