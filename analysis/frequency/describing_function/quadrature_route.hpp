@@ -89,8 +89,6 @@ class QuadratureRoute {
     return take(std::move(periodic), march.evaluations());
   }
 
-  const PeriodicState* periodic_state() const { return has_guess_ ? &guess_ : nullptr; }
-
  private:
   DescribingFunction take(PeriodicState periodic, long evaluations) {
     DescribingFunction result = collect(periodic);

@@ -54,6 +54,17 @@ Element some_gms(Random& random) {
   return law;
 }
 
+Gms<double> two_elements(double first, double second) {
+  Gms<double> law;
+  law.Fs = law.Fs_minus = 1.5;
+  law.Fc = law.Fc_minus = 1.0;
+  law.vs = 0.01;
+  law.C = 33.0;
+  law.k = {first, second};
+  law.alpha = {0.3, 0.7};
+  return law;
+}
+
 DescribingFunction gms_df(const Element& law, const DfPoint& point, DfMethod method, double accuracy) {
   const PrescribedMotion motion(point.amplitude, point.frequency, 0.0, true);
   return QuadratureRoute(law, motion, true, with(method, accuracy)).refine();
@@ -107,16 +118,10 @@ TEST_CASE("period of gms elements: the error that it states is true") {
   }
 }
 
-TEST_CASE("period of gms elements: one that never slips is a spring, and the state returns to its mirror image") {
+TEST_CASE("period of gms elements: those that never slip are springs") {
   Random random(693147);
   for (int k = 0; k < samples(20); ++k) {
-    Gms<double> law;
-    law.Fs = law.Fs_minus = 1.5;
-    law.Fc = law.Fc_minus = 1.0;
-    law.vs = 0.01;
-    law.C = 33.0;
-    law.k = {random.spread(1e2, 1e4), random.spread(1e2, 1e4)};
-    law.alpha = {0.3, 0.7};
+    const Gms<double> law = two_elements(random.spread(1e2, 1e4), random.spread(1e2, 1e4));
     const double free = std::min(0.3 / law.k[0], 0.7 / law.k[1]);  // N/(N/m), at the level Fc
     const PrescribedMotion motion(0.99 * free, random.spread(0.1, 100.0), 0.0, true);
     const PeriodMesh mesh = graded_mesh(motion, Element(law).scales(), {.stages = 5});
@@ -130,14 +135,43 @@ TEST_CASE("period of gms elements: one that never slips is a spring, and the sta
   }
 }
 
+TEST_CASE("period of gms elements: the march takes the state to its mirror image in half a period") {
+  Random random(141421);
+  for (int k = 0; k < samples(20); ++k) {
+    const Element law = two_elements(random.spread(1e3, 1e5), random.spread(1e3, 1e5));
+    const PrescribedMotion motion(random.spread(1e-4, 1e-1), random.spread(0.1, 100.0), 0.0, true);
+    const PeriodMesh mesh = graded_mesh(motion, law.scales(), {.stages = 9, .growth = 0.3, .cap = 1e-6});
+    HarmonicSums sums(1);
+    sums.restart();
+    const auto found = GmsPeriod::of(law)->find(motion, mesh, 9, sums);
+    REQUIRE(found);
+    ElementMarch<PrescribedMotion> march(law, motion, 9);
+    ElementState state{found->state.mode, found->state.z, {1.0, 0.0, 0.0, 1.0}};
+    NoVisitor nothing;
+    REQUIRE(march.march(mesh.first, state, nothing) == Status::converged);
+    for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(state.z[i] + found->state.z[i]) <= 1e-9);
+  }
+}
+
+TEST_CASE("period of gms elements: a finer mesh is as much better as its order says") {
+  // Five stages, from panels of 1.0 to 0.5: 2^9 = 512 for a smooth integrand.
+  const Element law = two_elements(1e4, 3e4);
+  double coarse = 0.0, fine = 0.0;
+  for (const DfPoint& point : grid(7, 5)) {
+    if (point.amplitude < 1e-4) continue;
+    const PrescribedMotion motion(point.amplitude, point.frequency, 0.0, true);
+    QuadratureRoute route(law, motion, true, with(DfMethod::automatic, 1e-6));
+    const auto on = [&](double growth) { return route.on_mesh({5, growth, 1e-3}).gain; };
+    const auto exact = route.on_mesh({10, 0.2, 1e-7}).gain;
+    coarse = std::max(coarse, apart(on(1.0), exact));
+    fine = std::max(fine, apart(on(0.5), exact));
+  }
+  CAPTURE(coarse, fine);
+  CHECK(fine < coarse / 30.0);
+}
+
 TEST_CASE("period of gms elements: other laws, and levels that differ by direction, are left to the march") {
-  Gms<double> law;
-  law.Fs = law.Fs_minus = 1.5;
-  law.Fc = law.Fc_minus = 1.0;
-  law.vs = 0.01;
-  law.C = 33.0;
-  law.k = {1e3};
-  law.alpha = {1.0};
+  Gms<double> law = two_elements(1e3, 1e3);
   CHECK(GmsPeriod::of(law).has_value());
   law.Fs_minus = 1.6;
   CHECK_FALSE(GmsPeriod::of(law).has_value());
