@@ -147,7 +147,7 @@ class CompositeStep {
     friction0_ = friction_;
     differentiate(s.y, mode_, sine0_);
     find_moving();
-    stage_ = y1_ = s.y;
+    y1_ = s.y;
     std::fill(error_.begin(), error_.end(), 0.0);
     std::fill(dfdt_.begin(), dfdt_.end(), 0.0);
     dfdt_[0] = (1.0 - friction_by_force_) * force_.amplitude * cosine0_ / (mass_ * force_.frequency);

@@ -82,7 +82,6 @@ class QuadratureRoute {
       return take(std::move(*periodic), linear_->evaluations());
     if (auto periodic = gms_ ? gms_->find(motion_, mesh, settings.stages, sums_) : std::nullopt)
       return take(std::move(*periodic), gms_->evaluations());
-    sums_.restart();
     ElementMarch march(element_, motion_, settings.stages);
     PeriodicStateSearch search(march, mesh, try_symmetric_, tolerance_);
     PeriodicState periodic = search.find(sums_, has_guess_ ? &guess_ : nullptr);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "limcycle/analysis/illinois.hpp"
 
@@ -81,8 +83,7 @@ std::optional<GmsPeriod::Passage> GmsPeriod::switched(const Stretch& stretch, do
   constexpr int shortest = 10;  // as a power of ten of the panel
   constexpr double full = 0.999;
   const auto stages = static_cast<std::size_t>(table_->stages);
-  const auto left = [&](const Node& node) { return node.level - std::abs(start + stiffness * node.way); };
-  const auto beyond = [&](const Node& node) { return left(node) < -reached * node.level; };
+  const auto beyond = [&](const Node& node) { return node.left(start, stiffness) < -reached * node.level; };
   const Panel& first = stretch.panels.front();
   if (std::abs(start) >= full * Fs_)
     for (int power = shortest; power > 0; --power) {
@@ -101,8 +102,7 @@ std::optional<GmsPeriod::Passage> GmsPeriod::switched(const Stretch& stretch, do
 GmsPeriod::Passage GmsPeriod::met(const Stretch& stretch, std::size_t panel, double from, double to, double start,
                                   double stiffness) const {
   const auto left = [&](double part) -> std::optional<double> {
-    const Node node = node_at(stretch.panels[panel], part, stretch.side);
-    return node.level - std::abs(start + stiffness * node.way);
+    return node_at(stretch.panels[panel], part, stretch.side).left(start, stiffness);
   };
   const double before = *left(from), after = *left(to);
   Passage passage;

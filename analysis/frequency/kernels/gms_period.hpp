@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -48,6 +49,9 @@ class GmsPeriod {
     double level = 0.0;   ///< g, N
     double weight = 0.0;  ///< of phase
     LinearPair pair;      ///< in slip, from the beginning of the panel
+
+    /// Level left, in stick from r = start, before the slip; N.
+    double left(double start, double stiffness) const { return level - std::abs(start + stiffness * way); }
   };
   /// From one reversal, or from the virgin state, to the next reversal.
   struct Stretch {

@@ -209,7 +209,7 @@ class MarchPass {
     const Mask up = taken & (high[S] < room) & (high_slope < 0.0);
     const Mask ends = up | (taken & (low[S] < room) & (low_slope < 0.0));
     take(h, taken, b_end, db_end);
-    if constexpr (Law::sticks && Law::lags) {
+    if constexpr (Law::lags) {
       const Mask sticking = taken & (abs(mode_) < 0.5);
       const Mask near = nearly_met(low, low_slope, fell_low_) | nearly_met(high, high_slope, fell_high_);
       doubt_ = select(sticking & near, P(1.0), doubt_);
