@@ -8,12 +8,45 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <optional>
 #include <vector>
 
 namespace limcycle {
+namespace {
+
+/// Arenas that nobody uses now, by their number of threads. An arena that is dropped leaves some of its memory behind,
+/// and each makes the next one slower (oneTBB 2021.8), so that they are kept; calls at the same time, and calls within
+/// calls, still have one each.
+class IdleArenas {
+ public:
+  std::unique_ptr<tbb::task_arena> take(int threads) {
+    const std::lock_guard lock(guard_);
+    auto& idle = idle_[threads];
+    if (idle.empty()) return std::make_unique<tbb::task_arena>(threads);
+    auto arena = std::move(idle.back());
+    idle.pop_back();
+    return arena;
+  }
+  void put_back(int threads, std::unique_ptr<tbb::task_arena> arena) {
+    const std::lock_guard lock(guard_);
+    idle_[threads].push_back(std::move(arena));
+  }
+
+ private:
+  std::mutex guard_;
+  std::map<int, std::vector<std::unique_ptr<tbb::task_arena>>> idle_;
+};
+
+IdleArenas& idle_arenas() {
+  static auto* const arenas = new IdleArenas;  // oneTBB may end before it
+  return *arenas;
+}
+
+}  // namespace
 
 std::size_t thread_count(int wanted) {
   return static_cast<std::size_t>(wanted > 0 ? wanted : std::max(1, tbb::info::default_concurrency()));
@@ -38,11 +71,13 @@ void on_threads(std::size_t count, const std::function<void()>& work, const std:
   } else {
     std::optional<tbb::global_control> more;  // than there are cores
     if (count > thread_count(0)) more.emplace(tbb::global_control::max_allowed_parallelism, count);
-    tbb::task_arena arena(static_cast<int>(count));
-    arena.execute([&] {
+    const auto threads = static_cast<int>(count);
+    auto arena = idle_arenas().take(threads);
+    arena->execute([&] {
       tbb::parallel_for(
           std::size_t{0}, count, [&](std::size_t) { share(); }, tbb::simple_partitioner{});
     });
+    idle_arenas().put_back(threads, std::move(arena));
   }
   if (failure) std::rethrow_exception(failure);
 }

@@ -14,4 +14,8 @@ std::string changed_case(const Case& from, const std::vector<std::string>& overr
   throw NoAnswer(who + "this file cannot be changed in its place; " + what + flags);
 }
 
+std::string not_written(const std::string& file) {
+  return file + " is not written: the search was stopped before it was complete";
+}
+
 }  // namespace limcycle

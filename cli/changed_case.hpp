@@ -11,4 +11,7 @@ namespace limcycle {
 std::string changed_case(const Case& from, const std::vector<std::string>& overrides, const std::string& remark,
                          const std::string& who, const std::string& what);
 
+/// Why there is no such case after an interrupted search, as a sentence.
+std::string not_written(const std::string& file);
+
 }  // namespace limcycle

@@ -19,7 +19,12 @@ constexpr std::size_t longest_value = 40;  // in a message
 
 std::string shown_value(const std::string& value) { return "'" + one_line(value, longest_value) + "'"; }
 
-std::string not_empty(std::string& value) { return value.empty() ? "needs the name of a file, got none" : ""; }
+std::string file_name(std::string& value) {
+  if (value == "/dev/stdout" || value == "/dev/fd/1" || value == "/proc/self/fd/1") value = "-";
+  return value.empty() ? "needs the name of a file, got none" : "";
+}
+
+std::string not_empty(std::string& value) { return value.empty() ? "needs a value, got none" : ""; }
 
 /// Removes leading zeros from the value, which the parser would take for octal notation.
 std::string decimal(std::string& value) {
@@ -89,9 +94,14 @@ void check_option_values(CLI::App& command) {
     std::string type = option->get_type_name();
     type.resize(std::min(type.find_first_of(":|,"), type.size()));
     const auto add = [&](std::string (*check)(std::string&)) { option->transform(CLI::Validator(check, "")); };
-    if (type == "FILE" || type == "PAGE.html") add(not_empty);
-    if (type == "N") add(decimal);
-    if (type == "S" || type == "V" || type == "X") add(finite);
+    if (type.starts_with("FILE") || type == "PAGE.html")
+      add(file_name);
+    else if (type == "N")
+      add(decimal);
+    else if (type == "S" || type == "V" || type == "X")
+      add(finite);
+    else if (!type.empty())
+      add(not_empty);
   }
 }
 

@@ -28,6 +28,8 @@ PredictReport ask_predict(const Case& from, const Asking& asking, bool curves) {
   PredictReport report = predict(loop, options);
   if (curves) report.nyquist = nyquist_picture(loop, report, options.stop);
   add_cause(report, parts, options);
+  if (from.simulate && from.simulate->force)
+    report.notes.emplace_back("the force of [simulate] is no part of this prediction: limcycle simulate applies it");
   return report;
 }
 

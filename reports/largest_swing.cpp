@@ -24,6 +24,7 @@ double largest_swing(const PredictReport& report) {
   double most = of_cycles(report.cycles);
   for (const OutcomeOfStart& one : report.outcomes) most = std::max(most, one.irregular.half_range);
   if (most > 0.0) return most;
+  for (const Prediction& one : report.predictions) most = std::max(most, one.amplitude);
   for (const OutcomeOfStart& one : report.outcomes)
     if (one.outcome != Outcome::divergence) most = std::max(most, farthest(one.trace));
   return most;

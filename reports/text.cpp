@@ -63,11 +63,12 @@ Table cycle_table(const PredictReport& report, const Units& units) {
                {"stuck", ""},
                {"error", ""}},
               {}};
+  constexpr double rounding_of_offset = 1e-10;
   for (std::size_t i = 0; i < report.cycles.size(); ++i) {
     const auto& cycle = report.cycles[i];
     // The error is that of period and amplitude. An offset is a mean over the same orbit: its absolute error is that of
     // the amplitude; seven digits of the harmonic are enough to compare it with a prediction.
-    const double error = cycle.error * cycle.amplitude;
+    const double error = std::max(cycle.error, rounding_of_offset) * cycle.amplitude;
     const double of_harmonic = std::max(cycle.error, 0.6e-6);
     table.rows.push_back({std::to_string(i), with_error(cycle.period, cycle.error),
                           with_error(cycle.amplitude, cycle.error), with_error(cycle.first_harmonic, of_harmonic),

@@ -91,7 +91,7 @@ int run(AdequateFlags flags) {
   const Case from = load_case(flags);
   const LoopParts& parts = need_friction(from);
   Output output(flags, &from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   const AdequateReport report = compute(from, parts, flags);
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));

@@ -66,6 +66,7 @@ std::vector<Claim> chosen(const std::vector<Claim>& all, const std::vector<std::
 
 int list(const ClaimsFlags& flags, const std::vector<Claim>& which, const std::optional<Case>& from) {
   Output output(flags);
+  if (from) output.keep_data(*from);
   output.refuse_tables();
   output.text(claims_list(which));
   if (output.wants_json()) output.json(claims_list_json(provenance(flags, from ? &*from : nullptr), which));
@@ -117,7 +118,7 @@ int run(ClaimsFlags flags) {
   const auto which = chosen(from ? claims_of(*from) : claims(), flags.words);
   if (flags.list) return list(flags, which, from);
   Output output(flags, from ? &*from : nullptr);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   const auto tested = test_all(which, flags);
   const Status ended = ending(tested, which.size());
   const auto made = provenance(flags, from ? &*from : nullptr);

@@ -34,7 +34,7 @@ int run(ContinueFlags flags) {
   need_loop(from);
   const CaseNumber number = number_at(from, "--parameter", range.path);
   Output output(flags, &from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   output.check_picture("--svg", flags.picture);
 
   ContinueReport report{range.path, number.unit, {}};

@@ -21,7 +21,8 @@ int run(const SweepFlags& flags) {
   need_memory_for(section, {!flags.json.empty(), !flags.csv.empty()});
   const auto points = section.points();
   Output output(flags);
-  output.keep("the store", flags.store);
+  output.keep_data(from);
+  output.keep_store(flags.store);
 
   Progress silent(true);  // the sweep shows its own
   const Asking asking = asking_of(flags, silent);

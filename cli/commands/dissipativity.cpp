@@ -35,7 +35,7 @@ int run(DissipativityFlags flags) {
   take_page(flags, flags.html);
   const Case from = load_case(flags);
   Output output(flags, &from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   const DissipativityWishes wishes = wishes_of(flags);
   DissipativityReport report;
   {

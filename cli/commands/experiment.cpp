@@ -90,7 +90,7 @@ int run(ExperimentFlags flags) {
   const auto entries = chosen(flags.name);
   laws_of(flags.laws);
   Output output(flags);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   output.check_picture("--svg", flags.pictures);
   const auto results = run_all(entries, flags);
   const Status ended = ending(results, entries.size());

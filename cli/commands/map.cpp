@@ -47,8 +47,8 @@ int run(MapFlags flags) {
   MapReport report = map_of(from, flags.x, flags.y, methods);
   need_memory_for(report.map, {!flags.json.empty(), !flags.csv.empty()}, "--");
   Output output(flags, &from);
-  output.keep("the store", flags.store);
-  output.check_file("--html", flags.html);
+  output.keep_store(flags.store);
+  output.check_page("--html", flags.html);
   output.check_picture("--svg", flags.picture);
 
   const Status ended = compute(from, report.map, flags, methods);

@@ -55,7 +55,7 @@ int run(MarginFlags flags) {
   std::vector<std::string> notes;
   margin_parameters(from, wishes, notes);  // reports errors before anything is computed
   Output output(flags, &from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
 
   MarginReport report;
   {

@@ -61,7 +61,7 @@ StepperAtlas compute_atlas(const Case& from, const PrecisionFlags& flags) {
 /// Chart of the failures of steppers, instead of their speed.
 int run_atlas(const Case& from, const PrecisionFlags& flags) {
   Output output(flags, &from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   output.check_picture("--svg", flags.picture);
   const StepperAtlas atlas = compute_atlas(from, flags);
   const auto made = provenance(flags, &from);
@@ -84,7 +84,7 @@ int run(PrecisionFlags flags) {
   const Case from = load_case(flags);
   if (flags.stability) return run_atlas(from, flags);
   Output output(flags, &from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   const PrecisionReport report = compute(from, flags);
   const auto made = provenance(flags, &from);
   const Units units = units_of(from, largest_swing(report));

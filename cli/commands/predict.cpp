@@ -57,7 +57,7 @@ int run(PredictFlags flags) {
   Output output(flags);
   output.keep_data(from);
   output.keep("the page to be made again", flags.from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   output.check_picture("--svg", flags.pictures);
 
   PredictReport report;

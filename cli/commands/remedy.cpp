@@ -68,7 +68,7 @@ int run(RemedyFlags flags) {
     }
   }
   Output output(flags, &from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   output.check_case_file(fixed, from);
 
   RemedyReport report;
@@ -84,6 +84,7 @@ int run(RemedyFlags flags) {
     text += page_line(flags.html);
   }
   std::string refused;
+  if (!fixed.empty() && report.status == Status::interrupted) refused = not_written(fixed);
   if (!fixed.empty() && report.status != Status::interrupted) try {
       output.file(fixed, fixed_case(from, report, flags.apply));
       text += "\n" + fixed + " is written; confirm it: limcycle " +

@@ -75,7 +75,7 @@ int run(ReportFlags flags) {
   Output output(flags);
   output.keep_data(from);
   output.keep("the page to be made again", flags.from);
-  output.check_file("-o", page);
+  output.check_page("-o", page);
 
   const LoopReport report = [&] {
     Progress progress(flags.quiet);
@@ -106,6 +106,8 @@ void add_report(CLI::App& program, Action& action) {
   command->get_option("--output")
       ->description("Write the page to FILE, or to stdout alone with - (default: the name of the case, .html)");
   add_from_flag(*command, flags->from);
+  command->get_option("--tex")->description("Write the tables as LaTeX to FILE");
+  command->get_option("--hdf5")->description("Write the JSON document as HDF5 to FILE");
   command->add_flag("--quick", flags->wishes.quick, "Omit margins, sensitivity and dissipativity");
   command->add_flag("--remedies", flags->wishes.remedies, "Try all remedies, as limcycle remedy does");
   command->add_flag("--benchmarks", flags->wishes.benchmarks, "Chart accuracy and cost of the methods on this loop");

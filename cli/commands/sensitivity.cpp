@@ -50,8 +50,8 @@ int run(SensitivityFlags flags) {
   threshold_numbers(from, "--threshold", flags.wishes.thresholds);  // reports errors before anything is computed
   need_loop(from);
   Output output(flags, &from);
-  output.keep("the store", flags.store);
-  output.check_file("--html", flags.html);
+  output.keep_store(flags.store);
+  output.check_page("--html", flags.html);
   Status status = Status::converged;
   const SensitivityReport report = compute(from, flags, status);
   auto made = provenance(flags, &from);

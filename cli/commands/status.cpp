@@ -18,10 +18,11 @@ int show_status(const CommonFlags& flags, const std::string& file) {
                       .value = {},
                       .rule = "cannot change what a store holds",
                       .suggestion = {}});
+  if (file.empty()) throw refusal("STORE", "needs the name of a file, got none");
   const StoredSweep sweep = read_store(file);
   const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   Output output(flags);
-  output.keep("the store", file);
+  output.keep_store(file);
   output.text(status_text(file, sweep, now));
   if (output.wants_json()) output.json(status_json(provenance(flags), file, sweep));
   if (output.wants_csv()) output.csv(status_csv(sweep));

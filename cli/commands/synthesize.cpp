@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 #include "limcycle/analysis/study/identify/free/synthesize_free.hpp"
@@ -56,24 +57,58 @@ void check_folder(const SynthesizeFlags& flags) {
       throw refusal("--output " + flags.output, "holds " + file + " already", "--force replaces it");
 }
 
-/// Free motions of the plant of the case.
-std::vector<FrictionRecord> free_motions(const SynthesizeFlags& flags, const Case& from, const Element& law) {
-  const FreeRig rig = rig_of(from);
-  try {
-    return synthesize_free(law, rig, flags.faults, flags.seed);
-  } catch (const std::invalid_argument& reason) {
-    throw refusal("--free", reason.what());
+/// The folder for the files; one that was made for them goes again if nothing was written.
+class FolderForFiles {
+ public:
+  explicit FolderForFiles(const std::string& path) : path_(path) {
+    std::error_code failed;
+    made_ = std::filesystem::create_directories(path, failed);
+    if (failed) throw refusal("--output " + path, "cannot be made: " + failed.message());
   }
-}
+  ~FolderForFiles() {
+    std::error_code not_empty;
+    if (made_) std::filesystem::remove(path_, not_empty);
+  }
+  FolderForFiles(const FolderForFiles&) = delete;
+  FolderForFiles& operator=(const FolderForFiles&) = delete;
 
-std::vector<FrictionRecord> synthesized(const SynthesizeFlags& flags, const Case& from, const Element& law) {
+ private:
+  std::string path_;
+  bool made_ = false;
+};
+
+/// `failure`: why there are no free motions, of those that were asked for.
+std::vector<FrictionRecord> synthesized(const SynthesizeFlags& flags, const Case& from, const Element& law,
+                                        std::string& failure) {
   Progress progress(flags.quiet, flags.verbose);
   const Asking asking = asking_of(flags, progress);
   std::vector<FrictionRecord> records = synthesize(law, flags.faults, flags.seed, asking.stop);
   if (records.empty()) throw NoAnswer("stopped before the records were complete, so that none is written");
-  if (flags.free)
-    for (auto& one : free_motions(flags, from, law)) records.push_back(std::move(one));
+  if (!flags.free) return records;
+  const FreeRig rig = rig_of(from);
+  try {
+    for (auto& one : synthesize_free(law, rig, flags.faults, flags.seed)) records.push_back(std::move(one));
+  } catch (const std::invalid_argument& reason) {
+    failure = std::string("no free motion is written: ") + reason.what();
+  }
   return records;
+}
+
+/// The case that identifies the law of these records, checked by reading it.
+std::string case_of(const Case& from, const Element& law, const std::vector<FrictionRecord>& records,
+                    const std::string& file) {
+  std::vector<std::string> names;
+  names.reserve(records.size());
+  for (const auto& one : records) names.push_back(one.name + ".csv");
+  std::string text = from.text + (from.text.ends_with('\n') ? "\n" : "\n\n") +
+                     identify_section(std::string(law.kind()), records, names);
+  try {
+    read_case(text, file);  // files that it names may be out of reach there
+  } catch (const InputError& unusable) {
+    if (std::ranges::find(record_kinds, unusable.fault().key) == std::end(record_kinds)) throw;  // of the case itself
+    throw NoAnswer(std::string("the records of this law are not usable, so that none is written: ") + unusable.what());
+  }
+  return text;
 }
 
 int run(SynthesizeFlags flags) {
@@ -81,21 +116,17 @@ int run(SynthesizeFlags flags) {
   if (from.identify) throw refusal("CASE", "has an [identify] section already");
   const Element& law = law_to_synthesize(from);
   check_folder(flags);
-  const auto records = synthesized(flags, from, law);
   const auto files = files_in(flags);
-  SynthesizeReport report{law, flags.faults, {}, files.back()};
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    names.push_back(records[i].name + ".csv");
-    report.records.push_back({records[i].kind, files[i], std::max(records[i].t.size(), records[i].F.size())});
-  }
-  const std::string text = from.text + (from.text.ends_with('\n') ? "\n" : "\n\n") +
-                           identify_section(std::string(law.kind()), records, names);
-  read_case(text, report.case_file);  // files that it names may be out of reach there
-  std::error_code failed;
-  std::filesystem::create_directories(std::exchange(flags.output, {}), failed);
+  const FolderForFiles folder(std::exchange(flags.output, {}));
   Output output(flags);
+  output.keep_data(from);
   for (const auto& file : files) output.check_file("--output", file);
+  std::string failure;
+  const auto records = synthesized(flags, from, law, failure);
+  SynthesizeReport report{law, flags.faults, {}, files.back()};
+  for (std::size_t i = 0; i < records.size(); ++i)
+    report.records.push_back({records[i].kind, files[i], std::max(records[i].t.size(), records[i].F.size())});
+  const std::string text = case_of(from, law, records, report.case_file);
   for (std::size_t i = 0; i < records.size(); ++i) output.file(files[i], record_csv(records[i]));
   output.file(report.case_file, text);
   output.text(synthesize_text(from.title, report));
@@ -103,6 +134,7 @@ int run(SynthesizeFlags flags) {
   if (output.wants_csv()) output.csv(synthesize_csv(report));
   output.finish();
   if (!from.overrides.empty()) tell(flags, "the values of --set are in the records, but not in " + report.case_file);
+  if (!failure.empty()) throw NoAnswer(failure);
   return exit_done;
 }
 

@@ -75,7 +75,7 @@ int run(TuneFlags flags) {
   const TuneWishes wishes = wishes_of(flags);
   tune_numbers(from, wishes);  // reports errors before anything is computed
   Output output(flags, &from);
-  output.check_file("--html", flags.html);
+  output.check_page("--html", flags.html);
   output.check_picture("--svg", flags.picture);
   output.check_case_file(tuned, from);
 
@@ -93,6 +93,7 @@ int run(TuneFlags flags) {
   }
   if (!flags.picture.empty()) output.picture(flags.picture, tune_picture(report, units));
   std::string refused;
+  if (!tuned.empty() && report.status == Status::interrupted) refused = not_written(tuned);
   if (!tuned.empty() && report.status != Status::interrupted) try {
       output.file(tuned, tuned_case(from, report));
       text += "\n" + tuned + " is written; confirm it: limcycle predict " + tuned + "\n";

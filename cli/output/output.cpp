@@ -40,9 +40,10 @@ std::filesystem::path full_name(const std::string& path) {
 /// leaves nothing behind. When complete and on the disk, it replaces `target`.
 class Draft {
  public:
-  explicit Draft(const std::filesystem::path& target)
-      : target_(target), name_(target.string() + ".part" + std::to_string(getpid())) {
+  explicit Draft(const std::filesystem::path& target) : target_(target) {
+    constexpr std::size_t longest = 230;  // of a name, which may have 255 bytes, without the ending
     const std::filesystem::path folder = target.parent_path();
+    name_ = (folder / target.filename().string().substr(0, longest)).string() + ".part" + std::to_string(getpid());
     if (access("/proc/self/fd", X_OK) == 0)  // needed to give the file a name
       file_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
     named_ = file_ < 0;
@@ -146,6 +147,7 @@ int cannot_be_replaced(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code failed;
   const auto status = fs::status(path, failed);
+  if (failed == std::errc::filename_too_long) return ENAMETOOLONG;
   if (fs::is_directory(status)) return EISDIR;
   // Devices and pipes are opened only when there is something to write.
   if (fs::exists(status) && !fs::is_regular_file(status)) return 0;
@@ -216,12 +218,21 @@ void Output::keep(const std::string& what, const std::string& path) {
   taken_.push_back({{}, path, what});
 }
 
+void Output::keep_store(const std::string& path) {
+  keep("the store", path);
+  if (path.empty()) return;
+  for (const char* ending : {"-wal", "-shm", "-journal", "-lock"}) keep("a file of the store", path + ending);
+}
+
 void Output::check_file(const std::string& flag, const std::string& path) {
   if (path.empty() || rank() > 0) return;
   for (const auto& one : taken_)
     if (same_file(path, one.path)) throw refusal(flag + " " + path, "is " + one.what);
   taken_.push_back({flag, path, "where " + flag + " goes already"});
-  if (path == "-") return;
+  if (path == "-") {
+    if (flag != "--output") text_.clear();
+    return;
+  }
   if (const int reason = cannot_be_replaced(path); reason != 0)
     throw refusal(flag + " " + path, std::string("cannot be written: ") + std::strerror(reason));
 }
@@ -234,8 +245,18 @@ void Output::text(std::string_view document) {
 void Output::text(const std::string& first, const Document& document) {
   text(first + document.text());
   if (!tex_.empty())
-    write(tex_,
-          document.latex("limcycle " + provenance_of(0, 1, nullptr).version + (case_.empty() ? "" : ": " + case_)));
+    write(tex_, document.latex("limcycle " + provenance_of(0, 1, nullptr).version +
+                               (case_.empty() ? "" : ": " + printable(case_))));
+}
+
+void Output::check_page(const std::string& flag, const std::string& path) {
+  const Promise* promised = promised_by(path);
+  const bool table =
+      path.ends_with(".h5") || path.ends_with(".hdf5") || path.ends_with(".json") || path.ends_with(".csv");
+  if (table || (promised != nullptr && !promised->ending.starts_with(".htm")))
+    throw refusal(flag + " " + path, "would hold a page",
+                  "name it .html, which a browser prints to PDF; --help shows the flags of other documents");
+  check_file(flag, path);
 }
 
 void Output::check_picture(const std::string& flag, const std::string& path) {
@@ -262,15 +283,19 @@ void Output::json(std::string_view document) {
 
 void Output::write(const std::string& path, std::string_view document) {
   if (path.empty() || rank() > 0) return;
+  if (path == "-") {
+    // The text went through printable() before it was coloured.
+    const bool raw = path != text_ && isatty(STDOUT_FILENO) == 1;
+    shown_ += raw ? printable(document) : document;
+    return;
+  }
   errno = 0;
-  // The text went through printable() before it was coloured.
-  const bool raw = path == "-" && path != text_ && isatty(STDOUT_FILENO) == 1;
-  const bool written = path != "-" ? replaced(path, document)
-                       : raw       ? written_to(std::cout, printable(document))
-                                   : written_to(std::cout, document);
-  if (!written && failure_.empty())
-    failure_ = "cannot write to " + (path == "-" ? "stdout" : path) +
-               (errno != 0 ? std::string(": ") + std::strerror(errno) : "");
+  if (!replaced(path, document)) fail(path);
+}
+
+void Output::fail(const std::string& where) {
+  if (failure_.empty())
+    failure_ = "cannot write to " + where + (errno != 0 ? std::string(": ") + std::strerror(errno) : "");
 }
 
 void Output::refuse_tables() const {
@@ -278,6 +303,9 @@ void Output::refuse_tables() const {
 }
 
 void Output::finish() {
+  errno = 0;
+  if (!shown_.empty() && !written_to(std::cout, shown_)) fail("stdout");
+  shown_.clear();
   if (!failure_.empty()) throw OutputError(failure_);
 }
 

@@ -24,8 +24,8 @@ void take_page(CommonFlags& flags, std::string& page);
 void take_picture(CommonFlags& flags, std::string& picture);
 
 /// Destinations of a command's documents, from its flags: the text to stdout or to --output, JSON, HDF5 and CSV to
-/// their files. With "-" for one of them stdout receives that document and nothing else; the text is then dropped
-/// unless --output names a file for it.
+/// their files. With "-" for any document stdout receives that one and nothing else; the text is then dropped unless
+/// --output names a file for it.
 ///
 /// The constructor checks before anything is computed that every file can be written and that none replaces another or
 /// an input of the command, under any name; it throws InputError otherwise. No file is created before its document is
@@ -58,27 +58,35 @@ class Output {
   /// empty path is ignored.
   void keep(const std::string& what, const std::string& path);
 
+  /// The store of a sweep, with the files that SQLite and the sweep keep beside it.
+  void keep_store(const std::string& path);
+
   /// Any other file (an HTML page, say) under the same rules: check_file() first, then, when the document is ready,
   /// file().
   void check_file(const std::string& flag, const std::string& path);
   void file(const std::string& path, std::string_view document) { write(path, document); }
   /// For a question without tables: throws if --tex asks for them.
   void refuse_tables() const;
+  /// A page, whose name may not promise another document.
+  void check_page(const std::string& flag, const std::string& path);
   /// A picture: SVG as it is, or as PDF where the path ends with .pdf.
   void check_picture(const std::string& flag, const std::string& path);
   void picture(const std::string& path, std::string_view svg);
   /// The same for a changed case (-o), which finds the files of data that it names only from their folder.
   void check_case_file(const std::string& path, const Case& from);
 
-  /// Throws OutputError naming the first document that could not be written completely.
+  /// Writes what goes to stdout, last, so that a reader that closes a pipe early costs no file. Throws OutputError
+  /// naming the first document that could not be written completely.
   void finish();
 
  private:
   void write(const std::string& path, std::string_view document);
+  void fail(const std::string& where);  ///< with errno
 
   std::string text_, tex_, json_, hdf5_, csv_;  // "-" is stdout, empty: none
   std::string case_;                            // for a comment
   std::string basis_;                           // sentences at the end of the text
+  std::string shown_;                           // for stdout
   bool colours_ = false;
   struct TakenFile {
     std::string flag;  // of the document that goes there; empty for a file that the command reads

@@ -74,7 +74,8 @@ struct ReturnPoints {
     const double d = at.direction;
     if (at.saturated) return d * shape.level(d);
     if (at.depth == 0) return d * shape.virgin(z[0], d);
-    return at.outermost() * ((shape.masing ? masing(at, z) : two_point(at, z)) + z[offset]);
+    const S inner = shape.masing ? masing(at, z) : two_point(at, z);
+    return at.outermost() * (has_offset(at) ? inner + z[offset] : inner);
   }
 
   /// Energy (J) in the springs of the equivalent stop elements, for `masing` and a concave virgin curve. Stop elements
@@ -146,8 +147,11 @@ struct ReturnPoints {
     return {0, in.v < 0.0 || (in.v == 0.0 && in.drive < 0.0) ? -1 : 1, false};
   }
 
-  /// The places of return points beyond the depth, which are 0.
-  static bool unused(Mode mode, int i) { return i > ReturnMode::of(mode).depth && i <= capacity; }
+  /// The places of return points beyond the depth, and the force of a stack that is not full: they are 0.
+  static bool unused(Mode mode, int i) {
+    const ReturnMode at = ReturnMode::of(mode);
+    return i == capacity + 1 ? !has_offset(at) : i > at.depth && i <= capacity;
+  }
 
   static Mode mirror(Mode mode) {
     ReturnMode at = ReturnMode::of(mode);
@@ -239,8 +243,9 @@ struct ReturnPoints {
   }
 
   /// The offset belongs to branches that begin at the innermost two return points of a full stack.
+  static bool has_offset(ReturnMode at) { return at.depth >= capacity - 2; }
   static void forget_offset(ReturnMode at, std::span<S> z) {
-    if (at.depth < capacity - 2) z[offset] = S(0.0);
+    if (!has_offset(at)) z[offset] = S(0.0);
   }
 };
 

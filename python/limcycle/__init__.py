@@ -17,8 +17,8 @@ from . import laws
 from ._core import version as __version__
 from ._errors import CaseError, NoAnswer
 from ._loop import Loop, Number, load
-from ._questions import (continue_, describing_function, df, dissipativity, identify, map, margin, predict, remedy,
-                         sensitivity, simulate, tune)
+from ._questions import (continue_, describing_function, df, dissipativity, identify, map as map, margin, predict,
+                         remedy, sensitivity, simulate, tune)
 from ._results import (Continuation, DescribingFunctions, Dissipativity, Identification, Map, Margin, Prediction, Record,
                        Remedies, Result, Sensitivity, Simulation, Tuning)
 

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
 
 from . import _core
 from ._errors import CaseError
-from ._own_law import KIND, is_own
+from ._own_law import KIND, checked, is_own
 from ._systems import element_of, table_of
 from ._toml import lines_of, text_of
 
@@ -46,7 +46,7 @@ class Loop:
             if is_own(part):
                 raise CaseError(name, type(part).__name__, "must be a dictionary or an object of limcycle.laws",
                                 "only friction may be a law of your own")
-        self._own = friction if is_own(friction) else None
+        self._own = checked(friction) if is_own(friction) else None
         parts = {"reference": reference, "load": load, "plant": plant,
                  "controller": table_of(controller, "loop.controller"),
                  "friction": friction if self._own is None else KIND, "element": element, "error": error}
@@ -62,10 +62,13 @@ class Loop:
 
     def set(self, values: Mapping[str, Any]) -> Loop:
         """The loop with other values at some paths: loop.set({"loop.controller.kd": 8.0})."""
+        if not isinstance(values, Mapping):
+            raise CaseError("values", repr(values), 'must be values by path, such as {"loop.controller.kd": 8.0}')
         return Loop._of(changed(self._case, values), self._own)
 
     @property
     def title(self) -> str:
+        """The title of the case."""
         return self._case.title
 
     @property
@@ -125,5 +128,7 @@ def _with_full_names(value: Any) -> Any:
 
 def load(path: Union[str, "os.PathLike[str]"], overrides: Optional[Mapping[str, Any]] = None) -> Loop:
     """Reads a case file; `overrides` as Loop.set(). Raises CaseError with file, line and key."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise CaseError("path", repr(path), "must be the name of a case file")
     changes = [f"{key}={text_of(value, key)}" for key, value in (overrides or {}).items()]
     return Loop._of(_core.load_case(os.fspath(path), changes))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import shutil
 from itertools import groupby
 from typing import Any, List, Optional, Sequence, Tuple
 
@@ -20,6 +22,8 @@ def _axes(ax: Any) -> Any:
 
 def save(result: Any, path: Any) -> None:
     """The figure of result.plot(), in a file."""
+    if str(path).endswith(".pgf") and shutil.which(plt.rcParams["pgf.texsystem"]) is None:
+        raise ValueError(f"PGF needs {plt.rcParams['pgf.texsystem']} of LaTeX, which is not installed: save .pdf or .png")
     before = set(plt.get_fignums())
     try:
         drawn = np.ravel(result.plot())[0].figure
@@ -27,6 +31,20 @@ def save(result: Any, path: Any) -> None:
     finally:
         for number in set(plt.get_fignums()) - before:
             plt.close(number)
+
+
+def svg(result: Any) -> str:
+    """The same as SVG; empty where there is nothing to draw."""
+    drawn = io.StringIO()
+    before = set(plt.get_fignums())
+    try:
+        np.ravel(result.plot())[0].figure.savefig(drawn, format="svg", bbox_inches="tight", metadata={"Date": None})
+    except ValueError:
+        return ""
+    finally:
+        for number in set(plt.get_fignums()) - before:
+            plt.close(number)
+    return drawn.getvalue()[drawn.getvalue().find("<svg"):]
 
 
 def _window(ax: Any, points: Sequence[complex]) -> None:

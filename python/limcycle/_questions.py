@@ -65,7 +65,7 @@ def _work(time_limit: Optional[float], progress: Progress, *, seed: int = 0, thr
           isa: str = "auto") -> _core.Work:
     limit = 0.0
     if time_limit is not None:
-        limit = number("time_limit", time_limit, "> 0 s, or None", lambda s: 0.0 < s < math.inf)
+        limit = number("time_limit", time_limit, "finite and > 0 s, or None", lambda s: 0.0 < s < math.inf)
     if isinstance(progress, bool):
         progress = Bar() if progress else None
     if progress is not None and not callable(progress):
@@ -108,10 +108,18 @@ def describing_function(nonlinearity: Any, amplitude: Any) -> Any:
     a function F(u) of one number without memory. NaN where the gain is not known to 0.1 %."""
     import numpy
 
-    sizes = numpy.asarray(amplitude, dtype=float)
+    try:
+        sizes = numpy.asarray(amplitude, dtype=float)
+    except (TypeError, ValueError):
+        raise CaseError("amplitude", repr(amplitude), "must be numbers, finite and above 0") from None
     for one in sizes.flat:
         number("amplitude", one, "finite and above 0", lambda x: 0.0 < x < math.inf)
-    law = element_of(nonlinearity, "nonlinearity")
+    try:
+        law = element_of(nonlinearity, "nonlinearity")
+    except CaseError:  # of python-control, but none that a case can hold
+        if not callable(nonlinearity):
+            raise
+        law = nonlinearity
     if isinstance(law, Mapping):
         law = Law(**law)
     turn: complex = 1.0

@@ -83,6 +83,7 @@ class Record:
         return getattr(self, attribute_of(key))
 
     def get(self, key: str, default: Any = None) -> Any:
+        """The value of a key, or `default` if there is none."""
         return self[key] if key in self else default
 
     def __contains__(self, key: str) -> bool:
@@ -95,9 +96,11 @@ class Record:
         return len(self._document())
 
     def keys(self) -> List[str]:
+        """The keys of the part, in the order of the document."""
         return list(self._document())
 
     def items(self) -> List[Tuple[str, Any]]:
+        """The keys with their values."""
         return [(key, self[key]) for key in self]
 
     def __dir__(self) -> List[str]:
@@ -246,7 +249,15 @@ class Result(Record):
         return f"<limcycle.{type(self).__name__}: {self.status}>"
 
     def _repr_html_(self) -> str:
-        return (self.to_svg() or "") + f"<pre>{escape(str(self))}</pre>"
+        return (self.to_svg() or self._drawn()) + f"<pre>{escape(str(self))}</pre>"
+
+    def _drawn(self) -> str:
+        """The figure of plot() as SVG; empty without Matplotlib, and where there is nothing to draw."""
+        try:
+            from . import _plots
+        except ImportError:
+            return ""
+        return _plots.svg(self) if hasattr(self, "plot") else ""
 
     def _plot(self, name: str, ax: Any, **options: Any) -> Any:
         from . import _plots

@@ -18,7 +18,7 @@ def table_of(system: Any, path: str) -> Any:
         if len(system) == 2:
             return _transfer_function(system[0], system[1], path)
         if len(system) == 3:
-            return _zpk(system[0], system[1], system[2])
+            return _zpk(system[0], system[1], system[2], path)
         if len(system) == 4:
             return _state_space(system[0], system[1], system[2], system[3], path)
         raise CaseError(path, "", f"must be (num, den), (zeros, poles, gain) or (A, B, C, D), found {len(system)} parts")
@@ -32,7 +32,7 @@ def table_of(system: Any, path: str) -> Any:
     if hasattr(system, "num") and hasattr(system, "den"):
         return _transfer_function(system.num, system.den, path)
     if hasattr(system, "zeros") and hasattr(system, "gain") and not callable(system.zeros):
-        return _zpk(system.zeros, system.poles, system.gain)
+        return _zpk(system.zeros, system.poles, system.gain, path)
     raise CaseError(path, "", f"must be a dictionary or a linear system, found a {type(system).__name__}")
 
 
@@ -90,8 +90,25 @@ def _transfer_function(num: Any, den: Any, path: str) -> Dict[str, Any]:
     return {"kind": "transfer-function", "numerator": _polynomial(num, path), "denominator": _polynomial(den, path)}
 
 
-def _zpk(zeros: Any, poles: Any, gain: Any) -> Dict[str, Any]:
+def _zpk(zeros: Any, poles: Any, gain: Any, path: str) -> Dict[str, Any]:
+    if path == "loop.controller":  # which a case file has as a transfer function
+        factor = plain(gain)
+        return {"kind": "transfer-function", "numerator": [factor * one for one in _expanded(_numbers(zeros), path)],
+                "denominator": _expanded(_numbers(poles), path)}
     return {"kind": "zpk", "zeros": _numbers(zeros), "poles": _numbers(poles), "gain": plain(gain)}
+
+
+def _expanded(roots: List[Any], path: str) -> List[float]:
+    """Coefficients of the polynomial with these roots, highest power first."""
+    product = [complex(1.0)]
+    for root in roots:
+        lower = [0.0, *(-complex(*root) * one if isinstance(root, (list, tuple)) else -complex(root) * one
+                        for one in product)]
+        product = [one + other for one, other in zip([*product, 0.0], lower)]
+    largest = max(abs(one) for one in product)
+    if any(abs(one.imag) > 1e-12 * largest for one in product):
+        raise CaseError(path, repr(roots), "must have complex zeros and poles in conjugate pairs")
+    return [one.real for one in product]
 
 
 def _rows(matrix: Any) -> List[List[Any]]:
@@ -100,10 +117,15 @@ def _rows(matrix: Any) -> List[List[Any]]:
 
 def _state_space(A: Any, B: Any, C: Any, D: Any, path: str) -> Dict[str, Any]:
     A, B, C, D = _rows(A), _rows(B), _rows(C), _rows(D)
+    if not any(A) and len(D) == 1 and len(D[0]) == 1:
+        return {"kind": "transfer-function", "numerator": D[0], "denominator": [1.0]}
     if len(A) > 1 and len(B) == 1:  # a list is a column of B and a row of C
         B = [[one] for one in B[0]]
-    if len(C) > 1 and all(len(row) == 1 for row in C) and len(C) == len(A):
+    if len(C) > 1 and len(A) > 1 and all(len(row) == 1 for row in C):
         C = [[row[0] for row in C]]
     if any(len(row) != 1 for row in B) or len(C) != 1 or len(D) != 1 or len(D[0]) != 1:
         raise CaseError(path, "", "must have one input and one output")
+    if any(len(row) != len(A) for row in A) or len(B) != len(A) or len(C[0]) != len(A):
+        raise CaseError(path, f"A of {len(A)} x {len(A[0])}, B of {len(B)} and C of {len(C[0])} numbers",
+                        "must have a square A, and as many numbers in B and C as A has rows")
     return {"kind": "state-space", "A": A, "B": B, "C": C, "D": D}

@@ -42,6 +42,7 @@ class Law:
         return "friction"  # whose error lists the kinds
 
     def to_table(self) -> Dict[str, Any]:
+        """The law as a table of a case file."""
         return {"kind": self.kind, **self.parameters}
 
     def __getattr__(self, name: str) -> Any:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "limcycle/reports/continuation/margin.hpp"
 #include "limcycle/reports/format/number.hpp"
@@ -18,10 +19,17 @@ std::string side_place(const MarginSide& side) {
 }
 
 /// "-27 %"; "x 6.0" from a doubling on.
-std::string change(double value, double own) {
+std::string size_of(double value, double own) {
   const double ratio = value / own;
   if (ratio >= 2.0) return fmt::format("x {}", with_digits(ratio, 3));
   return fmt::format("{}{} %", ratio >= 1.0 ? "+" : "-", with_digits(std::abs(100.0 * (ratio - 1.0)), 3));
+}
+
+/// "0.27", "1.0094": with three digits of the change where that is small.
+std::string factor_on(double value, double own) {
+  const double ratio = value / own, change = std::abs(ratio - 1.0);
+  const int digits = change < 0.5 ? 3 - static_cast<int>(std::floor(std::log10(std::max(change, 1e-5)))) : 3;
+  return with_digits(ratio, std::clamp(digits, 3, 6));
 }
 
 std::string cell(const MarginSide& side, double own) {
@@ -31,30 +39,51 @@ std::string cell(const MarginSide& side, double own) {
     case MarginSide::What::unknown:
       return "?";
     default:
-      return fmt::format("{} ({})", side_place(side), change(side.value, own));
+      return fmt::format("{} (x {})", side_place(side), factor_on(side.value, own));
   }
 }
 
 /// What is there: ", at a fold"; empty if that is not known.
 std::string kind_of(const MarginSide& side) {
+  if (side.diverges && side.diverges_at != 0.0)
+    return fmt::format(", but at {} it diverges", with_digits(side.diverges_at, 4));
   if (side.diverges) return ", but it diverges beyond";
   if (side.event == BranchEvent::Type::fold) return ", at a fold";
   return side.event == BranchEvent::Type::stability ? ", where the cycle changes its stability" : "";
 }
 
+/// A change of one parameter.
+struct Change {
+  const MarginParameter* of;
+  const MarginSide* to;
+
+  double size() const { return std::abs(to->value / of->value - 1.0); }
+};
+
 /// "lower loop.friction.Fs from 1.5 N to 1.04 N (-31 %, at a fold)".
-std::string step(const ParameterMargin& one) {
-  const MarginSide& side = *one.nearest();
-  const bool raise = std::abs(side.value) > std::abs(one.parameter.value);
-  return fmt::format("{} {} from {} to {} ({}{})", raise ? "raise" : "lower", one.parameter.path,
-                     with_digits(one.parameter.value, 4), Units::attach(side_place(side), unit_of(one)),
-                     change(side.value, one.parameter.value), kind_of(side));
+std::string in_words(const Change& change) {
+  const auto& [of, to] = change;
+  const bool raise = std::abs(to->value) > std::abs(of->value);
+  return fmt::format("{} {} from {} to {} ({}{})", raise ? "raise" : "lower", of->path, with_digits(of->value, 4),
+                     Units::attach(side_place(*to), of->unit == "1" ? "" : of->unit), size_of(to->value, of->value),
+                     kind_of(*to));
 }
 
-const ParameterMargin* nearest(const MarginReport& report, bool friction) {
-  for (const auto& one : report.parameters)
-    if (one.parameter.friction == friction && one.nearest()) return &one;
-  return nullptr;
+/// The least change that ends or begins hunting; of a loop that hunts, one after which it diverges only where there is
+/// no other.
+std::optional<Change> smallest_change(const MarginReport& report, bool friction) {
+  std::optional<Change> best;
+  const auto better = [&](const Change& one) {
+    if (!best) return true;
+    if (report.hunts && one.to->diverges != best->to->diverges) return best->to->diverges;
+    return one.size() < best->size();
+  };
+  for (const auto& one : report.parameters) {
+    if (one.parameter.friction != friction) continue;
+    for (const MarginSide* side : {&one.up, &one.down})
+      if (const Change change{&one.parameter, side}; side->found() && better(change)) best = change;
+  }
+  return best;
 }
 
 std::string of_balance(const MarginReport& report) {
@@ -117,15 +146,14 @@ std::string margin_answer(const MarginReport& report, const Units& units) {
   } else {
     out += "No stable limit cycle was found.";
   }
-  const ParameterMargin* design = nearest(report, false);
-  const ParameterMargin* law = nearest(report, true);
+  const auto design = smallest_change(report, false), law = smallest_change(report, true);
   const std::string verb = report.hunts ? "ends it" : "starts one";
   if (design)
-    out += fmt::format(" The smallest change of plant or controller that {}: {}.", verb, step(*design));
+    out += fmt::format(" The smallest change of plant or controller that {}: {}.", verb, in_words(*design));
   else if (std::ranges::any_of(report.parameters, [](const auto& one) { return !one.parameter.friction; }))
     out += fmt::format(" No single change of plant or controller within a factor of {:g} {}{}.", report.factor, verb,
                        has_unknown_side(report) ? " (some directions are undetermined)" : "");
-  if (law) out += fmt::format(" The smallest change of the friction: {}.", step(*law));
+  if (law) out += fmt::format(" The smallest change of the friction: {}.", in_words(*law));
   return out + of_balance(report);
 }
 

@@ -54,10 +54,12 @@ inline std::string quoted(const std::string& argument) {
   return text + "'";
 }
 
-/// Runs the real program. `redirect`: replaces the capture of stdout, such as "> /dev/full".
-inline Ran run(const std::vector<std::string>& arguments, const std::string& redirect = {}) {
+/// Runs the real program. `redirect`: replaces the capture of stdout, such as "> /dev/full"; `by`: a program that runs
+/// it.
+inline Ran run(const std::vector<std::string>& arguments, const std::string& redirect = {},
+               const std::string& by = {}) {
   const Scratch scratch;
-  std::string command = quoted(tested_program);
+  std::string command = by + quoted(tested_program);
   for (const auto& argument : arguments) command += ' ' + quoted(argument);
   command +=
       (redirect.empty() ? " > " + quoted(scratch.file("out")) : ' ' + redirect) + " 2> " + quoted(scratch.file("err"));

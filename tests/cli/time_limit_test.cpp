@@ -71,6 +71,7 @@ TEST_CASE("interrupted: exit code 3 and a status in the document, whatever the c
       {"remedy", shipped("two-mass-drive.toml")},
       {"tune", shipped("pid-lugre.toml"), "--vary", "kp=1:20,ki=0:5,kd=1:20", "--minimise", "settling"},
       {"continue", shipped("pid-lugre.toml"), "--parameter", "loop.controller.kd=1:50"},
+      {"identify", shipped("records/carriage.toml")},
       {"experiment", "all"}};
   for (const auto& command : commands) {
     INFO(command.front());

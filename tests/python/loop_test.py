@@ -177,6 +177,26 @@ class SystemsOfOthers(unittest.TestCase):
         with self.assertRaisesRegex(limcycle.CaseError, "linear system"):
             relay_loop(plant=3.0)
 
+    def test_a_controller_is_any_linear_system(self):
+        parts = {"plant": {"kind": "mass", "mass": 1.0}, "friction": limcycle.laws.coulomb(Fs=1.5, Fc=1.0)}
+        expected = limcycle.Loop(controller=([30.0, 120.0, 150.0], [1.0, 50.0, 600.0]), **parts).text
+        zpk = ([-2.0 + 1.0j, -2.0 - 1.0j], [-20.0, -30.0], 30.0)
+        self.assertEqual(limcycle.Loop(controller=zpk, **parts).text, expected)
+        gain = limcycle.Loop(controller=([3.0], [1.0]), **parts).text
+        self.assertEqual(limcycle.Loop(controller=([], [], [], [[3.0]]), **parts).text, gain)
+        with self.assertRaisesRegex(limcycle.CaseError, "conjugate pairs"):
+            limcycle.Loop(controller=([], [-1.0 + 1.0j], 1.0), **parts)
+
+    def test_sizes_that_do_not_fit(self):
+        with self.assertRaisesRegex(limcycle.CaseError, "A of 2 x 2, B of 2 and C of 3 numbers.*as many numbers"):
+            relay_loop(plant=(np.eye(2), [1.0, 0.0], [1.0, 0.0, 0.0], 0.0))
+
+    def test_arguments_of_another_type(self):
+        with self.assertRaisesRegex(limcycle.CaseError, "values = 3: must be values by path"):
+            relay_loop().set(3)
+        with self.assertRaisesRegex(limcycle.CaseError, "path = None: must be the name of a case file"):
+            limcycle.load(None)
+
     def test_a_measured_response_is_a_measured_plant(self):
         class FrequencyResponseData:  # as in python-control
             omega, dt = np.logspace(-1, 2, 80), None

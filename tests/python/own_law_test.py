@@ -241,6 +241,25 @@ class CompiledLaws(unittest.TestCase):
                 for law in (Dahl(), self.dahl())]
         np.testing.assert_allclose(runs[0], runs[1], rtol=1e-9)
 
+    def test_another_signature_is_refused(self):
+        def numba(returned, *kinds):
+            return SimpleNamespace(address=1, _sig=SimpleNamespace(args=kinds, return_type=returned))
+
+        good = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double))
+        for output in (numba("float32", "float32", "float64*"), numba("float64", "float64"),
+                       ctypes.CFUNCTYPE(ctypes.c_float, ctypes.c_float, ctypes.c_void_p)(lambda v, z: v),
+                       ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, ctypes.c_int)(lambda v, z: v)):
+            with self.assertRaisesRegex(limcycle.CaseError, r"output: .* must have the signature double output\(double v"):
+                limcycle.df(SimpleNamespace(scales=(1.0, 1.0, 1.0), output=output), 1.0, 1.0)
+        with self.assertRaisesRegex(limcycle.CaseError, "rate: .* must have the signature void rate"):
+            limcycle.Loop(plant={"kind": "mass", "mass": 1.0}, friction=self.dahl(rate=numba("float64", "float64", "float64*", "float64*")))
+        fine = SimpleNamespace(scales=(math.inf, 1.0, 1.0), output=good(lambda v, z: 2.0 * v))
+        self.assertAlmostEqual(limcycle.df(fine, 1.0, 1.0).gain[0, 0, 0], 2.0j, delta=1e-6)
+
+    def test_a_class_is_no_law(self):
+        with self.assertRaisesRegex(limcycle.CaseError, r"must be an object of that class.*write Dahl\(\)"):
+            limcycle.df(Dahl, 1.0, 1.0)
+
     def test_both_or_neither(self):
         with self.assertRaisesRegex(limcycle.CaseError, "friction: output and rate must both be compiled, or neither"):
             limcycle.df(self.dahl(rate=Dahl().rate), 0.01, 1.0)

@@ -204,7 +204,20 @@ class Documents(unittest.TestCase):
         html = limcycle.predict(relay_loop(title="a < b"))._repr_html_()
         self.assertIn("a &lt; b", html)
         ElementTree.fromstring(html[html.index("<svg"):html.index("</svg>") + 6])
-        self.assertIn("<pre>", limcycle.df(limcycle.laws.relay(level=1.0), 1.0, 1.0)._repr_html_())
+        others = (limcycle.df(limcycle.laws.relay(level=1.0), [1.0, 2.0], 1.0), limcycle.simulate(relay_loop(), 2.0, sample=0.1),
+                  limcycle.margin(servo(), "loop.controller.kd"))
+        for result in others:  # the program has no picture of these
+            html = result._repr_html_()
+            ElementTree.fromstring(html[html.index("<svg"):html.index("</svg>") + 6])
+            self.assertIn("<pre>", html)
+        self.assertNotIn("<svg", limcycle.dissipativity(limcycle.laws.coulomb(Fs=1.0, Fc=1.0))._repr_html_())
+
+    def test_a_figure_of_latex_needs_latex(self):
+        import shutil
+
+        if shutil.which("xelatex") is None:
+            with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, "PGF needs xelatex"):
+                limcycle.simulate(relay_loop(), 2.0, sample=0.1).save(os.path.join(folder, "figure.pgf"))
 
 
 class Followers(unittest.TestCase):

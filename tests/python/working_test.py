@@ -113,6 +113,19 @@ class Costs(unittest.TestCase):
         before = ask(500)
         self.assertLess(ask(10000) - before, 2_000_000)  # a leak of 200 bytes a call would show
 
+    def test_memory_is_flat_with_threads(self):
+        law = limcycle.laws.relay(level=1.0)
+
+        def ask(times):
+            for _ in range(times):
+                limcycle.df(law, [1.0, 2.0], [1.0], threads=2).gain
+            gc.collect()
+            with open("/proc/self/statm", encoding="ascii") as file:
+                return int(file.read().split()[1]) * resource.getpagesize()
+
+        before = ask(500)
+        self.assertLess(ask(2000) - before, 2_000_000)  # arenas of threads that are not kept would cost 12 kB a call
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "limcycle/analysis/frequency/march/element_march.hpp"
 #include "limcycle/analysis/frequency/march/indifferent_map.hpp"
@@ -93,17 +94,23 @@ class PeriodicStateSearch {
   }
 
   /// Correction of a state that the map moves by r: (1 - M)^-1 r, the limit of applying the map with the derivative M
-  /// for ever, less the state. With indifferent directions (M = 1) the group inverse of 1 - M, which leaves them
-  /// unchanged, if `near` the end, since farther away the path may bend into them. Zero: apply the map.
+  /// for ever, less the state; what is unused stays. With indifferent directions (M = 1) the group inverse of 1 - M,
+  /// which leaves them unchanged, if `near` the end, since farther away the path may bend into them. Zero: apply the
+  /// map.
   Vector correction(const ElementState& image, const Vector& r, bool near, double& amplification) const {
     const auto n = static_cast<Eigen::Index>(n_);
-    Matrix m(n, n);
-    for (Eigen::Index p = 0; p < n; ++p)
-      for (Eigen::Index q = 0; q < n; ++q)
-        m(p, q) = (image.sensitivity[static_cast<std::size_t>(p * n + q)] - (p == q ? 1.0 : 0.0)) *
-                  scale(static_cast<std::size_t>(q)) / scale(static_cast<std::size_t>(p));
+    std::vector<char> used(n_);
+    for (std::size_t p = 0; p < n_; ++p) used[p] = march_.element().unused(image.mode, static_cast<int>(p)) ? 0 : 1;
+    Matrix m = Matrix::Zero(n, n);
     Vector scaled(n);
-    for (Eigen::Index p = 0; p < n; ++p) scaled(p) = -r(p) / scale(static_cast<std::size_t>(p));
+    for (std::size_t p = 0; p < n_; ++p) {
+      const auto row = static_cast<Eigen::Index>(p);
+      scaled(row) = -r(row) / scale(p);
+      for (std::size_t q = 0; q < n_; ++q)
+        if (used[p] != 0 && used[q] != 0)
+          m(row, static_cast<Eigen::Index>(q)) =
+              (image.sensitivity[p * n_ + q] - (p == q ? 1.0 : 0.0)) * scale(q) / scale(p);
+    }
     Vector step = indifferent_correction(m, scaled, near, amplification);
     for (Eigen::Index p = 0; p < n; ++p) step(p) *= scale(static_cast<std::size_t>(p));
     return step;

@@ -35,7 +35,8 @@ struct MarginSide {
   /// Event of the branch of cycles there, and the cycle; if it was followed to a fold or a change of stability.
   std::optional<BranchEvent::Type> event = {};
   std::optional<Cycle> cycle = {};
-  bool diverges = false;  ///< the motion grows without bound beyond: hunting ends there, or does not begin before
+  bool diverges = false;     ///< the motion grows without bound beyond: hunting ends there, or does not begin before
+  double diverges_at = 0.0;  ///< the value beyond at which that was seen; 0: at `value`
   bool found() const { return what == What::ends || what == What::begins; }
 };
 std::string_view to_string(MarginSide::What what);

@@ -122,12 +122,15 @@ MarginSide SideSearch::beyond(const Lost& lost, std::optional<Cycle>& other, dou
     }
     if (stopped()) return {};
     if (reached.outcome != Outcome::undecided) {
-      const std::string after = reached.outcome == Outcome::divergence
-                                    ? " the motion diverges"
-                                    : " the motion ends in " + std::string(to_string(reached.outcome));
-      MarginSide side = found(What::ends, lost, lost.why + "; beyond it" + after);
-      side.diverges = reached.outcome == Outcome::divergence;
-      if (first) return side;
+      const bool diverges = reached.outcome == Outcome::divergence;
+      const std::string after =
+          diverges ? " the motion diverges" : " the motion ends in " + std::string(to_string(reached.outcome));
+      const std::string where = first && !diverges ? "; beyond it" : "; at " + short_number(next, 5);
+      MarginSide side = found(What::ends, lost, lost.why + where + after);
+      side.diverges = diverges;
+      side.diverges_at = next;
+      // Where the branch turns back there is no such cycle beyond.
+      if (first || lost.event == BranchEvent::Type::fold) return side;
       side.why = "the cycle is lost at " + short_number(lost.value, 5) + ": " + lost.why + "; at " +
                  short_number(next, 5) + after + "; the motion between the two was not determined";
       side.value = next;

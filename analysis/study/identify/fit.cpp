@@ -13,12 +13,12 @@
 namespace limcycle {
 
 Misfit::Misfit(const ParameterSpace& space, const std::vector<PreparedRecord>& records, std::vector<double> noise,
-               Shooting shooting)
+               Shooting shooting, std::function<bool()> stop)
     : space_(space),
       records_(records),
       noise_(std::move(noise)),
       response_(response_of(space.kind(), space.places(), space.own_rows())),
-      free_(space.kind(), space.places(), space.own_rows(), shooting) {
+      free_(space.kind(), space.places(), space.own_rows(), shooting, std::move(stop)) {
   for (const auto& record : records_) {
     first_.push_back(size_);
     size_ += std::ssize(record.compared);

@@ -16,9 +16,9 @@ namespace limcycle {
 class Misfit {
  public:
   /// Keeps references to the space and the records. `noise`: standard deviation of the measured quantity in each
-  /// record.
+  /// record. `stop` is asked while a free motion is simulated; a law that is cut short there has no answer.
   Misfit(const ParameterSpace& space, const std::vector<PreparedRecord>& records, std::vector<double> noise,
-         Shooting shooting = Shooting::single);
+         Shooting shooting = Shooting::single, std::function<bool()> stop = {});
 
   Eigen::Index size() const { return size_; }
   const ParameterSpace& space() const { return space_; }

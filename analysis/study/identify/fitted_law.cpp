@@ -121,7 +121,7 @@ LawFit::LawFit(const Element& kind, const std::vector<PreparedRecord>& records, 
 }
 
 Misfit LawFit::misfit_now() const {
-  Misfit misfit(space_, records_, noise_, shooting_);
+  Misfit misfit(space_, records_, noise_, shooting_, stop_);
   misfit.start_from(best_.u);
   return misfit;
 }
@@ -158,7 +158,7 @@ std::optional<LawFit::Noisy> LawFit::fit_with_noise(Shooting shooting, const std
   Eigen::VectorXd entries;
   Noisy result{from ? from->fit : Fit{}, from ? from->noise : noise_};
   for (int round = 0; round < most_rounds; ++round) {
-    Misfit misfit(space_, records_, result.noise, shooting);
+    Misfit misfit(space_, records_, result.noise, shooting, stop_);
     if (round > 0 || from) misfit.start_from(result.fit.u);
     result.fit = round == 0 && !from
                      ? fit_from_starts(misfit, stop_)

@@ -13,9 +13,16 @@
 namespace limcycle {
 namespace {
 
-/// Speed up to which the steady friction curve falls, m/s: a scan with six speeds a decade, then golden section; empty
-/// if it does not fall, or to the end of the scan.
-std::optional<double> falls_up_to(const Element& law) {
+/// Where the steady friction curve falls: up to the speed `end`, or for ever; then `most` of the fall lies below it.
+struct FallingRange {
+  double end = 0.0;
+  bool for_ever = false;
+};
+constexpr double most = 0.99;
+
+/// By a scan with six speeds a decade, then golden section; empty if the curve does not fall, or steeply to the end of
+/// the scan.
+std::optional<FallingRange> falling_range_of(const Element& law) {
   const double unit = law.scales().velocity;
   if (!std::isfinite(unit)) return std::nullopt;
   const auto force = [&](double v) {
@@ -23,7 +30,7 @@ std::optional<double> falls_up_to(const Element& law) {
     return slide ? slide->force : NAN;
   };
   constexpr int points = 31;
-  constexpr double from = 1e-2, a_decade = 6.0;
+  constexpr double from = 1e-2, a_decade = 6.0, level = 1e-6;
   std::vector<double> speeds, forces;
   for (int i = 0; i < points; ++i) {
     speeds.push_back(unit * from * std::pow(10.0, i / a_decade));
@@ -31,8 +38,16 @@ std::optional<double> falls_up_to(const Element& law) {
     if (!std::isfinite(forces.back())) return std::nullopt;
   }
   const auto least = static_cast<std::size_t>(std::ranges::min_element(forces) - forces.begin());
-  if (least == 0 || least + 1 == forces.size()) return std::nullopt;
-  return golden_maximum([&](double v) { return -force(v); }, speeds[least - 1], speeds[least], speeds[least + 1], 40);
+  if (least == 0) return std::nullopt;
+  const double fall = forces.front() - forces[least];
+  if (forces.back() - forces[least] < level * fall) {  // no rise: it comes to a level, where rounding makes the minimum
+    const auto below = std::ranges::find_if(forces, [&](double F) { return F <= forces.front() - most * fall; });
+    const bool comes_to_level = forces[forces.size() - 2] - forces.back() < 1e-2 * fall;
+    if (!comes_to_level || below == forces.begin()) return std::nullopt;
+    return FallingRange{speeds[static_cast<std::size_t>(below - forces.begin())], true};
+  }
+  return FallingRange{
+      golden_maximum([&](double v) { return -force(v); }, speeds[least - 1], speeds[least], speeds[least + 1], 40)};
 }
 
 class CauseStudy {
@@ -130,8 +145,10 @@ class CauseStudy {
   std::string falling_range() const {
     const Subject subject = subject_of(parts_);
     if (subject.element == nullptr || !subject.opposes) return {};
-    const auto speed = falls_up_to(*subject.element);
-    return speed ? " up to " + short_number(*speed, 3) + " m/s" : std::string();
+    const auto range = falling_range_of(*subject.element);
+    if (!range) return {};
+    const std::string speed = short_number(range->end, 3) + " m/s";
+    return range->for_ever ? ", 99 % of it below " + speed : " up to " + speed;
   }
 
   const LoopParts& parts_;

@@ -26,14 +26,13 @@ ComparedCosts compared(const RemedyCosts& costs) {
           minus(costs.robust_share)};
 }
 
-/// True if `a` is at least as good as `b` in every cost that is known of both, and better in one.
+/// True if `a` is at least as good as `b` in every cost, an unknown one being the worst, and better in one.
 bool dominates(const RemedyCosts& a, const RemedyCosts& b) {
   const auto of_a = compared(a), of_b = compared(b);
   bool better = false;
   for (std::size_t i = 0; i < of_a.size(); ++i) {
-    if (!of_a[i] || !of_b[i]) continue;
-    if (*of_a[i] > *of_b[i]) return false;
-    better = better || *of_a[i] < *of_b[i];
+    if (of_b[i] && (!of_a[i] || *of_a[i] > *of_b[i])) return false;
+    better = better || (of_a[i] && (!of_b[i] || *of_a[i] < *of_b[i]));
   }
   return better;
 }

@@ -24,6 +24,18 @@ struct StraightPiece {
   bool free = false, still = false;
 };
 
+/// On, off and on the other way, each over the inputs at which it does not switch; without hysteresis it may also hold
+/// the input at which it would, anywhere between.
+std::vector<StraightPiece> relay_pieces(const Element& element) {
+  const double level = element.number("level").value(), hysteresis = element.number("hysteresis").value_or(0.0),
+               dead_zone = element.number("dead_zone").value_or(0.0), off = dead_zone - hysteresis;
+  std::vector<StraightPiece> pieces{{.offset = level, .low = off}, {.offset = -level, .high = -off}};
+  if (dead_zone > 0.0) pieces.push_back({.low = -dead_zone - hysteresis, .high = dead_zone + hysteresis});
+  if (hysteresis == 0.0 && dead_zone == 0.0)
+    pieces.push_back({.low = -level, .high = level, .free = true, .still = true});
+  return pieces;
+}
+
 /// The pieces of an element that stands in the path of a signal; none for a kind that has none.
 std::vector<StraightPiece> straight_pieces(const Element& element) {
   const double slope = element.number("slope").value_or(1.0);
@@ -41,6 +53,17 @@ std::vector<StraightPiece> straight_pieces(const Element& element) {
   }
   if (element.kind() == "reset-integrator" || element.kind() == "stop-reset-integrator")
     return {{.free = true, .still = true}};
+  if (element.kind() == "clamped-pi") {  // it stands still for an input of zero, or clamped
+    const double limit = element.number("limit").value(), sign = element.number("ki").value() < 0.0 ? -1.0 : 1.0;
+    return {{.low = -limit, .high = limit, .free = true, .still = true},
+            {0.0, sign * limit, 0.0, infinite},
+            {0.0, -sign * limit, -infinite, 0.0}};
+  }
+  if (element.kind() == "window") {
+    const double h = element.number("half_width").value();
+    return {{.slope = 1.0, .low = -h, .high = h}, {.low = h}, {.high = -h}};
+  }
+  if (element.kind() == "relay" || element.kind() == "delayed-relay") return relay_pieces(element);
   if (element.kind() == "impulses") {
     const double band = element.number("band").value();
     return {{.low = -band, .high = band}};
@@ -112,7 +135,11 @@ std::optional<Extent> over_corners(MatrixXd g, VectorXd h, const VectorXd& of) {
 
 class RestRange {
  public:
-  explicit RestRange(const Loop& loop) : loop_(loop), n_(loop.states()), ne_(std::ssize(loop.elements)) {
+  explicit RestRange(const Loop& loop)
+      : loop_(loop),
+        n_(loop.states()),
+        ne_(std::ssize(loop.elements)),
+        in_path_(ne_ > 0 && loop.ports.back().opposes ? ne_ - 1 : ne_) {
     const State typical = typical_sizes(loop);
     scale_.resize(n_ + ne_);
     scale_.head(n_) = Eigen::Map<const VectorXd>(typical.data(), n_);
@@ -123,8 +150,8 @@ class RestRange {
   }
 
   std::optional<Extent> run() {
-    if (ne_ == 0 || !loop_.ports.back().opposes) return std::nullopt;
-    for (Index i = 0; i + 1 < ne_; ++i) {
+    if (ne_ == 0) return std::nullopt;
+    for (Index i = 0; i < in_path_; ++i) {
       pieces_.push_back(straight_pieces(element(i)));
       if (pieces_.back().empty()) return std::nullopt;
     }
@@ -171,11 +198,13 @@ class RestRange {
     if (loop_.delay > 0.0) A += loop_.A_delayed;
     const VectorXd pull = loop_.E * loop_.external;
     for (Index i = 0; i < n_; ++i) all.add_equal(scaled(A.row(i), loop_.B.row(i)), -pull(i));
-    const Port& rubbing = port(ne_ - 1);
-    all.add_equal(scaled(rubbing.C_v, rubbing.D_v), -rubbing.c_v.dot(loop_.external.transpose()));
-    const Extent holds = holding_forces(element(ne_ - 1));
-    all.add_between(unit(ne_ - 1), holds.low, holds.high);
-    for (Index i = 0; i + 1 < ne_; ++i) {
+    if (in_path_ < ne_) {  // friction is the last one
+      const Port& rubbing = port(in_path_);
+      all.add_equal(scaled(rubbing.C_v, rubbing.D_v), -rubbing.c_v.dot(loop_.external.transpose()));
+      const Extent holds = holding_forces(element(in_path_));
+      all.add_between(unit(in_path_), holds.low, holds.high);
+    }
+    for (Index i = 0; i < in_path_; ++i) {
       const StraightPiece& piece = pieces_[static_cast<std::size_t>(i)][choice[static_cast<std::size_t>(i)]];
       const auto [row, shift] = input(i);
       if (piece.still) all.add_equal(row, -shift);
@@ -200,12 +229,13 @@ class RestRange {
     if ((M * u - to).norm() > 1e-8 * (to.norm() + u.norm())) return std::nullopt;
     // The directions of rest are those left over by the rows.
     const MatrixXd left = MatrixXd::Identity(n_ + ne_, n_ + ne_) - pseudo_inverse(M) * M;
-    const PivotedQr qr = pivoted_qr(left, 1e-6);
-    if (qr.rank > most_free) {
+    const PivotedQr qr = pivoted_qr(left, 1e-6);  // relative to the largest
+    const Index rank = left.cwiseAbs().maxCoeff() > 1e-6 ? qr.rank : 0;
+    if (rank > most_free) {
       too_free_ = true;
       return std::nullopt;
     }
-    const MatrixXd N = qr.Q.leftCols(qr.rank);
+    const MatrixXd N = qr.Q.leftCols(rank);
     MatrixXd g(std::ssize(all.below), N.cols());
     VectorXd h(std::ssize(all.below));
     for (Index i = 0; i < g.rows(); ++i) {
@@ -225,7 +255,7 @@ class RestRange {
   }
 
   const Loop& loop_;
-  Index n_, ne_;
+  Index n_, ne_, in_path_;  ///< states, elements, and those of them that stand in the path of a signal
   VectorXd scale_;
   std::vector<std::vector<StraightPiece>> pieces_;
   bool too_free_ = false;  ///< a piece has more directions of rest than corners can be tried for: no answer

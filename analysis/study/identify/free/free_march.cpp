@@ -16,7 +16,8 @@ constexpr int most_events = 200;  ///< between two stops
 
 }  // namespace
 
-FreeMarch::FreeMarch(const FreeMotion& motion, const Element& law, NumberSlopes* slopes, double fineness)
+FreeMarch::FreeMarch(const FreeMotion& motion, const Element& law, NumberSlopes* slopes, double fineness,
+                     std::function<bool()> stop)
     : motion_(motion),
       A_(motion.rig.plant.A),
       B_u_(motion.rig.plant.B_u),
@@ -26,6 +27,7 @@ FreeMarch::FreeMarch(const FreeMotion& motion, const Element& law, NumberSlopes*
       law_(law),
       slopes_(slopes),
       own_slopes_(law),
+      stop_(std::move(stop)),
       fineness_(fineness),
       mobility_(motion.rig.plant.C_v.dot(motion.rig.plant.B_F)),
       n_(plant_states + law.states()),
@@ -205,7 +207,8 @@ bool FreeMarch::cross(double until) {
   events_ = 0;
   const double longest = (until - t_) / fineness_;
   while (t_ < until) {
-    if (--steps_left_ < 0) return false;
+    constexpr long steps_between = 512;
+    if (--steps_left_ < 0 || (steps_left_ % steps_between == 0 && stop_ && stop_())) return false;
     const double left = until - t_;
     double h = std::min(h_, longest);
     if (h > left * (1.0 - 1e-9)) h = left;

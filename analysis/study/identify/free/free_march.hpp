@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "limcycle/analysis/dense_elimination.hpp"
@@ -30,12 +31,13 @@ struct FreeRun {
 class FreeMarch {
  public:
   /// Keeps references. `slopes`, with the values of `law`, may be null: the only derivatives are then those by the
-  /// start.
-  FreeMarch(const FreeMotion& motion, const Element& law, NumberSlopes* slopes, double fineness);
+  /// start. `stop` is asked every few hundred steps.
+  FreeMarch(const FreeMotion& motion, const Element& law, NumberSlopes* slopes, double fineness,
+            std::function<bool()> stop = {});
 
   /// From a state at the start of a window to its end. A contact that slides there has the state of long sliding; one
-  /// at rest carries the force that balances the body or, if it cannot, none. False if the steps shrink to nothing, or
-  /// the law does not stop switching.
+  /// at rest carries the force that balances the body or, if it cannot, none. False if the steps shrink to nothing, the
+  /// law does not stop switching, or it is stopped.
   bool run(const FreeWindow& window, const Eigen::Vector2d& start, FreeRun& result);
 
  private:
@@ -79,6 +81,7 @@ class FreeMarch {
   const Element& law_;
   NumberSlopes* slopes_;
   ElementSlopes own_slopes_;
+  std::function<bool()> stop_;
   double fineness_, mobility_;  ///< 1/kg: rate of the rubbing velocity for a unit force
   Eigen::Index n_;
   State scale_;                 ///< of the states

@@ -12,8 +12,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 FreeResponse::FreeResponse(const Element& law, std::vector<LawNumber> numbers, std::vector<std::size_t> own_rows,
-                           Shooting shooting)
-    : slopes_(number_slopes_of(law, std::move(numbers), std::move(own_rows))), shooting_(shooting) {}
+                           Shooting shooting, std::function<bool()> stop)
+    : slopes_(number_slopes_of(law, std::move(numbers), std::move(own_rows))),
+      shooting_(shooting),
+      stop_(std::move(stop)) {}
 
 /// A window with the state at its start fitted.
 struct FreeResponse::WindowFit {
@@ -120,7 +122,7 @@ bool FreeResponse::run(const Element& law, const std::vector<Series>& series, co
                        MatrixXd* slopes, double fineness) {
   const FreeMotion& motion = *series.front().record->motion;
   slopes_->take(law);
-  FreeMarch march(motion, law, slopes != nullptr ? slopes_.get() : nullptr, fineness);
+  FreeMarch march(motion, law, slopes != nullptr ? slopes_.get() : nullptr, fineness, stop_);
   const auto& list = windows(motion);
   for (std::size_t w = 0; w < list.size(); ++w) {
     const auto kept = kept_.find({&motion, w});

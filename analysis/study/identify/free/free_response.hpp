@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -22,9 +23,9 @@ constexpr std::string_view to_string(Shooting shooting) { return shooting_names[
 /// exact for the gradient of the sum of squares). Intervals and profiles are then those with the starts fitted.
 class FreeResponse {
  public:
-  /// For a law of that kind and derivatives by these numbers.
-  FreeResponse(const Element& law, std::vector<LawNumber> numbers, std::vector<std::size_t> own_rows,
-               Shooting shooting);
+  /// For a law of that kind and derivatives by these numbers. `stop` is asked within each simulation.
+  FreeResponse(const Element& law, std::vector<LawNumber> numbers, std::vector<std::size_t> own_rows, Shooting shooting,
+               std::function<bool()> stop = {});
 
   /// One measured quantity of a motion.
   struct Series {
@@ -35,8 +36,8 @@ class FreeResponse {
   /// Fills the entries of all `series` of one motion, differences over the noise, and the rows of `slopes` if that is
   /// not null, a column for each number. `known`: 1 for the entries to which the starts are fitted, 0 for others; null:
   /// all. A run with fewer than four known entries is fitted to all of its own; its entries are then enlarged to the
-  /// size that those of n rows have before two states are fitted to them. False if the motion cannot be computed. Cost:
-  /// two to four simulations with derivatives.
+  /// size that those of n rows have before two states are fitted to them. False if the motion cannot be computed, or it
+  /// is stopped. Cost: two to four simulations with derivatives.
   bool run(const Element& law, const std::vector<Series>& series, const Eigen::VectorXd* known,
            Eigen::VectorXd& entries, Eigen::MatrixXd* slopes, double fineness);
 
@@ -54,6 +55,7 @@ class FreeResponse {
 
   std::unique_ptr<NumberSlopes> slopes_;
   Shooting shooting_;
+  std::function<bool()> stop_;
   std::map<std::pair<const FreeMotion*, std::size_t>, Eigen::Vector2d> kept_, last_;
 };
 

@@ -8,6 +8,7 @@
 #include "limcycle/analysis/study/remedy/linear_costs.hpp"
 #include "limcycle/analysis/study/remedy/rest_range.hpp"
 #include "limcycle/models/element/memoryless/dead_zone.hpp"
+#include "limcycle/models/element/memoryless/quantizer.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -74,9 +75,39 @@ TEST_CASE("rest range: a dead zone, a limit and a compensation widen it by what 
   check_range(parts, -0.7, 0.7);  // at most (Fs + level)/kp
 }
 
+TEST_CASE("rest range: an integral that is limited, or frozen outside a band, leaves an error") {
+  LoopParts parts = position_loop(3.0, 4.0, 6.0);
+  std::get<Pid>(parts.controller).integral_limit = 0.9;
+  check_range(parts, -0.2, 0.2);  // clamped at the limit: (Fs - limit)/kp
+  std::get<Pid>(parts.controller).integral_limit = 2.0;
+  check_range(parts, 0.0, 0.0);  // it breaks the body loose from anywhere else
+  parts = position_loop(3.0, 4.0, 6.0);
+  std::get<Pid>(parts.controller).integral_band = 0.1;
+  const auto range = rest_range(build_loop(parts));  // outside the band any error meets an integral that holds it
+  REQUIRE(range);
+  CHECK(std::isinf(range->low));
+  CHECK(std::isinf(range->high));
+}
+
+TEST_CASE("rest range: relays without friction rest where they do not switch") {
+  const auto check = [](Relay<double> relay, double gain, double most) {
+    const auto range = rest_range(test::forward(relay, {gain}, {1.0, 3.0, 3.0, 1.0}));
+    REQUIRE(range);
+    CHECK(range->low == Approx(-most).margin(1e-9));
+    CHECK(range->high == Approx(most).margin(1e-9));
+  };
+  check(test::relay(1.0), 6.0, 0.0);            // it holds the input at 0
+  check(test::relay(1.0, 7.0), 6.0, 6.0);       // on for ever: the output 6 does not reach the hysteresis
+  check(test::relay(1.0, 0.0, 0.5), 6.0, 0.0);  // off
+  const auto none = rest_range(test::forward(test::relay(1.0, 2.0), {6.0}, {1.0, 3.0, 3.0, 1.0}));
+  CHECK_FALSE(none);  // it switches wherever it stands
+}
+
 TEST_CASE("rest range: no answer where nothing rests or an element is of another kind") {
   CHECK_FALSE(rest_range(test::belt(lugre())));  // it slides
-  CHECK_FALSE(rest_range(test::forward(test::relay(1.0), {1.0}, {1.0, 3.0, 3.0, 1.0})));
+  Quantizer<double> quantizer;
+  quantizer.step = 0.1;
+  CHECK_FALSE(rest_range(test::forward(quantizer, {1.0}, {1.0, 3.0, 3.0, 1.0})));
 }
 
 TEST_CASE("linear costs: margins of a mass under PD control, in closed form") {

@@ -296,3 +296,18 @@ TEST_CASE("impulses in the place of integral action bring a servo within their b
   for (const double size : sizes) CHECK(size == Approx(sizes.front()).epsilon(0.02));
   for (const double edge : edges) CHECK(edge == Approx(edges.front()).epsilon(0.02));
 }
+
+TEST_CASE("remedy: an integral dead zone need only hide half of what a slip is long, in closed form") {
+  // While the integral is slow and the slip overdamped, a slip leads from Fs to Fc = kp e + I at the same I: over
+  // (Fs - Fc)/kp. It begins where |e| just exceeds the half-width h, and ends within the dead zone for good if it is
+  // not longer than 2 h. Derived. A slip without damping would be twice as long, so that h = (Fs - Fc)/kp is always
+  // enough.
+  LoopParts parts = servo_parts(coulomb(1.5, 1.0));
+  parts.plant = Mass{0.01, 0.0, 0.0};
+  parts.controller = test::pid(3.0, 0.5, 6.0);
+  const RemedyReport report =
+      remedies(parts, {of_controller(parts, &Pid::integral_dead_zone, Measure::displacement, RemedyCandidate::Way::up)},
+               quick());
+  REQUIRE(report.remedies.front().ends == true);
+  CHECK(report.remedies.front().value == Approx(0.5 * (1.5 - 1.0) / 3.0).epsilon(0.01));
+}
