@@ -77,7 +77,7 @@ void March::reset() {
 Eigen::MatrixXd March::smooth_transition() {
   const auto n = static_cast<Eigen::Index>(x_.size());
   if (step_.t1 == step_.t0) return Eigen::MatrixXd::Identity(n, n);
-  if (kind_ == StepperKind::exact) return std::get<ExactStepper>(stepper_->moving).last.topLeftCorner(n, n);
+  if (kind_ == StepperKind::exact) return std::get<ExactStepper>(stepper_->moving).exponential().topLeftCorner(n, n);
   return transition(field_, step_);
 }
 

@@ -17,10 +17,14 @@ namespace limcycle {
 /// Matrix exponentials instead of a stepper.
 struct ExactStepper {
   AffineFlow flow;
-  State tolerance;         ///< permitted error of the cubic through the ends of a step
-  Eigen::MatrixXd last{};  ///< exponential of the last step, tried or repeated
-  State rate_at_end, middle;
+  State tolerance;                ///< permitted error of the cubic through the ends of a step
+  double length = 0.0;            ///< of the last step, tried or repeated
+  std::optional<int> power = {};  ///< if that was 2^power s
+  State rate_at_end = {}, middle = {};
   int at_floor = 0;  ///< successive steps that were too long although the shortest possible
+
+  /// Exponential of the last step, in the modes of the field.
+  Eigen::MatrixXd exponential() { return power ? flow.over_power(*power) : flow.over(length); }
 };
 
 /// A controlled stepper of Odeint, and a plain one for repeated steps: the former may keep the rate of another point.

@@ -26,7 +26,7 @@ auto implicit_system(LoopField& field) {
 AnyStepper make_stepper(StepperKind kind, const ErrorWeights& w, LoopField& field) {
   switch (kind) {
     case StepperKind::exact:
-      return ExactStepper{AffineFlow(field), typical_sizes(field.loop()), {}, {}, {}};
+      return ExactStepper{AffineFlow(field), typical_sizes(field.loop())};
     case StepperKind::dopri5:
       return ExplicitStepper<ControlledDopri5>{make_dopri5(w)};
     case StepperKind::fehlberg78:
@@ -79,9 +79,10 @@ bool March::try_exact(double& dt) {
   const int longest = 60 + static_cast<int>(std::log2(weights_.time));
   const int k = std::min(longest, static_cast<int>(std::floor(std::log2(dt))));  // at rest steps grow without limit
   const double h = truncated_ ? dt : std::ldexp(1.0, k);
-  exact.last = truncated_ ? exact.flow.over(h) : exact.flow.over_power(k);
-  AffineFlow::apply(exact.last, x_, step_.x1);
-  AffineFlow::apply(truncated_ ? exact.flow.over(0.5 * h) : exact.flow.over_power(k - 1), x_, exact.middle);
+  exact.length = h;
+  exact.power = truncated_ ? std::nullopt : std::optional(k);
+  exact.flow.move(h, x_, step_.x1);
+  exact.flow.move(0.5 * h, x_, exact.middle);
   field_.rate(step_.x1, exact.rate_at_end, t_ + h);
   double error = 0.0;
   for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -134,8 +135,9 @@ void March::repeat(double h, State& out) {
   std::visit(
       [&]<class S>(S& stepper) {
         if constexpr (std::is_same_v<S, ExactStepper>) {
-          stepper.last = stepper.flow.over(h);
-          AffineFlow::apply(stepper.last, step_.x0, out);
+          stepper.length = h;
+          stepper.power.reset();
+          stepper.flow.move(h, step_.x0, out);
         } else if constexpr (std::is_same_v<S, ControlledRodas5p>) {
           stepper.stepper().repeat_step(implicit_system(field_), out, h, repeat_error_);
         } else {

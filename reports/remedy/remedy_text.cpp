@@ -105,7 +105,8 @@ Document remedy_document(const std::string& title, const RemedyReport& report, c
   if (!table.rows.empty()) {
     out.add("What ends it", table);
     out += wrapped(
-        "*: no other remedy is at least as good in every cost and better in one. Each value is the one "
+        "*: no other remedy is at least as good in every cost (an unknown one counts as the worst) and better in one. "
+        "Each value is the one "
         "nearest to the present at which the loop does not hunt, confirmed by simulations on both sides of the "
         "edge: choose a value well beyond it.");
     out.add("What it costs there", remedy_cost_table(report, units));

@@ -64,7 +64,9 @@ Fs = 1.5
 amplitude = [1e-3]
 frequency = [1.0]
 [[claim]]
-expression = "cycle.period > 0"
+id = "x"
+quantity = "period"
+formula = "1.0"
 )"),
                     data = "velocity,force\n0.01,1.2\n0.1,1.0\n1.0,1.4\n", there = scratch.put("sweep.csv", data);
   std::filesystem::create_symlink("sweep.csv", scratch.file("link.csv"));

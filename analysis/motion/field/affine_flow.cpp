@@ -14,18 +14,34 @@ bool AffineFlow::applies(const Loop& loop) {
 
 namespace {
 
-/// exp(A) as I + X, X = exp(A) - I by its series on A/2^s, then X <- 2 X + X^2 s times: components that A leaves
-/// unchanged stay unchanged to the last bit (squaring exp(A/2^s) itself would multiply the rounding of its ones by
-/// 2^s).
+constexpr double largest_norm = 0.5;  ///< of a matrix whose exponential is that series
+constexpr int terms = 15;
+
+double norm_of(const MatrixXd& A) { return A.cwiseAbs().colwise().sum().maxCoeff(); }
+
+/// How often A must be halved.
+int halvings(const MatrixXd& A) {
+  const double norm = norm_of(A);
+  return norm > largest_norm && std::isfinite(norm) ? static_cast<int>(std::ceil(std::log2(norm / largest_norm))) : 0;
+}
+
+/// X = exp(B) - I of a small matrix, by its series.
+MatrixXd series(const MatrixXd& B) {
+  const MatrixXd I = MatrixXd::Identity(B.rows(), B.cols());
+  MatrixXd X = B / (terms + 1.0);
+  for (int k = terms; k >= 1; --k) X = (B / k * (I + X)).eval();
+  return X;
+}
+
+/// exp(2 B) - I of X = exp(B) - I: components that B leaves unchanged stay unchanged to the last bit (squaring exp(B)
+/// itself would double the rounding of its ones).
+MatrixXd doubled(const MatrixXd& X) { return 2.0 * X + X * X; }
+
 MatrixXd exponential(const MatrixXd& A) {
-  const Index n = A.rows();
-  const double norm = A.cwiseAbs().colwise().sum().maxCoeff();
-  const int s = norm > 0.5 && std::isfinite(norm) ? static_cast<int>(std::ceil(std::log2(norm / 0.5))) : 0;
-  const MatrixXd B = A * std::ldexp(1.0, -s), I = MatrixXd::Identity(n, n);
-  MatrixXd X = B / 16.0;
-  for (int k = 15; k >= 1; --k) X = (B / k * (I + X)).eval();
-  for (int i = 0; i < s; ++i) X = (2.0 * X + X * X).eval();
-  return I + X;
+  const int s = halvings(A);
+  MatrixXd X = series(A * std::ldexp(1.0, -s));
+  for (int i = 0; i < s; ++i) X = doubled(X);
+  return MatrixXd::Identity(A.rows(), A.cols()) + X;
 }
 
 }  // namespace
@@ -45,7 +61,16 @@ AffineFlow::InMode& AffineFlow::present() {
   fresh.generator = MatrixXd::Zero(n + 1, n + 1);
   fresh.generator.topLeftCorner(n, n) = J;
   fresh.generator.topRightCorner(n, 1) = Eigen::Map<const Eigen::VectorXd>(constant.data(), n);
+  fresh.least = -halvings(fresh.generator);
   return modes_.emplace(std::move(key), std::move(fresh)).first->second;
+}
+
+/// exp(M 2^k s) - I for k >= mode.least, from those before it.
+const MatrixXd& AffineFlow::doubled_to(InMode& mode, int k) {
+  if (mode.doublings.empty()) mode.doublings.push_back(series(mode.generator * std::ldexp(1.0, mode.least)));
+  while (mode.least + static_cast<int>(mode.doublings.size()) <= k)
+    mode.doublings.push_back(doubled(mode.doublings.back()));
+  return mode.doublings[static_cast<std::size_t>(k - mode.least)];
 }
 
 MatrixXd AffineFlow::over(double h) {
@@ -61,7 +86,29 @@ const MatrixXd& AffineFlow::over_power(int k) {
   InMode& mode = present();
   const auto known = mode.powers.find(k);
   if (known != mode.powers.end()) return known->second;
-  return mode.powers.emplace(k, exponential(mode.generator * std::ldexp(1.0, k))).first->second;
+  const Index n = mode.generator.rows();
+  const MatrixXd X = k < mode.least ? series(mode.generator * std::ldexp(1.0, k)) : doubled_to(mode, k);
+  return mode.powers.emplace(k, MatrixXd::Identity(n, n) + X).first->second;
+}
+
+void AffineFlow::move(double h, const State& x, State& out) {
+  InMode& mode = present();
+  const Index n = mode.generator.rows() - 1;
+  Eigen::VectorXd y(n + 1);
+  y << Eigen::Map<const Eigen::VectorXd>(x.data(), n), 1.0;
+  if (std::isfinite(h) && h > 0.0)
+    for (int k = std::ilogb(h); k >= mode.least; --k) {
+      const double part = std::ldexp(1.0, k);
+      if (h < part) continue;
+      y += doubled_to(mode, k) * y;
+      h -= part;  // exactly: the leading digit of h
+    }
+  Eigen::VectorXd term = y;
+  for (int k = 1; h > 0.0 && k <= terms + 1; ++k) {
+    term = mode.generator * term * (h / k);
+    y += term;
+  }
+  out.assign(y.begin(), y.begin() + n);
 }
 
 MatrixXd AffineFlow::over_step(double h) {

@@ -148,7 +148,7 @@ class CauseStudy {
     const auto range = falling_range_of(*subject.element);
     if (!range) return {};
     const std::string speed = short_number(range->end, 3) + " m/s";
-    return range->for_ever ? ", 99 % of it below " + speed : " up to " + speed;
+    return range->for_ever ? ", 99 % of the fall below " + speed : " up to " + speed;
   }
 
   const LoopParts& parts_;
