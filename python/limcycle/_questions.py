@@ -117,7 +117,7 @@ def describing_function(nonlinearity: Any, amplitude: Any) -> Any:
     try:
         law = element_of(nonlinearity, "nonlinearity")
     except CaseError:  # of python-control, but none that a case can hold
-        if not callable(nonlinearity):
+        if not callable(nonlinearity) or not getattr(nonlinearity, "_isstatic", lambda: True)():
             raise
         law = nonlinearity
     if isinstance(law, Mapping):

@@ -69,8 +69,19 @@ class Nonlinearities(unittest.TestCase):
                     lambda F: limcycle.Loop(plant=([1.0], [1.0, 1.0]), element=F)):
             with self.assertRaisesRegex(limcycle.CaseError, "Own: must be one of saturation_nonlinearity"):
                 ask(Own())
-            with self.assertRaisesRegex(limcycle.CaseError, "from -1 to 2: must be symmetric"):
-                ask(saturation_from_minus_one_to_two())
+        with self.assertRaisesRegex(limcycle.CaseError, "from -1 to 2: must be symmetric"):
+            limcycle.Loop(plant=([1.0], [1.0, 1.0]), element=saturation_from_minus_one_to_two())
+
+    def test_what_a_case_cannot_hold_is_asked_itself(self):
+        def symmetric(limit, amplitude):  # of a saturation
+            u = min(limit / amplitude, 1.0)
+            return 2.0 / np.pi * (np.arcsin(u) + u * np.sqrt(1.0 - u * u))
+
+        one_sided, sizes = saturation_from_minus_one_to_two(), np.array([0.5, 1.5, 3.0])
+        exact = [0.5 * (symmetric(1.0, A) + symmetric(2.0, A)) for A in sizes]
+        np.testing.assert_allclose(limcycle.describing_function(one_sided, sizes), exact, atol=1e-4)
+        # That of python-control is exact only where both limits are exceeded, or none: 1 instead of 0.89 at 1.5.
+        np.testing.assert_allclose(control.describing_function(one_sided, sizes[[0, 2]]), np.array(exact)[[0, 2]], atol=1e-4)
 
 
 def saturation_from_minus_one_to_two():
