@@ -24,27 +24,27 @@ def save(result: Any, path: Any) -> None:
     """The figure of result.plot(), in a file."""
     if str(path).endswith(".pgf") and shutil.which(plt.rcParams["pgf.texsystem"]) is None:
         raise ValueError(f"PGF needs {plt.rcParams['pgf.texsystem']} of LaTeX, which is not installed: save .pdf or .png")
-    before = set(plt.get_fignums())
-    try:
-        drawn = np.ravel(result.plot())[0].figure
-        drawn.savefig(path, bbox_inches="tight")
-    finally:
-        for number in set(plt.get_fignums()) - before:
-            plt.close(number)
+    _draw(result, path)
 
 
 def svg(result: Any) -> str:
     """The same as SVG; empty where there is nothing to draw."""
     drawn = io.StringIO()
-    before = set(plt.get_fignums())
     try:
-        np.ravel(result.plot())[0].figure.savefig(drawn, format="svg", bbox_inches="tight", metadata={"Date": None})
+        _draw(result, drawn, format="svg", metadata={"Date": None})
     except ValueError:
         return ""
+    return drawn.getvalue()[drawn.getvalue().find("<svg"):]
+
+
+def _draw(result: Any, into: Any, **how: Any) -> None:
+    """result.plot(), written to a file; no figure stays open."""
+    before = set(plt.get_fignums())
+    try:
+        np.ravel(result.plot())[0].figure.savefig(into, bbox_inches="tight", **how)
     finally:
         for number in set(plt.get_fignums()) - before:
             plt.close(number)
-    return drawn.getvalue()[drawn.getvalue().find("<svg"):]
 
 
 def _window(ax: Any, points: Sequence[complex]) -> None:

@@ -10,7 +10,7 @@
 namespace limcycle {
 namespace {
 
-std::string unit_of(const ParameterMargin& one) { return one.parameter.unit == "1" ? "" : one.parameter.unit; }
+std::string unit_of(const MarginParameter& one) { return one.unit == "1" ? "" : one.unit; }
 
 /// Value with its accurate digits, at most six.
 std::string side_place(const MarginSide& side) {
@@ -65,8 +65,7 @@ std::string in_words(const Change& change) {
   const auto& [of, to] = change;
   const bool raise = std::abs(to->value) > std::abs(of->value);
   return fmt::format("{} {} from {} to {} ({}{})", raise ? "raise" : "lower", of->path, with_digits(of->value, 4),
-                     Units::attach(side_place(*to), of->unit == "1" ? "" : of->unit), size_of(to->value, of->value),
-                     kind_of(*to));
+                     Units::attach(side_place(*to), unit_of(*of)), size_of(to->value, of->value), kind_of(*to));
 }
 
 /// The least change that ends or begins hunting; of a loop that hunts, one after which it diverges only where there is
@@ -125,8 +124,8 @@ Table margin_table(const MarginReport& report, bool friction) {
     if (one.parameter.friction != friction) continue;
     const double own = one.parameter.value;
     table.rows.push_back({short_path(one.parameter.path),  // 80 columns
-                          Units::attach(with_digits(own, 4), unit_of(one)), cell(one.up, own), cell(one.down, own),
-                          std::isfinite(one.distance()) ? as_percent(one.distance()) : "-"});
+                          Units::attach(with_digits(own, 4), unit_of(one.parameter)), cell(one.up, own),
+                          cell(one.down, own), std::isfinite(one.distance()) ? as_percent(one.distance()) : "-"});
   }
   return table;
 }

@@ -5,6 +5,7 @@ import os
 import pickle
 import tempfile
 import unittest
+import unittest.mock
 import xml.etree.ElementTree as ElementTree
 
 import limcycle
@@ -213,10 +214,8 @@ class Documents(unittest.TestCase):
         self.assertNotIn("<svg", limcycle.dissipativity(limcycle.laws.coulomb(Fs=1.0, Fc=1.0))._repr_html_())
 
     def test_a_figure_of_latex_needs_latex(self):
-        import shutil
-
-        if shutil.which("xelatex") is None:
-            with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, "PGF needs xelatex"):
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch("shutil.which", return_value=None):
+            with self.assertRaisesRegex(ValueError, "PGF needs xelatex"):
                 limcycle.simulate(relay_loop(), 2.0, sample=0.1).save(os.path.join(folder, "figure.pgf"))
 
 

@@ -128,7 +128,7 @@ MarginSide SideSearch::beyond(const Lost& lost, std::optional<Cycle>& other, dou
       const std::string where = first && !diverges ? "; beyond it" : "; at " + short_number(next, 5);
       MarginSide side = found(What::ends, lost, lost.why + where + after);
       side.diverges = diverges;
-      side.diverges_at = next;
+      if (diverges) side.diverges_at = next;
       // Where the branch turns back there is no such cycle beyond.
       if (first || lost.event == BranchEvent::Type::fold) return side;
       side.why = "the cycle is lost at " + short_number(lost.value, 5) + ": " + lost.why + "; at " +
