@@ -71,6 +71,7 @@ void March::begin(State x, double t, std::optional<Section> section) {
 void March::reset() {
   dt_ = 0.0;
   steps_ = events_ = 0;
+  if (stepper_->clocked) stepper_->clocked->reset();
 }
 
 /// Derivative of the end of the present step over its start, before any switch.
@@ -161,6 +162,7 @@ Status March::step(double t_end) {
   double dt = std::min({dt_, dt_max_, t_end - t_, due});
   bool shortened = dt < dt_;  // by the requested end, not by the error: the next step may be as long as before
   truncated_ = dt == t_end - t_ || dt == due;
+  if (auto& clocked = stepper_->clocked) clocked->in_use = dt == due && !stepper_->waits && clocked->is_due();
   double within_layer = infinite;
   for (halvings_ = 0;; ++halvings_, dt = 0.5 * (step_.t1 - step_.t0)) {
     const double tried = dt;

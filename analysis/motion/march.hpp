@@ -96,6 +96,7 @@ class March {
   bool creeps(std::size_t guard) const;
   bool try_step(double& dt);
   bool try_exact(double& dt);
+  bool try_clocked(double& dt);
   double shortest_step() const;
   Status accepted_step(double& dt);
   bool step_at_floor(double shortest, double& dt);

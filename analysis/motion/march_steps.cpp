@@ -41,15 +41,17 @@ AnyStepper make_stepper(StepperKind kind, const ErrorWeights& w, LoopField& fiel
 }  // namespace
 
 March::Stepper::Stepper(StepperKind kind, const ErrorWeights& weights, LoopField& field)
-    : moving(make_stepper(kind, weights, field)) {}
+    : moving(make_stepper(kind, weights, field)) {
+  if (kind == StepperKind::rodas5p && field.has_clocks()) clocked.emplace(ClockedDopri5{make_dopri5(weights)});
+}
 
 void March::Stepper::restart() {
-  std::visit(
-      []<class S>(S& s) {
-        if constexpr (requires { s.reset(); }) s.reset();
-        if constexpr (requires { s.controlled.reset(); }) s.controlled.reset();
-      },
-      any());
+  const auto fresh = []<class S>(S& s) {
+    if constexpr (requires { s.reset(); }) s.reset();
+    if constexpr (requires { s.controlled.reset(); }) s.controlled.reset();
+  };
+  std::visit(fresh, moving);
+  if (waiting) std::visit(fresh, *waiting);
 }
 
 void March::wait_patiently() {
@@ -113,6 +115,12 @@ bool March::try_step(double& dt) {
     return is_finite(step_.x1);
   }
   const double tried = dt;
+  if (stepper_->clocked && stepper_->clocked->in_use) {
+    if (try_clocked(dt)) return true;
+    step_.x1 = x_;
+    step_.t1 = t_;
+    dt = tried;
+  }
   const auto result = std::visit(
       [&]<class S>(S& stepper) {
         if constexpr (std::is_same_v<S, ExactStepper>)
@@ -130,8 +138,27 @@ bool March::try_step(double& dt) {
   return false;
 }
 
+/// A step of ClockedDopri5.
+bool March::try_clocked(double& dt) {
+  auto& clocked = *stepper_->clocked;
+  const auto result =
+      clocked.controlled.try_step(right_side(field_), step_.x0, step_.dx0, step_.t1, step_.x1, clocked.rate_at_end, dt);
+  if (result == boost::numeric::odeint::success) field_.keep_held(step_.x0, step_.x1);
+  if (result == boost::numeric::odeint::success && is_finite(step_.x1)) {
+    clocked.pause = ClockedDopri5::shortest_pause;
+    return true;
+  }
+  clocked.refused();
+  return false;
+}
+
 /// The same step with length h: a whole step of the method, not its interpolant.
 void March::repeat(double h, State& out) {
+  if (stepper_->clocked && stepper_->clocked->in_use) {
+    stepper_->clocked->plain.do_step(right_side(field_), step_.x0, step_.dx0, step_.t0, out,
+                                     stepper_->clocked->rate_at_end, h);
+    return field_.keep_held(step_.x0, out);
+  }
   std::visit(
       [&]<class S>(S& stepper) {
         if constexpr (std::is_same_v<S, ExactStepper>) {
@@ -169,7 +196,8 @@ Status March::accepted_step(double& dt) {
 bool March::ends_within_error() {
   constexpr double most = 10.0;  // times the tolerance
   const double h = step_.t1 - step_.t0;
-  if (kind_ != StepperKind::rodas5p || h <= 8.0 * shortest_step()) return true;
+  const bool is_explicit = kind_ != StepperKind::rodas5p || (stepper_->clocked && stepper_->clocked->in_use);
+  if (is_explicit || h <= 8.0 * shortest_step()) return true;
   return weights_.norm(step_.x0, step_.x1, repeat_error_) <= most;
 }
 

@@ -133,8 +133,8 @@ constexpr std::array typical_rows{
     TypicalRow{"plant", "state-space", "B", {"[[0.0], [1.0]]", ""}},
     TypicalRow{"plant", "state-space", "C", {"[[1.0, 0.0]]", ""}},
 
-    TypicalRow{"sampled controller", "", "sample_time", {"0.001", "a tenth of the shortest time that counts"}},
-    TypicalRow{"sampled controller", "", "computation_delay", {"0.0005", "0 to sample_time"}},
+    TypicalRow{"sampled controller", "", "sample_time", {"0.01", "a tenth of the shortest time that counts"}},
+    TypicalRow{"sampled controller", "", "computation_delay", {"0.005", "0 to sample_time"}},
     TypicalRow{"sampled controller", "", "input_step", {"1e-6", "a count of the encoder"}},
     TypicalRow{"sampled controller", "cascade", "velocity_window", {"1.0", "1 to 10"}},
     TypicalRow{"sampled controller", "cascade", "position_every", {"4.0", "1 to 10"}},

@@ -79,6 +79,7 @@ class LoopField {
   std::size_t owner(std::size_t guard) const;
   /// Time until the next switch by an element's own clock, s; infinite without one.
   double due(const State& x) const;
+  bool has_clocks() const { return !clocks_.empty(); }
   /// True if nothing changes at these rates but the states of elements with a clock.
   bool only_clocks_run(const State& dx) const;
   /// Of guards with these values, the one of the clock that runs down first.

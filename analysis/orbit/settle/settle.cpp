@@ -17,6 +17,8 @@
 #include "limcycle/analysis/orbit/settle/to_cycle/cycle_tries.hpp"
 #include "limcycle/analysis/orbit/settle/watch/switching_watch.hpp"
 #include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
+#include "limcycle/analysis/orbit/settle/watch/wind_up_watch.hpp"
+#include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
 namespace {
@@ -43,6 +45,7 @@ class Settling {
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
         stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol),
         switching_(loop, loop_sizes(loop)),
+        wind_up_(loop),
         rubs_elsewhere_(loop.ports.back().rubs && !loop.continuous && !parallel(loop.ports.back().C, loop.C_y)),
         tries_(loop, options) {}
 
@@ -127,6 +130,13 @@ class Settling {
   void read() {
     ++readings_;
     if (auto still = stillness_.read(march_.t(), march_.x(), field_)) return come_to(*still);
+    if (const auto forecast = wind_up_.read(march_.t(), field_)) {
+      const double horizon = march_.t() * most_readings / static_cast<double>(readings_);
+      if (forecast->half > horizon)
+        return decide(Outcome::undecided, "held while the controller winds up, at a rate that takes about " +
+                                              short_number(forecast->whole, 2) +
+                                              " s to break it away: more samples than are followed");
+    }
     if (readings_ <= most_readings) return;
     look_for_irregular();
     if (!decided_) decide(Outcome::undecided, "undecided after " + std::to_string(most_readings) + " samples");
@@ -376,6 +386,7 @@ class Settling {
   March march_;
   StillnessWatch stillness_;
   SwitchingWatch switching_;
+  WindUpWatch wind_up_;
   /// A body behind a spring may be held for long while y swings on: then its own displacement shows a period.
   Swings of_y_, of_rubbing_, of_large_{TurningPoints(true)};
   const TurningPoints& turning_ = of_y_.turning;

@@ -1,10 +1,7 @@
 #include "limcycle/analysis/study/claims/limit_cycles/cycle_claims.hpp"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_roots.h>
-
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <memory>
 
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/element/memoryless/cubic.hpp"
@@ -29,8 +26,6 @@ Law with_levels(double Fs, double Fc) {
   law.Fc = law.Fc_minus = Fc;
   return law;
 }
-
-double call(double x, void* f) { return (*static_cast<const std::function<double(double)>*>(f))(x); }
 
 }  // namespace
 
@@ -143,20 +138,23 @@ std::optional<ShootingResult> reached_cycle(const Loop& loop, double displacemen
   return std::nullopt;
 }
 
-double zero_between(const std::function<double(double)>& f, double low, double high) {
-  static const auto handler_off = gsl_set_error_handler_off();
-  static_cast<void>(handler_off);
-  using Solver = std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)>;
-  const Solver solver(gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
-  auto function = f;
-  gsl_function wrapped = {call, &function};
-  if (gsl_root_fsolver_set(solver.get(), &wrapped, low, high) != GSL_SUCCESS) return std::nan("");
-  for (int i = 0; i < 200; ++i) {
-    if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) return std::nan("");
-    const double from = gsl_root_fsolver_x_lower(solver.get()), to = gsl_root_fsolver_x_upper(solver.get());
-    if (gsl_root_test_interval(from, to, 0.0, 4e-16) == GSL_SUCCESS) break;
-  }
-  return gsl_root_fsolver_root(solver.get());
+double zero_between(const std::function<double(double)>& f, double low, double high, double accuracy) {
+  const double at_low = f(low), at_high = f(high);
+  if (at_low == 0.0) return low;
+  if (at_high == 0.0) return high;
+  if (!(at_low * at_high < 0.0)) return std::nan("");
+  bool finite = true;
+  const auto checked = [&](double x) {
+    const double value = f(x);
+    finite = finite && std::isfinite(value);
+    return value;
+  };
+  const auto narrow = [&](double a, double b) {
+    return !finite || std::abs(b - a) <= accuracy * std::max(std::abs(a), std::abs(b));
+  };
+  std::uintmax_t steps = 200;
+  const auto [from, to] = boost::math::tools::toms748_solve(checked, low, high, at_low, at_high, narrow, steps);
+  return finite ? 0.5 * (from + to) : std::nan("");
 }
 
 std::vector<double> zeros_on_grid(const std::function<double(double)>& f, double low, double high, int points) {

@@ -55,8 +55,9 @@ Settled settled(const Loop& loop, double displacement, const ClaimOptions& optio
 std::optional<ShootingResult> reached_cycle(const Loop& loop, double displacement, const std::string& where,
                                             const ClaimOptions& options, ClaimChecks& checks);
 
-/// Zero of a continuous function between two points where it has opposite signs (Brent, GSL); NaN if it has not.
-double zero_between(const std::function<double(double)>& f, double low, double high);
+/// Zero of a continuous function between two points where it has opposite signs, to a relative `accuracy` (algorithm
+/// 748 of Alefeld, Potra and Shi 1995, Boost.Math); NaN if it has not.
+double zero_between(const std::function<double(double)>& f, double low, double high, double accuracy = 4e-16);
 /// All zeros that appear as a change of sign on a grid of `points` (logarithmic if low > 0).
 std::vector<double> zeros_on_grid(const std::function<double(double)>& f, double low, double high, int points);
 

@@ -1,0 +1,32 @@
+#pragma once
+#include <optional>
+
+#include "limcycle/analysis/motion/field/loop_field.hpp"
+
+namespace limcycle {
+
+/// Watches a body that stays on its bristles while a sampled controller winds up: it creeps with every sample, so that
+/// none of them may be leapt over, and may do so for more samples than can be followed. Seen as such is a friction
+/// force that has grown at the same rate, to 1 %, in two windows of 100,000 switches of clocks each.
+class WindUpWatch {
+ public:
+  explicit WindUpWatch(const Loop& loop);
+
+  /// Times at which the force reaches half of its typical size, and all of it, at the rate that it has, s.
+  struct Forecast {
+    double half, whole;
+  };
+  /// After a switch of a clock; empty unless the body winds up.
+  std::optional<Forecast> read(double t, const LoopField& field);
+
+ private:
+  static constexpr long window = 100'000;
+
+  std::optional<std::size_t> rubs_;  ///< the element that rubs last
+  double size_ = 0.0;                ///< of its force
+  long readings_ = 0;
+  std::optional<double> before_, slope_;  ///< the force at the end of the last window, and its rate in it
+  double since_ = 0.0;
+};
+
+}  // namespace limcycle
