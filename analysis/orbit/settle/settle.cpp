@@ -27,7 +27,7 @@ namespace {
 constexpr long steps_of_tries = 200'000, tries_per_step = 3;
 /// The same for a sampled loop, most cycles of which are not locked: this constant, plus a part of its steps.
 constexpr long steps_of_sampled_tries = 10'000, sampled_steps_per_try = 8;
-constexpr long most_readings = 5'000'000, most_sampled_steps = 4'000'000;
+constexpr long most_sampled_steps = 4'000'000;
 constexpr long most_leapt_steps = 1'000'000;
 constexpr double large_swing =
     0.05;  ///< of the range of y and the rest: a swing below it may be the ringing of a bristle
@@ -131,15 +131,16 @@ class Settling {
     ++readings_;
     if (auto still = stillness_.read(march_.t(), march_.x(), field_)) return come_to(*still);
     if (const auto forecast = wind_up_.read(march_.t(), field_)) {
-      const double horizon = march_.t() * most_readings / static_cast<double>(readings_);
+      const double horizon = march_.t() * static_cast<double>(options_.max_readings) / static_cast<double>(readings_);
       if (forecast->half > horizon)
         return decide(Outcome::undecided, "held while the controller winds up, at a rate that takes about " +
                                               short_number(forecast->whole, 2) +
                                               " s to break it away: more samples than are followed");
     }
-    if (readings_ <= most_readings) return;
+    if (readings_ <= options_.max_readings) return;
     look_for_irregular();
-    if (!decided_) decide(Outcome::undecided, "undecided after " + std::to_string(most_readings) + " samples");
+    if (!decided_)
+      decide(Outcome::undecided, "undecided after " + std::to_string(options_.max_readings) + " clock switches");
   }
 
   /// Readings of a sampled controller in that time.

@@ -21,6 +21,7 @@ struct SettleOptions {
   double amplitude_floor = 1e-9;   ///< swings of y below this have died out
   double amplitude_ceiling = 1e6;  ///< |y| beyond this has diverged
   long max_steps = 60000;          ///< the horizon: steps, not seconds, so that it follows the loop's own time scales
+  long max_readings = 5'000'000;   ///< of a sampled loop: switches of its clocks
   /// Turns of y, after swings of a good part of its range, that tell a motion without a period: with fewer, the horizon
   /// is four times as long; 0: it never is.
   std::size_t fewest_turns = 100;

@@ -16,7 +16,9 @@ constexpr long steps_of_a_trend = 6'000;   ///< of one of the fifty motions alon
 }  // namespace
 
 CycleHunt::CycleHunt(const Loop& loop, const PredictOptions& options, const SearchBox& box)
-    : loop_(loop), settle_(cycle_search(loop, box, options.accuracy, options.stop)) {}
+    : loop_(loop), settle_(cycle_search(loop, box, options.accuracy, options.stop)) {
+  settle_.max_readings = options.max_readings;
+}
 
 OutcomeOfStart CycleHunt::simulate(const LoopState& start, std::string name) {
   settle_.known = cycles_;

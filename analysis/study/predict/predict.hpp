@@ -37,6 +37,7 @@ struct PredictOptions {
   int starts = 4;                                       ///< simulations from different displacements of y
   bool load_step = true;                                ///< and one from the release of a load: see load_step()
   double accuracy = 1e-8;                               ///< wanted relative error of period and amplitude of a cycle
+  long max_readings = 5'000'000;                        ///< from one start of a sampled loop, see SettleOptions
   std::function<bool(const OutcomeOfStart&)> enough{};  ///< true of an outcome: nothing more is simulated or predicted
   std::function<bool()> stop;  ///< called often, by several threads; true ends the work and keeps the results
   std::function<void(double, std::string_view)> progress;  ///< fraction done (0..1), current activity

@@ -52,8 +52,11 @@ std::optional<FallingRange> falling_range_of(const Element& law) {
 
 class CauseStudy {
  public:
+  /// A loop without its cause comes to rest soon, or is no answer: a sampled one is not followed for long.
   CauseStudy(const LoopParts& parts, Judging judging, const std::vector<Cycle>& cycles)
       : parts_(parts), judging_(std::move(judging)), cycles_(cycles) {
+    constexpr long enough_readings = 1'000'000;
+    judging_.predict.max_readings = std::min(judging_.predict.max_readings, enough_readings);
     judging_.predict.enough = [](const OutcomeOfStart& one) {
       return one.outcome == Outcome::cycle || one.outcome == Outcome::irregular || one.outcome == Outcome::undecided;
     };
