@@ -44,13 +44,15 @@ struct Port {
   Eigen::RowVectorXd C, D, C_v, D_v;
   Eigen::RowVector4d c, c_v;
   Eigen::RowVectorXd C_delayed;  ///< part of the input row that reads X(t - delay)
-  /// The set-valued friction law whose selection at v = 0 this element shares (friction compensation).
+  /// The set-valued friction law whose selection at v = 0 this element shares: a friction compensation, or another
+  /// friction law at the same body, which sticks and breaks away with it (their forces at rest have a known sum only).
   std::optional<std::size_t> selection_of;
-  bool rubs = false;     ///< x and v are rubbing displacement and velocity: v matters, x may drift
-  bool opposes = false;  ///< a friction law that opposes that velocity: these are the last elements of a loop
-  std::string path;      ///< "loop.plant.gravity", "loop.error", "loop.error.rate",
-                         ///< "loop.controller.friction_compensation", "loop.controller.saturation", "loop.element",
-                         ///< "loop.friction": in this order, if present; of a diagram "diagram.NAME"
+  bool reversed = false;  ///< it measures the velocity in the other direction
+  bool rubs = false;      ///< x and v are rubbing displacement and velocity: v matters, x may drift
+  bool opposes = false;   ///< a friction law that opposes that velocity: these are the last elements of a loop
+  std::string path;       ///< "loop.plant.gravity", "loop.error", "loop.error.rate",
+                          ///< "loop.controller.friction_compensation", "loop.controller.saturation", "loop.element",
+                          ///< "loop.friction": in this order, if present; of a diagram "diagram.NAME"
 };
 
 /// A plant of the loop that is known by measured data: its states are those of a fit. In the frequency domain its input

@@ -44,7 +44,10 @@ int exit_code(const PredictReport& report, bool require_agreement) {
     return std::any_of(report.predictions.begin(), report.predictions.end(),
                        [&](const auto& one) { return one.verdict == verdict; });
   };
-  if (any(Verdict::wrong) || any(Verdict::biased) || !report.missed.empty()) return exit_disagreed;
+  // No method predicts a motion without a period.
+  const bool irregular =
+      std::ranges::find(report.outcomes, Outcome::irregular, &OutcomeOfStart::outcome) != report.outcomes.end();
+  if (any(Verdict::wrong) || any(Verdict::biased) || !report.missed.empty() || irregular) return exit_disagreed;
   // An undecided verdict is no agreement.
   return any(Verdict::undecided) || !answered ? exit_no_answer : exit_done;
 }

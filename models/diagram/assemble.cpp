@@ -98,17 +98,34 @@ class Assembly {
     return rate;
   }
 
-  /// A compensation takes the selection of the set-valued friction law at the same body.
+  /// A compensation takes the selection of the set-valued friction law at the same body, and so does one such law of
+  /// another: the last of them leads.
   void share_selections(Loop& loop) const {
     const auto& ports = rows_.ports();
     for (std::size_t i = 0; i < ports.size(); ++i) {
-      if (ports[i].contact != Contact::senses) continue;
+      if (ports[i].contact == Contact::none) continue;
       for (std::size_t k = 0; k < ports.size(); ++k) {
-        const bool same =
-            ports[k].contact == Contact::opposes && ports[k].on == ports[i].on && ports[k].against == ports[i].against;
-        if (same && ports[k].element->facts().has_selection) loop.ports[i].selection_of = k;
+        if (ports[k].contact != Contact::opposes) continue;
+        const bool same = ports[k].on == ports[i].on && ports[k].against == ports[i].against;
+        const bool reversed = ports[k].on == ports[i].against && ports[k].against == ports[i].on;
+        const bool leads = ports[i].contact == Contact::senses || (k > i && hold_together(ports[i], ports[k]));
+        if (!(same || reversed) || !leads || !ports[k].element->facts().has_selection) continue;
+        loop.ports[i].selection_of = k;
+        loop.ports[i].reversed = reversed;
       }
     }
+  }
+
+  /// True for two laws that hold one body; false if one of them, or both, never do.
+  static bool hold_together(const ElementRows& one, const ElementRows& other) {
+    if (!one.element->may_stick() || !other.element->may_stick()) return false;
+    for (const ElementRows* law : {&one, &other})
+      if (law->element->needs_drive() || !law->element->facts().has_selection)
+        throw BrokenDiagram({law->path, "holds the same body as " + (law == &one ? other : one).path +
+                                            ", which a law of kind " + std::string(law->element->kind()) +
+                                            " cannot: write both as one law, or take coulomb, stribeck or "
+                                            "stribeck-table"});
+    return true;
   }
 
   SignalRows rows_;

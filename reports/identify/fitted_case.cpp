@@ -80,26 +80,57 @@ std::string correlation_list(const IdentifiedLaw& law, const std::vector<std::st
   return list.empty() ? list : "[sensitivity]\ncorrelation = [\n" + list + "]\n";
 }
 
-/// Each identifiable number as normal, with the deviation of its interval, and not below its bound; one on its bound as
-/// uniform over its interval.
+const IdentifiedNumber* number_called(const IdentifiedLaw& law, std::string_view name) {
+  const auto found = std::ranges::find(law.numbers, name, &IdentifiedNumber::name);
+  return found == law.numbers.end() ? nullptr : &*found;
+}
+
+/// The level that is never above (Fs_minus: Fc_minus) or below this one, if both are fitted.
+const IdentifiedNumber* other_level(const IdentifiedLaw& law, const std::string& name) {
+  if (name.starts_with("Fs")) return number_called(law, "Fc" + name.substr(2));
+  return name.starts_with("Fc") ? number_called(law, "Fs" + name.substr(2)) : nullptr;
+}
+
+/// How the value of a number varies: a table of [[sensitivity.parameters]] less its path; empty if it does not.
+/// - Determined: normal, with the deviation of its interval; on its bound uniform over the interval.
+/// - Not determined: over what its interval leaves of the range in which it was looked for.
+/// Levels that came out equal stay in their order, so that every draw is a law.
+std::string spread_of(const IdentifiedLaw& law, const IdentifiedNumber& one) {
+  constexpr double half_in_deviations = 1.959964, deviations = 4.0;
+  const IdentifiedNumber* other = other_level(law, one.name);
+  const bool above = other != nullptr && one.name.starts_with("Fs"), below = other != nullptr && !above;
+  const auto within = [&](double low, double high, const char* distribution) {
+    if (above) low = std::max(low, other->high.value_or(other->value));
+    if (below && !one.identifiable) high = std::min(high, other->low.value_or(other->value));
+    if (!(low < high)) return std::string();
+    return fmt::format("distribution = \"{}\"\nfrom = {}\nto = {}\n", low > 0.0 ? distribution : "uniform",
+                       toml_number(low), toml_number(high));
+  };
+  if (!one.identifiable || !one.high)
+    return within(one.low.value_or(std::min(one.searched_low, one.value > 0.0 ? one.value : infinite)),
+                  one.high.value_or(std::max(one.searched_high, one.value)), "log-uniform");
+  const double low = one.low.value_or(0.0), deviation = 0.5 * (*one.high - low) / half_in_deviations;
+  if (!(deviation > 0.0)) return {};
+  const bool level = other != nullptr && std::abs(one.value - other->value) <= 1e-9 * one.value;
+  if (one.value <= 0.0 || (above && level)) return within(low, *one.high, "uniform");
+  const double highest = below && level ? one.value : one.value + deviations * deviation;
+  return fmt::format("distribution = \"normal\"\nmean = {}\ndeviation = {}\nfrom = {}\nto = {}\n",
+                     toml_number(one.value), toml_number(deviation),
+                     toml_number(std::max(0.0, one.value - deviations * deviation)), toml_number(highest));
+}
+
 std::string sensitivity_section(const IdentifiedLaw& law) {
-  constexpr double half_in_deviations = 1.959964;
-  std::string text;
+  std::string text, not_spread;
   std::vector<std::string> spread;
   for (const auto& one : law.numbers) {
-    if (!one.identifiable || !one.high || one.name.find('[') != std::string::npos) continue;
-    const double low = one.low.value_or(0.0), deviation = 0.5 * (*one.high - low) / half_in_deviations;
-    if (!(deviation > 0.0)) continue;
-    spread.push_back(one.name);
-    text += fmt::format("[[sensitivity.parameters]]\npath = \"loop.friction.{}\"\n", one.name);
-    if (one.value > 0.0)
-      text += fmt::format("distribution = \"normal\"\nmean = {}\ndeviation = {}\nfrom = {}\nto = {}\n",
-                          toml_number(one.value), toml_number(deviation),
-                          toml_number(std::max(0.0, one.value - 4.0 * deviation)),
-                          toml_number(one.value + 4.0 * deviation));
-    else  // on its bound
-      text += fmt::format("distribution = \"uniform\"\nfrom = {}\nto = {}\n", toml_number(low), toml_number(*one.high));
+    const bool entry = one.name.find('[') != std::string::npos;
+    const std::string how = entry ? std::string() : spread_of(law, one);
+    if (entry) not_spread += (not_spread.empty() ? "" : ", ") + one.name;
+    if (how.empty()) continue;
+    if (one.identifiable) spread.push_back(one.name);
+    text += fmt::format("[[sensitivity.parameters]]\npath = \"loop.friction.{}\"\n{}", one.name, how);
   }
+  if (!not_spread.empty()) text += "# Not spread, since they are entries of lists: " + not_spread + "\n";
   return correlation_list(law, spread) + text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/format/table.hpp"
@@ -20,7 +21,9 @@ std::string unit_of(const IdentifiedNumber& one) { return one.unit == "1" ? "" :
 std::string value_text(const IdentifiedNumber& one) {
   if (!one.identifiable) return "not determined";
   const auto &low = one.low ? one.low : one.linear_low, &high = one.high ? one.high : one.linear_high;
-  const double half = high ? 0.5 * (*high - low.value_or(0.0)) : NAN;
+  constexpr double least_digits = 0.3;  // a number that is hardly known is not 0
+  const double width = high ? 0.5 * (*high - low.value_or(0.0)) : NAN;
+  const double half = one.value != 0.0 ? std::min(width, least_digits * std::abs(one.value)) : width;
   return Units::attach(with_absolute_error(one.value, half), unit_of(one));
 }
 
@@ -53,8 +56,15 @@ std::vector<std::string> not_determined(const IdentifiedLaw& law) {
 
 std::string answer_text(const IdentifyReport& report) {
   const IdentifiedLaw* law = shown_law(report);
-  if (law == nullptr)
-    return report.status == Status::interrupted ? "No law was fitted: the work was stopped." : "No law was fitted.";
+  if (law == nullptr) {
+    if (report.status == Status::interrupted) return "No law was fitted: the work was stopped.";
+    std::string text = "No law was fitted";
+    const char* separator = ": ";
+    for (const auto& one : report.laws)
+      for (const auto& note : one.notes)
+        text += std::exchange(separator, "; ") + std::string(one.law.kind()) + " " + note;
+    return text + ".";
+  }
   const std::string kind(law->law.kind());
   if (!report.chosen)
     return std::string("No law is recommended: ") +
@@ -70,6 +80,13 @@ std::string answer_text(const IdentifyReport& report) {
   else
     text = fmt::format("{} fits these records; its error on rows that it was not fitted to is {} of {}.", kind,
                        as_percent(law->held_out), largest_measured(report));
+  constexpr double no_fit = 0.2;
+  if (!(law->held_out <= no_fit))
+    text = fmt::format(
+        "{} describes these records: {} misses rows that it was not fitted to by {} of {}. A column in another unit, a "
+        "plant with other numbers, or other friction?",
+        report.laws.size() > 1 ? "None of these laws" : "The law hardly",
+        report.laws.size() > 1 ? "the best, " + kind + "," : kind, as_percent(law->held_out), largest_measured(report));
   if (const auto names = not_determined(*law); !names.empty())
     text += fmt::format(" The records do not determine {}.", listed_in_words(names));
   const auto coloured = std::ranges::count_if(
@@ -117,12 +134,15 @@ Table record_table(const IdentifyReport& report, const IdentifiedLaw& law) {
     const auto& record = report.records[r];
     const auto& fit = law.records[r];
     const double p = fit.whiteness.probability;
+    const std::string white =
+        !std::isfinite(p) ? "-"
+        : p < surely_not_white
+            ? fmt::format("no (p = {:.0e})", p)
+            : fmt::format("yes (p = {})", p < 0.005 ? fmt::format("{:.3f}", p) : fmt::format("{:.2f}", p));
     const std::string error = with_digits(fit.error, 3);
-    table.rows.push_back(
-        {record_label(record), std::to_string(record.compared.size()),
-         unit.empty() ? Units::attach(error, std::string(unit_of(record.quantity))) : error,
-         as_percent(fit.error / record.size),
-         p < surely_not_white ? fmt::format("no (p = {:.0e})", p) : fmt::format("yes (p = {:.2f})", p)});
+    table.rows.push_back({record_label(record), std::to_string(record.compared.size()),
+                          unit.empty() ? Units::attach(error, std::string(unit_of(record.quantity))) : error,
+                          as_percent(fit.error / record.size), white});
   }
   return table;
 }
@@ -234,8 +254,10 @@ std::string largest_measured(const IdentifyReport& report) {
 
 const IdentifiedLaw* shown_law(const IdentifyReport& report) {
   if (report.chosen) return &report.laws[*report.chosen];
-  const auto found = std::ranges::find_if(report.laws, [](const auto& law) { return !law.records.empty(); });
-  return found == report.laws.end() ? nullptr : &*found;
+  const IdentifiedLaw* best = nullptr;
+  for (const auto& law : report.laws)
+    if (!law.records.empty() && (best == nullptr || law.held_out < best->held_out)) best = &law;
+  return best;
 }
 
 Document identify_document(const std::string& title, const IdentifyReport& report) {

@@ -74,7 +74,7 @@ std::string map_answer(const MapReport& report) {
   const auto uneven = static_cast<std::size_t>(std::ranges::count_if(
       report.map.points, [](const auto& point) { return point && point->has(Outcome::irregular); }));
   std::string answer =
-      hunting == 0 ? uneven > 0 ? "The loop has no limit cycle on this map." : "The loop hunts nowhere on this map."
+      hunting == 0       ? uneven > 0 ? "No limit cycle was found on this map." : "The loop hunts nowhere on this map."
       : hunting == known ? "The loop can hunt everywhere on this map."
                          : "The loop can hunt on " + share(hunting, known) + " of this map.";
   if (uneven > 0) answer += " It moves for ever without a period on " + share(uneven, known) + " of it.";
@@ -94,7 +94,8 @@ std::string map_answer(const MapReport& report) {
     const auto add = [&](std::size_t number, const std::string& words) {
       if (number > 0) faults += (faults.empty() ? "" : ", ") + words + " on " + share(number, known);
     };
-    add(missed, "finds no cycle where one exists");
+    add(missed, uneven > 0 ? "finds nothing where the loop hunts or moves without a period"
+                           : "finds no cycle where one exists");
     add(wrong, "predicts one that does not exist");
     add(biased, "is off by more than 5 %");
     answer += " " + faults + ".";

@@ -190,6 +190,7 @@ std::string worth_of(const std::string& method, const PredictReport& report, con
     return subject + "found no limit cycle, but its search was incomplete" +
            (missed > 0 ? ": it may have missed " + which + "." : ".");
   if (own.empty() && missed == 0) {
+    if (report.cycles.empty() && count(report, Outcome::irregular) > 0) return subject + "does not see this motion.";
     const bool agrees = report.cycles.empty() && count(report, Outcome::undecided) == 0;
     return subject + (agrees ? "predicts none either." : "predicts no limit cycle in the search box.");
   }

@@ -80,7 +80,10 @@ LoopField::SparsePort LoopField::sparse_port(std::size_t i) const {
   return sparse;
 }
 
-Held LoopField::held(std::size_t i) const { return loop_->elements[i].held(modes_[i]); }
+/// One that shares another law's selection is held by that.
+Held LoopField::held(std::size_t i) const {
+  return has_own_guards(i) ? loop_->elements[i].held(modes_[i]) : Held::nothing;
+}
 
 /// Row c such that the rate of the signal that element i can hold is c dX/dt + the returned number.
 double LoopField::hold_row(std::size_t i, Eigen::RowVectorXd& row) const {
@@ -150,21 +153,42 @@ bool LoopField::follows_held(std::size_t i) const {
   return leader && held(*leader) == Held::rate;
 }
 
-/// Output of a compensation that shares the selection of a friction law.
+/// True for a friction law that sticks and breaks away with another one.
+bool LoopField::is_second_law(std::size_t i) const { return !has_own_guards(i) && loop_->elements[i].may_stick(); }
+
+/// Gives the second law at a body the mode of the first.
+void LoopField::follow_modes() {
+  for (std::size_t i = 0; i < ne_; ++i) {
+    if (!is_second_law(i)) continue;
+    const Mode leading = modes_[*loop_->ports[i].selection_of];
+    modes_[i] = loop_->ports[i].reversed ? loop_->elements[i].mirror(leading) : leading;
+  }
+}
+
+/// Output that the whole selection, of that sign, of element i stands for.
+double LoopField::full_output(std::size_t i, double sign) const {
+  const Element& element = loop_->elements[i];
+  if (!is_second_law(i)) return element.output(inputs_[i], Mode{1}, {});
+  const double share_of_unit = std::abs(element.selection(Mode{}, sign < 0.0 ? -1.0 : 1.0));  // 1/Fs
+  return std::isfinite(share_of_unit) ? 1.0 / share_of_unit : 0.0;
+}
+
+/// Output of an element that shares the selection of a friction law.
 double LoopField::follow(std::size_t i) const {
-  const std::size_t leader = *loop_->ports[i].selection_of;
-  const double full = loop_->elements[i].output(inputs_[i], Mode{1}, {});
-  const Element& law = loop_->elements[leader];
-  return law.facts().has_selection ? full * law.selection(modes_[leader], w_[leader]) : full;
+  const Port& port = loop_->ports[i];
+  const std::size_t leader = *port.selection_of;
+  if (is_second_law(i) && !follows_held(i)) return loop_->elements[i].output(inputs_[i], modes_[i], {});
+  const double share = (port.reversed ? -1.0 : 1.0) * loop_->elements[leader].selection(modes_[leader], w_[leader]);
+  return full_output(i, share) * share;
 }
 
 /// d(output of the follower)/d(output of the stuck law it follows).
 double LoopField::follow_slope(std::size_t i) const {
-  const std::size_t leader = *loop_->ports[i].selection_of;
-  const double full = loop_->elements[i].output(inputs_[i], Mode{1}, {});
-  const double unit = w_[leader] < 0.0 ? -1.0 : 1.0;
-  const Element& law = loop_->elements[leader];
-  return law.facts().has_selection ? full * law.selection(modes_[leader], unit) / unit : 0.0;
+  const Port& port = loop_->ports[i];
+  const std::size_t leader = *port.selection_of;
+  const double unit = w_[leader] < 0.0 ? -1.0 : 1.0, sense = port.reversed ? -1.0 : 1.0;
+  const double share = loop_->elements[leader].selection(modes_[leader], unit);
+  return full_output(i, sense * share) * sense * share / unit;
 }
 
 void LoopField::add_output(std::size_t i, double w) {

@@ -31,9 +31,9 @@ struct SwitchSlopes {
 /// State: linear states, then the states of the elements in order. One object serves one thread.
 ///
 /// An element that holds a signal (a stuck friction law, a sliding relay) outputs the drive: the outputs of all holding
-/// elements are solved for together, so that the held signals have zero rate. A friction compensation that shares the
-/// selection of a stuck law (Port::selection_of) outputs its level times the same element of Sgn(0), so it is part of
-/// that solution.
+/// elements are solved for together, so that the held signals have zero rate. An element that shares the selection
+/// of a stuck law (Port::selection_of: a friction compensation, a second law at the same body) outputs its level times
+/// the same element of Sgn(0), so it is part of that solution.
 ///
 /// A law that needs the drive while it holds nothing (NeedsDrive: it comes last) gets it at its turn, when the rates
 /// contain all other contributions. If another element holds, both are solved for together: the loop is affine in
@@ -114,6 +114,9 @@ class LoopField {
   double follow(std::size_t i) const;
   double follow_slope(std::size_t i) const;
   bool follows_held(std::size_t i) const;
+  bool is_second_law(std::size_t i) const;
+  void follow_modes();
+  double full_output(std::size_t i, double sign) const;
   void look_outside(double t);
   void find_inputs(const State& x);
   double hold_row(std::size_t i, Eigen::RowVectorXd& row) const;

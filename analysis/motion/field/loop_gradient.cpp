@@ -33,7 +33,8 @@ void LoopField::drive_gradient() {
 void LoopField::element_gradient(std::size_t i, const State& x) {
   input_gradients(i);
   const auto row = static_cast<Index>(i), n = static_cast<Index>(n_), own = static_cast<Index>(first_state_[i]);
-  const bool solved = held(i) != Held::nothing || loop_->ports[i].selection_of, driven = i == asks_drive_ && !solved;
+  const bool solved = held(i) != Held::nothing || follows_held(i) || (!has_own_guards(i) && !is_second_law(i));
+  const bool driven = i == asks_drive_ && !solved;
   const auto& slopes = slopes_[i].response(inputs_[i], modes_[i], x.data() + first_state_[i], driven, !solved);
   const Index nz = slopes_[i].states();
   const auto spread = [&](auto&& target, Index from) {
@@ -68,7 +69,7 @@ void LoopField::held_gradient(const State& x) {
     if (follows_held(i))
       w_gradient_.row(static_cast<Index>(i)) =
           follow_slope(i) * w_gradient_.row(static_cast<Index>(*loop_->ports[i].selection_of));
-    else if (held(i) == Held::nothing && !loop_->ports[i].selection_of)
+    else if (held(i) == Held::nothing && (has_own_guards(i) || is_second_law(i)))
       element_gradient(i, x);
   }
 }

@@ -108,6 +108,7 @@ void LoopField::fire(State& x, double t, std::size_t guard) {
   const Mode before = modes_[i];
   const Element& element = loop_->elements[i];
   if (element.has_modes()) modes_[i] = element.next(inputs_[i], modes_[i], own_states(x, i), static_cast<int>(k));
+  if (has_follower_[i]) follow_modes();
   // The located v is zero to the accuracy of the location: remove the remainder. Otherwise a body that reaches v = 0
   // and continues as before would already be past its guard, and switch for ever.
   if (held(i) == Held::rate || (before == modes_[i] && slides_through_zero(*loop_, i))) arrest(x, i);
@@ -178,6 +179,7 @@ void LoopField::start(State& x, double t) {
     find_inputs(x);
     const Element& element = loop_->elements[i];
     if (element.has_modes()) modes_[i] = element.start(inputs_[i], own_states(x, i));
+    if (has_follower_[i]) follow_modes();
   }
 }
 

@@ -86,10 +86,9 @@ Returns returns_to(double level, const Trace& trace, std::size_t from) {
   return found;
 }
 
-/// True if the returns repeat themselves after some number of them. Then the motion is periodic, though shooting did
-/// not find the cycle.
-bool repeats(const Returns& returns, double range) {
-  constexpr double same = 3e-4;                    // resolution of the steps of a run
+/// The least number of returns after which they repeat themselves; 0 if they do not.
+std::size_t repeat_lag(const Returns& returns, double range, double same) {
+  if (returns.times.size() < 4) return 0;
   const std::size_t n = returns.times.size() - 1;  // the last peak may not be complete
   const double mean = returns.mean();
   for (std::size_t lag = 1; lag <= n / 3; ++lag) {
@@ -98,9 +97,16 @@ bool repeats(const Returns& returns, double range) {
       all = std::abs(returns.peaks[i + lag] - returns.peaks[i]) <= same * range &&
             std::abs(returns.times[i + lag + 1] - returns.times[i + lag] - returns.times[i + 1] + returns.times[i]) <=
                 same * mean;
-    if (all) return true;
+    if (all) return lag;
   }
-  return false;
+  return 0;
+}
+
+/// True if the returns repeat themselves after some number of them. Then the motion is periodic, though shooting did
+/// not find the cycle.
+bool repeats(const Returns& returns, double range) {
+  constexpr double same = 3e-4;  // resolution of the steps of a run
+  return repeat_lag(returns, range, same) > 0;
 }
 
 /// True if the first part reaches farther than the others, which are alike: the motion was still settling.
@@ -158,6 +164,19 @@ std::optional<IrregularMotion> motion_after(double share, const Trace& trace, bo
 std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat, long fewest_returns) {
   if (trace.t.size() < 1000) return std::nullopt;
   return motion_after(1.0 / 3.0, trace, may_repeat, fewest_returns);
+}
+
+double repeat_time(const Trace& trace) {
+  constexpr double same = 1e-7;
+  if (trace.t.size() < 10) return 0.0;
+  const double begin = trace.t.front() + (trace.t.back() - trace.t.front()) / 3.0;
+  const auto from = static_cast<std::size_t>(std::ranges::lower_bound(trace.t, begin) - trace.t.begin()) + 1;
+  if (from >= trace.t.size()) return 0.0;
+  const auto [low, high] =
+      std::ranges::minmax_element(trace.y.begin() + static_cast<std::ptrdiff_t>(from), trace.y.end());
+  const Returns returns = returns_to(0.5 * (*low + *high), trace, from);
+  const std::size_t lag = repeat_lag(returns, *high - *low, same);
+  return lag > 0 ? returns.times.back() - returns.times[returns.times.size() - 1 - lag] : 0.0;
 }
 
 bool agree(const IrregularMotion& one, const IrregularMotion& other) {

@@ -23,6 +23,10 @@ struct IrregularMotion {
 /// decides if the numbers belong to the loop or to the tolerance. `fewest_returns`: in each part.
 std::optional<IrregularMotion> permanent_motion(const Trace& trace, bool may_repeat = false, long fewest_returns = 8);
 
+/// Time after which the returns of the last two thirds of a recorded motion repeat themselves, to 1e-7 of their range
+/// and mean time and at least twice over; 0 if they do not.
+double repeat_time(const Trace& trace);
+
 /// True if two runs at different tolerances give the same numbers. Chaotic motions part after a while.
 bool agree(const IrregularMotion& one, const IrregularMotion& other);
 

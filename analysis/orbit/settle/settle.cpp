@@ -250,9 +250,58 @@ class Settling {
     return true;
   }
 
+  /// Decides for a cycle of a sampled loop whose swings repeat themselves after a whole number of samples, if the state
+  /// does: at once, and after many periods no less. Multipliers say little of it: within a quantum they are 0 or 1.
+  void look_for_lock() {
+    constexpr int many = 8;
+    if (!loop_.continuous || turning_.points().size() < next_lock_) return;
+    next_lock_ += next_lock_ / 2;
+    const double samples =
+        std::round(repeat_time(recent(turning_, turning_.points().size() - 1)) / repetition_time(loop_));
+    const bool exact = march_.kind() == StepperKind::exact;
+    const double period = samples * repetition_time(loop_), allowed = exact ? 1e-9 : 10.0 * options_.rtol;
+    if (!(samples > 0.0) || samples * many > 1e6) return;
+    const LoopState here{march_.x(), field_.modes()};
+    const double once = distance_after(period, here),
+                 later = once <= allowed ? distance_after(many * period, here) : 1.0;
+    if (!(once <= allowed && later <= std::max(2.0 * once, 1e-9))) return;
+    ShootingResult shot;
+    shot.cycle.period = period;
+    shot.cycle.start = here;
+    shot.cycle.method = "simulation";
+    shot.cycle.stable = true;
+    shot.cycle.residual = once;
+    shot.cycle.error = std::max(once, exact ? 1e-9 : options_.rtol);
+    shot.status = record(loop_, here, period, options_.rtol, 100, shot.cycle.trace);
+    if (shot.status != Status::converged) return;
+    measure(loop_, shot.cycle);
+    result_.shot = std::move(shot);
+    decide(Outcome::cycle, "repeats itself after " + std::to_string(std::lround(samples)) + " samples");
+  }
+
+  /// Of the state from itself, in its typical sizes; infinite if the run ends early.
+  double distance_after(double time, const LoopState& from) {
+    LoopField field(loop_);
+    field.modes() = from.modes;
+    March march(field, march_.kind(), loop_weights(loop_, options_.rtol));
+    march.begin(from.x, 0.0);
+    while (march.t() < time) {
+      if (options_.stop && options_.stop()) return infinite;
+      if (march.step(time) != Status::converged) return infinite;
+    }
+    tried_ += march.steps();
+    const State sizes = typical_sizes(loop_);
+    double largest = field.modes() == from.modes ? 0.0 : infinite;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+      largest = std::max(largest, std::abs(march.x()[i] - from.x[i]) / sizes[i]);
+    return largest;
+  }
+
   void look_at_swings() {
     const auto& points = turning_.points();
     if (points.size() < 5) return;
+    look_for_lock();
+    if (decided_) return;
     if (loop_.continuous && !options_.known_irregular.empty() && points.size() >= next_known_) {
       next_known_ += next_known_ / 2;
       if (const auto motion = motion_so_far(); motion && is_known_irregular(*motion)) return;
@@ -397,7 +446,7 @@ class Settling {
   State dx_;
   double low_ = infinite, high_ = -infinite;  ///< of y
   std::size_t large_turns_ = 0;
-  std::size_t next_growth_ = 64;
+  std::size_t next_growth_ = 64, next_lock_ = 24;
   std::size_t next_irregular_ = 128;  ///< turns, and samples, of a sampled loop: see time_for_irregular()
   long next_readings_ = 1'000'000;
   std::size_t next_known_ = 16;         ///< turns at which it is compared with the permanent motions of other starts

@@ -274,13 +274,18 @@ Simulation simulate_with_delay(const Loop& loop, const SimulateOptions& options)
 }  // namespace
 
 std::vector<std::string> state_names(const Loop& loop) {
+  const auto base_of = [&](std::size_t i) {
+    const std::string& path = loop.ports[i].path;
+    if (path.starts_with("diagram.")) return path.substr(8) + ".z";
+    return path == "loop.friction" ? "z" : "z_" + path.substr(path.rfind('.') + 1);
+  };
+  std::map<std::string, int> count, named;
+  for (std::size_t i = 0; i < loop.elements.size(); ++i) count[base_of(i)] += loop.elements[i].states();
   auto names = loop.state_names;
   for (std::size_t i = 0; i < loop.elements.size(); ++i) {
-    const int count = loop.elements[i].states();
-    const std::string& path = loop.ports[i].path;
-    const bool slot = !path.starts_with("diagram.");
-    const std::string base = !slot ? path.substr(8) + ".z" : path == "loop.friction" ? "z" : "z_element";
-    for (int k = 0; k < count; ++k) names.push_back(count == 1 ? base : base + std::to_string(k + 1));
+    const std::string base = base_of(i);
+    for (int k = 0; k < loop.elements[i].states(); ++k)
+      names.push_back(count[base] == 1 ? base : base + std::to_string(++named[base]));
   }
   return names;
 }

@@ -75,7 +75,8 @@ inline constexpr double cycle_accuracy = 1e-4;
 Simulation simulate(const Loop& loop, const SimulateOptions& options);
 
 /// Names of all states in the order of LoopState: linear states, then "z" of the friction law (z1, z2, ... if it has
-/// several) and "z_element" of a forward element.
+/// several), and "z_element" of a forward element, "z_" and the last word of its path of any other. No two states have
+/// one name.
 std::vector<std::string> state_names(const Loop& loop);
 /// The values of those states in a state of the loop (see Loop::own_states), and the state that has these values.
 State own_values(const Loop& loop, State x);

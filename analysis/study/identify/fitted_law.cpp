@@ -217,7 +217,9 @@ IdentifiedLaw LawFit::with_intervals(bool profiled) {
   }
   if (stopped()) result_.status = Status::interrupted;
   if (answered_ && !profiled)
-    result_.notes.emplace_back("its intervals are linear ones, since another law fits these records far better");
+    result_.notes.emplace_back(stopped()
+                                   ? "its intervals are linear ones, since the work was stopped"
+                                   : "its intervals are linear ones, since another law fits these records far better");
   return result_;
 }
 

@@ -34,6 +34,7 @@ struct IdentifiedNumber {
   std::optional<double> low, high;                ///< by profile likelihood
   std::optional<double> linear_low, linear_high;  ///< by the derivatives at the fit
   bool identifiable = false;
+  double searched_low = 0.0, searched_high = 0.0;  ///< where fits began
 };
 
 /// How a law fits one record.

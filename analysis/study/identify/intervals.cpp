@@ -18,7 +18,7 @@ void add_numbers(const FitWithSlopes& at, bool profiled, IdentifiedLaw& into, st
     if (!interval.complete) unknown += (unknown.empty() ? "" : ", ") + space.numbers()[k].name;
     into.numbers.push_back({space.numbers()[k].name, space.numbers()[k].unit, values(static_cast<Eigen::Index>(k)),
                             interval.low, interval.high, interval.linear_low, interval.linear_high,
-                            interval.identifiable});
+                            interval.identifiable, space.numbers()[k].low, space.numbers()[k].high});
   }
   if (!unknown.empty())
     into.notes.push_back("no fit converged where an interval should end, so that this end is unknown: " + unknown);

@@ -24,6 +24,32 @@ double farthest(Coordinate coordinate) {
   return 0.0;
 }
 
+/// Starts for a sliding level that is to fall, or a Stribeck velocity that is to rise: the break-away level is one of
+/// the two levels, sliding is lower, and the velocity between them is the fastest of the records or beyond. None for
+/// other coordinates.
+std::vector<Eigen::VectorXd> beyond_speeds(const ParameterSpace& space, const Eigen::VectorXd& u, Eigen::Index k,
+                                           bool falls) {
+  constexpr double lower = 0.4;  // as a logarithm
+  const auto vs = space.source_of("vs");
+  const Eigen::Index speed = vs ? space.coordinate_of(*vs) : -1;
+  std::vector<Eigen::VectorXd> starts;
+  if (speed < 0) return starts;
+  const double fastest = std::log(space.numbers()[*vs].high);
+  for (const auto& levels : space.bounds()) {
+    if (levels.above < 0 || levels.below < 0 || !(falls ? k == levels.below : k == speed)) continue;
+    for (const double beyond : {0.0, std::log(3.0)})
+      for (const Eigen::Index level : {levels.above, levels.below}) {
+        if (level == levels.below && u(levels.above) - u(levels.below) < 1e-3) continue;
+        Eigen::VectorXd start = u;
+        start(levels.above) = u(level);
+        start(levels.below) = u(level) - lower;
+        start(speed) = fastest + beyond;
+        starts.push_back(std::move(start));
+      }
+  }
+  return starts;
+}
+
 /// Where a profile reaches the wanted rise.
 struct ProfileEnd {
   enum class Kind { found, beyond, unknown } kind = Kind::unknown;  ///< beyond: farther than it was followed
@@ -62,6 +88,28 @@ class Profile {
       }
     }
     return {};
+  }
+
+  /// True if the sum is as low with the coordinate at that distance, or several times or tenths of it farther on that
+  /// side, from another start: where the level that the records show is that of breaking away, and sliding lies below
+  /// it at speeds that they do not reach.
+  /// The best of several minima fits some of the noise, for which the rise of an interval does not allow.
+  bool goes_on_elsewhere(double distance, double most) {
+    constexpr double of_minima = 3.0;
+    for (const double at : {std::min(4.0 * std::abs(distance), most), 0.3, 0.7, 1.5}) {
+      if (at < std::abs(distance) || at > most) continue;
+      for (const Eigen::VectorXd& start : beyond_speeds(at_.misfit.space(), at_.fit.u, k_, distance < 0.0)) {
+        if (stop_ && stop_()) return false;
+        Fit from;
+        from.u = start;
+        from.u(k_) = at_.fit.u(k_) + std::copysign(at, distance);
+        const Fit there = fit_within(at_.misfit, from, felt_coordinates(at_.misfit, from.u), 60, stop_, k_);
+        const double rise = there.sum_of_squares - at_.fit.sum_of_squares;
+        if (rise < -0.1 && (!better_ || there.sum_of_squares < better_->sum_of_squares)) better_ = there;
+        if (rise < of_minima * at_.rise) return true;
+      }
+    }
+    return false;
   }
 
   const std::optional<Fit>& better() const { return better_; }
@@ -142,7 +190,9 @@ class AroundFit {
     const auto end = [&](double sign, double most) {
       return most > 0.0 ? profile.crossing(sign * std::min(half_, most), most) : ProfileEnd{Kind::beyond, 0.0};
     };
-    const ProfileEnd up = end(1.0, room.above), down = end(-1.0, room.below);
+    ProfileEnd up = end(1.0, room.above), down = end(-1.0, room.below);
+    for (const auto& [one, most] : {std::pair(&up, room.above), std::pair(&down, room.below)})
+      if (one->kind == Kind::found && profile.goes_on_elsewhere(one->distance, most)) one->kind = Kind::beyond;
     result.low = result.high = std::nullopt;
     const auto is_known = [](const ProfileEnd& one, bool law_ends) {
       return one.kind == Kind::found || (one.kind == Kind::beyond && law_ends);
@@ -214,7 +264,7 @@ NumberInterval with_coordinate(const FitWithSlopes& at, std::size_t index, const
 
 }  // namespace
 
-LinearCovariance linear_covariance(const Eigen::MatrixXd& slopes) {
+LinearCovariance linear_covariance(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& units) {
   const Eigen::Index n = slopes.cols();
   // Columns of very different size first get the same one, so that "dependent" does not depend on units.
   Eigen::VectorXd size = slopes.colwise().norm();
@@ -241,7 +291,8 @@ LinearCovariance linear_covariance(const Eigen::MatrixXd& slopes) {
   for (Eigen::Index k = 0; k < n; ++k)
     result.deviation(k) =
         lost[static_cast<std::size_t>(k)] || inverse_size(k) == 0.0 ? infinite : std::sqrt(result.covariance(k, k));
-  const Eigen::JacobiSVD<Eigen::MatrixXd> plain(slopes, Eigen::ComputeThinV);
+  const Eigen::MatrixXd counted = units.size() > 0 ? Eigen::MatrixXd(slopes * units.asDiagonal()) : slopes;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> plain(counted, Eigen::ComputeThinV);
   result.singular_values = plain.singularValues();
   result.directions = plain.matrixV();
   return result;
@@ -258,8 +309,13 @@ std::optional<FitWithSlopes> with_slopes(const Misfit& misfit, const Fit& fit) {
   Eigen::MatrixXd slopes;
   if (fit.u.size() == 0 || !misfit.at(fit.u, entries, &slopes)) return std::nullopt;
   const Eigen::Index starts = misfit.start_states();
+  // A number that may be 0 is determined if its deviation is small for itself, however large for its typical size.
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(fit.u.size());
+  for (Eigen::Index k = 0; k < units.size(); ++k)
+    if (misfit.space().numbers()[misfit.space().number_of(k)].coordinate == Coordinate::linear)
+      units(k) = std::max(1.0, std::abs(fit.u(k)));
   return FitWithSlopes{
-      misfit, fit, linear_covariance(slopes),
+      misfit, fit, linear_covariance(slopes, units),
       interval_rise(fit.sum_of_squares, misfit.size(), misfit.space().size() + starts, starts > 0 ? 1.0 : 1e-6)};
 }
 

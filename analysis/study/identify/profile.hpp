@@ -23,7 +23,8 @@ struct LinearCovariance {
   Eigen::VectorXd singular_values;  ///< of the derivatives, falling
   Eigen::MatrixXd directions;       ///< their right singular vectors
 };
-LinearCovariance linear_covariance(const Eigen::MatrixXd& slopes);
+/// `units`: in which singular values and directions count the coordinates; empty: 1.
+LinearCovariance linear_covariance(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& units = {});
 
 /// Largest rise of the sum of squares within a 95 % interval: t^2 s^2, with Student's t for n - k degrees of freedom
 /// and the variance s^2 = sum/(n - k) of an entry, which is `least` at least where the fit is exact: with free motions

@@ -33,6 +33,9 @@ Worth worth_of(const std::string& method, const PredictReport& report) {
   if (verdict(Verdict::biased)) return Worth::biased;
   if (verdict(Verdict::undecided)) return Worth::undecided;
   // Predicting nothing is right only if it is known that nothing oscillates.
+  const auto irregular = [](const OutcomeOfStart& one) { return one.outcome == Outcome::irregular; };
+  if (!verdict(Verdict::confirmed) && std::ranges::any_of(report.outcomes, irregular))
+    return searched_completely(report, method) ? Worth::missed : Worth::undecided;
   const auto undecided = [](const OutcomeOfStart& one) { return one.outcome == Outcome::undecided; };
   const bool known = verdict(Verdict::confirmed) || std::ranges::none_of(report.outcomes, undecided);
   return known ? Worth::right : Worth::undecided;

@@ -66,6 +66,9 @@ class CauseStudy {
     if (ends("without friction compensation", without_compensation(parts_)))
       return decided(CauseKind::over_compensation,
                      "The friction compensation is too strong: without it the loop does not hunt.");
+    if (ends("without quanta", without_quanta(parts_)))
+      return decided(CauseKind::quantization,
+                     "The controller reads, or commands, in steps: with exact numbers the loop does not hunt.");
     if (ends("without dead time and sampling", without_delay(parts_)))
       return decided(CauseKind::delay, "The loop reacts too late: without dead time and sampling it does not hunt.");
     const bool integral = ends(no_integral, without_integral_action(parts_));
@@ -174,6 +177,8 @@ std::string_view to_string(CauseKind kind) {
       return "relay";
     case CauseKind::over_compensation:
       return "over-compensation";
+    case CauseKind::quantization:
+      return "quantization";
     case CauseKind::saturation:
       return "saturation";
     case CauseKind::undecided:

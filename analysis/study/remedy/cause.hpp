@@ -15,6 +15,7 @@ enum class CauseKind {
   relay,
   over_compensation,
   saturation,
+  quantization,
   undecided
 };
 std::string_view to_string(CauseKind kind);

@@ -188,6 +188,16 @@ std::optional<LoopParts> without_delay(LoopParts parts) {
   return changed_parts(std::move(parts), change);
 }
 
+std::optional<LoopParts> without_quanta(LoopParts parts) {
+  PartChange change;
+  const auto exact = [](Sampling& sampling) {
+    return set_members(sampling, {&Sampling::input_step, &Sampling::output_step}, 0.0);
+  };
+  change.controller = [&](Controller& controller) { return exact(own_parts(controller)); };
+  change.block = [&](Block& block) { return exact(block.sampling); };
+  return changed_parts(std::move(parts), change);
+}
+
 std::optional<LoopParts> without_relay(LoopParts parts, double swing) {
   PartChange change;
   change.element = [swing](Element& element) {

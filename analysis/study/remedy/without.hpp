@@ -18,6 +18,8 @@ std::optional<LoopParts> without_falling_friction(LoopParts parts);
 bool friction_is_measured(LoopParts parts);
 /// Dead times of plants and blocks, and sampling.
 std::optional<LoopParts> without_delay(LoopParts parts);
+/// The steps in which sampled controllers read and command.
+std::optional<LoopParts> without_quanta(LoopParts parts);
 /// Relays: a saturation in their place that reaches the same level at twice `swing`, the amplitude of the relay's
 /// input.
 std::optional<LoopParts> without_relay(LoopParts parts, double swing);

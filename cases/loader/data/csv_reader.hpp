@@ -40,6 +40,9 @@ class CsvReader {
   /// Chooses what next() returns. Throws InputError for a column that the file does not have, or has twice.
   void choose(const std::vector<CsvColumn>& columns);
 
+  /// Places of those columns, from 0.
+  const std::vector<std::size_t>& chosen() const { return columns_; }
+
   /// The numbers of the next row in the columns chosen, or false at the end. Throws InputError with file, line and
   /// column.
   bool next(std::vector<double>& numbers);

@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "limcycle/analysis/study/identify/record/friction_response.hpp"
 #include "limcycle/cases/loader/data/data_file.hpp"
@@ -154,6 +157,26 @@ bool needs(RecordKind kind, std::size_t quantity) {
   }
 }
 
+/// "mm/s" of a column called "velocity [mm/s]"; empty without one.
+std::string_view unit_in(std::string_view header) {
+  const auto open = header.find_first_of("[("), close = header.find_last_of("])");
+  if (open == std::string_view::npos || close == std::string_view::npos || close < open) return {};
+  return header.substr(open + 1, close - open - 1);
+}
+
+/// A unit of thousandths or the like needs a scale.
+void check_unit(const CsvReader& csv, std::size_t column, std::string_view quantity, double scale) {
+  static const std::map<std::string_view, double> in_si{
+      {"mm", 1e-3}, {"um", 1e-6}, {"\u00b5m", 1e-6}, {"\u03bcm", 1e-6}, {"nm", 1e-9},   {"cm", 1e-2},
+      {"ms", 1e-3}, {"us", 1e-6}, {"min", 60.0},     {"mm/s", 1e-3},    {"um/s", 1e-6}, {"cm/s", 1e-2},
+      {"mN", 1e-3}, {"kN", 1e3},  {"uN", 1e-6},      {"mN m", 1e-3},    {"mNm", 1e-3},  {"deg", 0.017453292519943295}};
+  if (column >= csv.header().size() || scale != 1.0) return;
+  const auto unit = in_si.find(unit_in(csv.header()[column]));
+  if (unit == in_si.end()) return;
+  throw csv.error(fmt::format("the column \"{}\" is in {}: state scale = {{{} = {}}} beside the file",
+                              csv.header()[column], unit->first, quantity, unit->second));
+}
+
 /// `before`: rows of other records.
 FrictionRecord read_record_file(const RecordFile& from, std::size_t before) {
   CsvReader csv(from.path);
@@ -168,6 +191,8 @@ FrictionRecord read_record_file(const RecordFile& from, std::size_t before) {
     quantity.push_back(k);
   }
   csv.choose(chosen);
+  for (std::size_t i = 0; i < quantity.size(); ++i)
+    check_unit(csv, csv.chosen()[i], case_file::quantities[quantity[i]], from.scale[quantity[i]]);
   std::array<std::vector<double>, 4> columns;
   const auto& counted = columns[quantity.back()];
   for (std::vector<double> row; csv.next(row);) {

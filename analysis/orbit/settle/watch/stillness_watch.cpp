@@ -64,9 +64,11 @@ std::optional<Stillness> StillnessWatch::read(double t, const State& x, const Lo
   if (first) return std::nullopt;
   const auto verdict = rest_.look(t, x, mean);
   if (verdict == RestWatch::Verdict::moving) return std::nullopt;
-  const bool steady = verdict == RestWatch::Verdict::steady;
-  if (!steady && !(rest_.rate(mean) <= fades)) return std::nullopt;
-  if (rubs_at(field, x)) return Stillness{Outcome::sliding, "slides at constant speed"};
+  const bool steady = verdict == RestWatch::Verdict::steady, fading = rest_.rate(mean) <= fades;
+  if (!steady && !fading) return std::nullopt;
+  // A body that creeps to rest rubs as well, ever more slowly.
+  if (fading ? slides_at_rest(loop_) : rubs_at(field, x))
+    return Stillness{Outcome::sliding, "slides at constant speed"};
   return steady ? std::nullopt : std::optional(Stillness{Outcome::rest, "came to rest"});
 }
 

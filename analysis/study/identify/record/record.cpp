@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "limcycle/analysis/short_number.hpp"
+
 namespace limcycle {
 
 void refuse_record(const FrictionRecord& record, const std::string& why) {
@@ -71,6 +73,20 @@ void check_units(const FrictionRecord& record) {
     refuse_record(record, "position and velocity do not belong together: their displacements have a correlation of " +
                               std::to_string(alike).substr(0, 5));
   refuse_record(record, std::string(text) + ": is one of them in another unit (mm)? [identify.record] scale converts");
+}
+
+/// Friction takes power from the motion.
+void check_sign(const FrictionRecord& record, const std::vector<double>& v) {
+  constexpr double surely = -0.3;
+  double power = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    power += record.F[i] * v[i];
+    size += std::abs(record.F[i] * v[i]);
+  }
+  if (power < surely * size)
+    refuse_record(record,
+                  "the force pushes along the motion, which no friction does: is it the force on the body, with the "
+                  "other sign? [identify.record] scale = {force = -1.0} turns it");
 }
 
 /// Displacement over an interval beyond that of straight-line velocities, as a parabola 6 bump s (1 - s).
@@ -140,17 +156,37 @@ BreakAwayEvent extrapolated(const FrictionRecord& record, std::size_t last, std:
   return {mF + tF / tt * ahead, forward, 1.0 / std::sqrt(1.0 / n + ahead * ahead / tt)};
 }
 
-/// Slips of a body that was measured at rest (v = 0 exactly) for at least four rows of which none is left out.
-std::vector<BreakAwayEvent> break_aways_of(const FrictionRecord& record) {
-  constexpr std::size_t fewest = 4, most = 12;
+/// Speed that a body at rest is measured to have at most: five standard deviations of the noise of the velocity, which
+/// its second differences show (their median: few of them are of a body that speeds up). 0 of an exact measurement.
+double speed_at_rest(const FrictionRecord& record, const std::vector<double>& v) {
+  if (record.kind != RecordKind::break_away || v.size() < 3) return 0.0;
+  constexpr double deviations = 5.0, median_of_normal = 0.6745;
+  std::vector<double> bends;
+  bends.reserve(v.size());
+  for (std::size_t i = 1; i + 1 < v.size(); ++i) bends.push_back(std::abs(v[i - 1] - 2.0 * v[i] + v[i + 1]));
+  const auto middle = bends.begin() + std::ssize(bends) / 2;
+  std::ranges::nth_element(bends, middle);
+  return deviations * *middle / (median_of_normal * std::sqrt(6.0));
+}
+
+/// Slips of a body that was measured at rest for at least four rows of which none is left out.
+std::vector<BreakAwayEvent> break_aways_of(const FrictionRecord& record, const std::vector<double>& v, double rest) {
+  constexpr std::size_t fewest = 4, most = 12, surely = 3;
   std::vector<BreakAwayEvent> events;
   if (record.kind != RecordKind::break_away) return events;
+  // Within noise a single row is no slip.
+  const auto slips = [&](std::size_t i) {
+    const std::size_t end = rest > 0.0 ? std::min(i + surely, v.size()) : i + 1;
+    bool all = true;
+    for (std::size_t k = i; k < end; ++k) all = all && std::abs(v[k]) > rest && (v[k] > 0.0) == (v[i] > 0.0);
+    return all;
+  };
   std::size_t resting = 0;
-  for (std::size_t i = 0; i < record.v.size(); ++i) {
-    const bool usable = !is_skipped(record, i) && !is_saturated(record, i);
-    if (usable && record.v[i] != 0.0 && resting >= fewest)
-      events.push_back(extrapolated(record, i - 1, std::min(resting - 1, most), record.v[i] > 0.0));
-    resting = usable && record.v[i] == 0.0 ? resting + 1 : 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const bool usable = !is_skipped(record, i) && !is_saturated(record, i), moves = slips(i);
+    if (usable && moves && resting >= fewest)
+      events.push_back(extrapolated(record, i - 1, std::min(resting - 1, most), v[i] > 0.0));
+    resting = usable && !moves ? resting + 1 : 0;
   }
   return events;
 }
@@ -159,8 +195,8 @@ std::string rows_left_out(std::size_t count, const std::string& why) {
   return std::to_string(count) + (count == 1 ? " row was" : " rows were") + " left out: " + why;
 }
 
-/// Chooses the rows to be compared.
-void choose_rows(const FrictionRecord& record, const std::vector<double>& v, bool rest_tells_nothing,
+/// Chooses the rows to be compared. `rest`: see speed_at_rest().
+void choose_rows(const FrictionRecord& record, const std::vector<double>& v, bool rest_tells_nothing, double rest,
                  PreparedRecord& into) {
   std::size_t at_limit = 0, at_rest = 0, skipped = 0;
   std::vector<ComparedRow> rows;
@@ -169,7 +205,7 @@ void choose_rows(const FrictionRecord& record, const std::vector<double>& v, boo
       ++skipped;
     } else if (is_saturated(record, i)) {
       ++at_limit;
-    } else if ((rest_tells_nothing || record.kind == RecordKind::steady_velocity) && v[i] == 0.0) {
+    } else if ((rest_tells_nothing || record.kind == RecordKind::steady_velocity) && std::abs(v[i]) <= rest) {
       ++at_rest;
     } else {
       rows.push_back({i, v[i], record.F[i]});
@@ -232,13 +268,18 @@ PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing) {
   else
     check_in_time(record, record.F.size());
   const std::vector<double> v = velocities(record);
+  check_sign(record, v);
   PreparedRecord result;
   result.kind = record.kind;
   result.name = record.name;
   result.v_start = v.front();
   if (record.kind == RecordKind::lag && v.front() == 0.0)
     refuse_record(record, "begins at rest; a lag record begins in sliding");
-  choose_rows(record, v, rest_tells_nothing, result);
+  const double rest = speed_at_rest(record, v);
+  if (rest > 0.0 && rest_tells_nothing)
+    result.notes.push_back("a body of a speed below " + short_number(rest, 2) +
+                           " m/s counts as at rest: five deviations of the noise of the velocity");
+  choose_rows(record, v, rest_tells_nothing, rest, result);
   if (result.compared.empty()) refuse_record(record, "no row can be compared with a law");
   std::vector<std::ptrdiff_t> compared_at(record.F.size(), -1);
   for (std::size_t k = 0; k < result.compared.size(); ++k)
@@ -249,7 +290,7 @@ PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing) {
       append_pieces(interval(record, v, i), result.pieces);
       result.pieces.back().sample = compared_at[i + 1];
     }
-    result.break_aways = break_aways_of(record);
+    result.break_aways = break_aways_of(record, v, rest);
   }
   measure(record, result);
   return result;

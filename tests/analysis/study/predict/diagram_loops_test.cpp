@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/models/friction/dry/karnopp.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -61,4 +63,113 @@ TEST_CASE("diagram: two equal bodies with equal friction, joined by a spring, mo
   diagram.output = {1.0, "b", "y"};
   diagram.load_on = "b";
   check_servo(predicted(diagram));
+}
+
+namespace {
+
+/// A servo whose body bears these friction laws.
+Diagram servo_under(const std::vector<Element>& laws) {
+  Diagram diagram;
+  diagram.blocks = {block("a", Plant(Mass{1.0, 0.0, 0.0}), {{{1.0, "pid", ""}}}), servo_pid({{1.0, "a", "y"}})};
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    diagram.blocks.push_back(friction("f" + std::to_string(i), "a", laws[i]));
+  diagram.output = {1.0, "a", "y"};
+  diagram.load_on = "a";
+  return diagram;
+}
+
+Loop loop_of_diagram(const Diagram& diagram) {
+  LoopParts parts;
+  parts.diagram = diagram;
+  return build_loop(parts);
+}
+
+}  // namespace
+
+TEST_CASE("diagram: friction laws at one body are their sum, however it is shared out") {
+  for (const auto& laws :
+       std::vector<std::vector<Element>>{{coulomb(0.9, 0.6), coulomb(0.6, 0.4)},
+                                         {coulomb(0.8, 0.3), coulomb(0.7, 0.7)},
+                                         {coulomb(1.5 - 1e-3, 1.0 - 1e-3), coulomb(1e-3, 1e-3)},
+                                         {coulomb(0.5, 0.4), coulomb(0.6, 0.3), coulomb(0.4, 0.3)}}) {
+    CAPTURE(laws.size());
+    check_servo(predicted(servo_under(laws)));
+  }
+}
+
+TEST_CASE("diagram: two Stribeck curves of one velocity are one of the summed levels") {
+  const auto one = predicted(servo_under({stribeck(1.5, 1.0, 0.02)}));
+  const auto two = predicted(servo_under({stribeck(0.9, 0.5, 0.02), stribeck(0.6, 0.5, 0.02)}));
+  REQUIRE(!one.cycles.empty());
+  REQUIRE(one.cycles.size() == two.cycles.size());
+  for (std::size_t i = 0; i < one.cycles.size(); ++i) {
+    CHECK(two.cycles[i].period == Approx(one.cycles[i].period).epsilon(1e-7));
+    CHECK(two.cycles[i].amplitude == Approx(one.cycles[i].amplitude).epsilon(1e-6));
+    CHECK(two.cycles[i].stable == one.cycles[i].stable);
+  }
+}
+
+TEST_CASE("diagram: laws between two bodies add up, from whichever body each is measured") {
+  const auto joined = [](const std::vector<Block>& laws) {
+    Diagram diagram;
+    diagram.blocks = {block("a", Plant(Mass{1.0, 0.0, 0.0}), {{{1.0, "pid", ""}}}), servo_pid({{1.0, "a", "y"}}),
+                      block("b", Plant(Mass{1.0, 2.0, 1.0}), {{{1.0, "a", "y"}, {-1.0, "a", "y"}}})};
+    diagram.blocks.insert(diagram.blocks.end(), laws.begin(), laws.end());
+    diagram.output = {1.0, "a", "y"};
+    diagram.load_on = "a";
+    return predicted(diagram);
+  };
+  const auto between = [](const std::string& name, const std::string& on, const std::string& against,
+                          const Element& law) {
+    Block made = friction(name, on, law);
+    made.against = against;
+    return made;
+  };
+  const auto one = joined({between("f", "a", "b", coulomb(1.5, 1.0))});
+  const auto two = joined({between("f1", "a", "b", coulomb(0.9, 0.6)), between("f2", "b", "a", coulomb(0.6, 0.4))});
+  REQUIRE(one.outcomes.size() == two.outcomes.size());
+  for (std::size_t i = 0; i < one.outcomes.size(); ++i) CHECK(one.outcomes[i].outcome == two.outcomes[i].outcome);
+  REQUIRE(one.cycles.size() == two.cycles.size());
+  for (std::size_t i = 0; i < one.cycles.size(); ++i)
+    CHECK(two.cycles[i].period == Approx(one.cycles[i].period).epsilon(1e-7));
+}
+
+TEST_CASE("diagram: a stuck body shares its force among its laws, and the Jacobian is that of the rates") {
+  const Loop loop = loop_of_diagram(servo_under({coulomb(0.9, 0.6), stribeck(0.6, 0.4, 0.02)}));
+  LoopField field(loop);
+  State x(field.size(), 0.0);
+  x[0] = 0.05;  // of the integral or of y: small enough to stick
+  field.start(x, 0.0);
+  State dx;
+  field.rate(x, dx, 0.0);
+  CHECK(field.holds(1));
+  CHECK_FALSE(field.holds(0));
+  CHECK(field.output(0) / 0.9 == Approx(field.output(1) / 0.6));
+  for (const int mode : {0, 1, -1}) {
+    CAPTURE(mode);
+    for (auto& one : field.modes()) one = Mode{mode};
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = 0.01 * static_cast<double>(i + 1) * (mode < 0 ? -1.0 : 1.0);
+    Eigen::MatrixXd J;
+    State time;
+    field.jacobian(x, J, 0.0, time);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      constexpr double h = 1e-6;
+      State above = x, below = x, up, down;
+      above[k] += h;
+      below[k] -= h;
+      field.rate(above, up, 0.0);
+      field.rate(below, down, 0.0);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(k);
+        CHECK(J(row, column) == Approx((up[i] - down[i]) / (2.0 * h)).margin(1e-6));
+      }
+    }
+  }
+}
+
+TEST_CASE("diagram: a law that needs the applied force is no second one at a body") {
+  auto by_force = with_levels<Karnopp<double>>(0.6, 0.4);
+  by_force.dv = 1e-4;
+  CHECK_THROWS_WITH(loop_of_diagram(servo_under({coulomb(0.9, 0.6), by_force})),
+                    Catch::Matchers::Contains("holds the same body"));
 }
