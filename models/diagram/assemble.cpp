@@ -120,7 +120,7 @@ class Assembly {
   static bool hold_together(const ElementRows& one, const ElementRows& other) {
     if (!one.element->may_stick() || !other.element->may_stick()) return false;
     for (const ElementRows* law : {&one, &other})
-      if (law->element->needs_drive() || !law->element->facts().has_selection)
+      if (law->element->needs_drive() || law->element->drive_band() > 0.0 || !law->element->facts().has_selection)
         throw BrokenDiagram({law->path, "holds the same body as " + (law == &one ? other : one).path +
                                             ", which a law of kind " + std::string(law->element->kind()) +
                                             " cannot: write both as one law, or take coulomb, stribeck or "

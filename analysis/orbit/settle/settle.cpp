@@ -254,46 +254,53 @@ class Settling {
   /// does: at once, and after many periods no less. Multipliers say little of it: within a quantum they are 0 or 1.
   void look_for_lock() {
     constexpr int many = 8;
-    if (!loop_.continuous || turning_.points().size() < next_lock_) return;
-    next_lock_ += next_lock_ / 2;
-    const double samples =
-        std::round(repeat_time(recent(turning_, turning_.points().size() - 1)) / repetition_time(loop_));
+    const std::size_t turns = turning_.points().size();
+    if (!loop_.continuous || (turns < next_lock_ && turns != next_irregular_)) return;
+    next_lock_ = std::max(next_lock_, turns + turns / 2);
+    const double samples = std::round(repeat_time(recent(turning_, turns / 2)) / repetition_time(loop_));
     const bool exact = march_.kind() == StepperKind::exact;
     const double period = samples * repetition_time(loop_), allowed = exact ? 1e-9 : 10.0 * options_.rtol;
     if (!(samples > 0.0) || samples * many > 1e6) return;
-    const LoopState here{march_.x(), field_.modes()};
-    const double once = distance_after(period, here),
-                 later = once <= allowed ? distance_after(many * period, here) : 1.0;
-    if (!(once <= allowed && later <= std::max(2.0 * once, 1e-9))) return;
+    constexpr double between = 0.371;  // of two samples: at one of them a rounding would decide on which side it is
+    const auto here = moved({march_.x(), field_.modes()}, between * repetition_time(loop_));
+    const auto next = here ? moved(*here, period) : std::nullopt;
+    const double once = next ? distance(*next, *here) : infinite;
+    if (!(once <= allowed)) return;
+    const auto last = moved(*here, many * period);
+    if (!last || !(distance(*last, *here) <= std::max(2.0 * once, 1e-9))) return;
     ShootingResult shot;
     shot.cycle.period = period;
-    shot.cycle.start = here;
+    shot.cycle.start = *here;
     shot.cycle.method = "simulation";
     shot.cycle.stable = true;
     shot.cycle.residual = once;
     shot.cycle.error = std::max(once, exact ? 1e-9 : options_.rtol);
-    shot.status = record(loop_, here, period, options_.rtol, 100, shot.cycle.trace);
+    shot.status = record(loop_, *here, period, options_.rtol, 100, shot.cycle.trace);
     if (shot.status != Status::converged) return;
     measure(loop_, shot.cycle);
     result_.shot = std::move(shot);
     decide(Outcome::cycle, "repeats itself after " + std::to_string(std::lround(samples)) + " samples");
   }
 
-  /// Of the state from itself, in its typical sizes; infinite if the run ends early.
-  double distance_after(double time, const LoopState& from) {
+  /// The state after that time; nothing if the run ends early.
+  std::optional<LoopState> moved(const LoopState& from, double time) {
     LoopField field(loop_);
     field.modes() = from.modes;
     March march(field, march_.kind(), loop_weights(loop_, options_.rtol));
     march.begin(from.x, 0.0);
-    while (march.t() < time) {
-      if (options_.stop && options_.stop()) return infinite;
-      if (march.step(time) != Status::converged) return infinite;
-    }
+    bool ends = false;
+    while (march.t() < time && !ends)
+      ends = (options_.stop && options_.stop()) || march.step(time) != Status::converged;
     tried_ += march.steps();
+    return ends ? std::nullopt : std::optional(LoopState{march.x(), field.modes()});
+  }
+
+  /// In typical sizes of the states; infinite between different modes.
+  double distance(const LoopState& one, const LoopState& other) const {
     const State sizes = typical_sizes(loop_);
-    double largest = field.modes() == from.modes ? 0.0 : infinite;
+    double largest = one.modes == other.modes ? 0.0 : infinite;
     for (std::size_t i = 0; i < sizes.size(); ++i)
-      largest = std::max(largest, std::abs(march.x()[i] - from.x[i]) / sizes[i]);
+      largest = std::max(largest, std::abs(one.x[i] - other.x[i]) / sizes[i]);
     return largest;
   }
 

@@ -90,23 +90,23 @@ class Profile {
     return {};
   }
 
-  /// True if the sum is as low with the coordinate at that distance, or several times or tenths of it farther on that
-  /// side, from another start: where the level that the records show is that of breaking away, and sliding lies below
-  /// it at speeds that they do not reach.
-  /// The best of several minima fits some of the noise, for which the rise of an interval does not allow.
+  /// True if the sum is as low several times that distance away on the same side, from another start: where the level
+  /// that the records show is that of breaking away, and sliding lies below it at speeds that they do not reach.
   bool goes_on_elsewhere(double distance, double most) {
-    constexpr double of_minima = 3.0;
-    for (const double at : {std::min(4.0 * std::abs(distance), most), 0.3, 0.7, 1.5}) {
-      if (at < std::abs(distance) || at > most) continue;
-      for (const Eigen::VectorXd& start : beyond_speeds(at_.misfit.space(), at_.fit.u, k_, distance < 0.0)) {
-        if (stop_ && stop_()) return false;
-        Fit from;
-        from.u = start;
-        from.u(k_) = at_.fit.u(k_) + std::copysign(at, distance);
-        const Fit there = fit_within(at_.misfit, from, felt_coordinates(at_.misfit, from.u), 60, stop_, k_);
+    constexpr double times = 4.0, least = 0.3, hopeless = 30.0;
+    constexpr int few = 8, many = 40;
+    const double at = std::min(std::max(times * std::abs(distance), least), most);
+    for (const Eigen::VectorXd& start : beyond_speeds(at_.misfit.space(), at_.fit.u, k_, distance < 0.0)) {
+      if (stop_ && stop_()) return false;
+      Fit there;
+      there.u = start;
+      there.u(k_) = at_.fit.u(k_) + std::copysign(at, distance);
+      for (const int iterations : {few, many}) {
+        there = fit_within(at_.misfit, there, felt_coordinates(at_.misfit, there.u), iterations, stop_, k_);
         const double rise = there.sum_of_squares - at_.fit.sum_of_squares;
         if (rise < -0.1 && (!better_ || there.sum_of_squares < better_->sum_of_squares)) better_ = there;
-        if (rise < of_minima * at_.rise) return true;
+        if (rise < at_.rise) return true;
+        if (!(rise < hopeless * at_.rise)) break;
       }
     }
     return false;
@@ -191,8 +191,13 @@ class AroundFit {
       return most > 0.0 ? profile.crossing(sign * std::min(half_, most), most) : ProfileEnd{Kind::beyond, 0.0};
     };
     ProfileEnd up = end(1.0, room.above), down = end(-1.0, room.below);
-    for (const auto& [one, most] : {std::pair(&up, room.above), std::pair(&down, room.below)})
-      if (one->kind == Kind::found && profile.goes_on_elsewhere(one->distance, most)) one->kind = Kind::beyond;
+    const auto look_elsewhere = [&](ProfileEnd& one, double sign, double most) {
+      if (one.kind == Kind::beyond || !(most > 0.0)) return;
+      const double from = one.kind == Kind::found ? one.distance : sign * std::min(half_, most);
+      if (profile.goes_on_elsewhere(from, most)) one.kind = Kind::beyond;
+    };
+    look_elsewhere(up, 1.0, room.above);
+    look_elsewhere(down, -1.0, room.below);
     result.low = result.high = std::nullopt;
     const auto is_known = [](const ProfileEnd& one, bool law_ends) {
       return one.kind == Kind::found || (one.kind == Kind::beyond && law_ends);

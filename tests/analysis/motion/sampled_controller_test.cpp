@@ -267,3 +267,32 @@ TEST_CASE("sampled element: differences of a PID, rounding of both ends, and a c
   REQUIRE(element.validate().has_value());
   CHECK(element.validate()->key == "computation_delay");
 }
+
+TEST_CASE("sampled controller of bristles: what is marched between its samples is as accurate as the tolerance") {
+  const double h =
+      GENERATE(0.001, 0.02);  // explicit steps are taken between the samples of the first, refused at the second
+  CAPTURE(h);
+  LoopParts parts = servo_parts(lugre(1.5, 1.0, 0.4));
+  std::get<Pid>(parts.controller).sample_time = h;
+  const Loop loop = in_time_domain(build_loop(parts), lowest_pade_order).loop;
+  constexpr double end = 3.0 + 1.0 / 3.0;
+  const auto at_end = [&](StepperKind kind, double rtol) {
+    LoopField field(loop);
+    State x(field.size(), 0.0);
+    x[0] = 0.3;
+    field.start(x, 0.0);
+    March march(field, kind, loop_weights(loop, rtol));
+    march.begin(x, 0.0);
+    while (march.t() < end) REQUIRE(march.step(end) == Status::converged);
+    return std::pair(field.y(march.x()), march.steps());
+  };
+  const double exact = at_end(StepperKind::fehlberg78, 1e-12).first;
+  double last = infinite;
+  for (const double rtol : {1e-5, 1e-7, 1e-9}) {
+    CAPTURE(rtol);
+    const double error = std::abs(at_end(StepperKind::rodas5p, rtol).first / exact - 1.0);
+    CHECK(error < 100.0 * rtol);
+    CHECK(error < std::max(0.2 * last, 1e-11));
+    last = error;
+  }
+}

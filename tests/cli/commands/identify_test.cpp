@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "limcycle/analysis/study/sensitivity/global/random_stream.hpp"
 #include "limcycle/tests/cli/program.hpp"
 #include "limcycle/tests/setting.hpp"
 
@@ -211,4 +212,50 @@ TEST_CASE("identify: bad free records end with 2 and a sentence with file and ro
   CHECK_THAT(said(still), Contains("the body does not move"));
   CHECK_THAT(said(good + "0.5,NaN,0\n"), Contains("r.csv:42: \"NaN\" in column 2 (position)"));
   CHECK_THAT(said("position,force\n0,0\n"), Contains("has no column \"time\""));
+}
+
+TEST_CASE("identify: a column in thousandths of a unit, as its header says, needs a scale") {
+  const Scratch scratch;
+  std::string rows = "velocity [mm/s],force [N]\n";
+  for (int i = 1; i <= 30; ++i) rows += std::to_string(i) + "," + std::to_string(1.0 + 0.5 * std::exp(-0.1 * i)) + "\n";
+  scratch.put("sweep.csv", rows);
+  const std::string record =
+      "[identify]\nlaw = \"stribeck\"\n[[identify.record]]\nkind = \"steady-velocity\"\n"
+      "file = \"sweep.csv\"\n";
+  const auto refused = run({"identify", scratch.put("a.toml", record)});
+  CHECK(refused.code == 2);
+  CHECK_THAT(refused.err, Contains("\"velocity [mm/s]\" is in mm/s") && Contains("scale = {velocity = 0.001}"));
+  CHECK(run({"identify", scratch.put("b.toml", record + "scale = {velocity = 1e-3}\n")}).code == 0);
+}
+
+TEST_CASE("identify: levels that the records do not determine vary in the fitted case, and every draw is a law") {
+  const Scratch scratch;
+  // A force of 12 N at speeds too slow for any other: it may be that of breaking away.
+  std::string rows = "velocity,force\n";
+  limcycle::RandomStream draw(3, "sweep");
+  for (const int sign : {1, -1})
+    for (int i = 0; i < 25; ++i) {
+      double noise = -6.0;  // normal, nearly
+      for (int k = 0; k < 12; ++k) noise += draw.uniform();
+      rows += std::to_string(sign * 1e-3 * std::pow(200.0, i / 24.0)) + "," +
+              std::to_string(sign * 12.0 + 0.1 * noise) + "\n";
+    }
+  scratch.put("sweep.csv", rows);
+  const std::string case_file = scratch.put(
+      "a.toml",
+      "[loop]\n[loop.plant]\nkind = \"mass\"\nmass = 5.0\n[loop.controller]\nkind = \"pid\"\nkp = 3000.0\nki = 8000.0\n"
+      "kd = 200.0\n[loop.friction]\nkind = \"stribeck\"\nFs = 12.0\nFc = 8.0\nvs = 0.005\n"
+      "[identify]\nlaw = \"stribeck\"\n[[identify.record]]\nkind = \"steady-velocity\"\nfile = \"sweep.csv\"\n"
+      "scale = {velocity = 1e-3}\n");
+  const auto fitted = run({"identify", case_file, "--fitted", scratch.file("f.toml")});
+  CAPTURE(fitted.out, fitted.err);
+  REQUIRE(fitted.code == 0);
+  CHECK_THAT(fitted.out, Contains("do not determine"));
+  const std::string text = scratch.get("f.toml");
+  CHECK_THAT(text, Contains("path = \"loop.friction.Fc\"") && Contains("path = \"loop.friction.Fs\""));
+  const auto ran = run({"sensitivity", scratch.file("f.toml"), "--samples", "64", "--json", scratch.file("s.json")});
+  REQUIRE(ran.code == 0);
+  const auto robustness = Json::parse(scratch.get("s.json"))["robustness"];
+  CAPTURE(robustness.dump());
+  CHECK(robustness["undecided"].get<int>() <= 3);
 }

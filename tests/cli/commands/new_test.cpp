@@ -87,7 +87,7 @@ TEST_CASE("new: a sampled axis with a measured friction curve, in few lines") {
   const Case from = read_case(made.out, "new");
   REQUIRE(from.loop);
   const auto& cascade = std::get<limcycle::Cascade>(from.loop->controller);
-  CHECK(cascade.sample_time == 0.001);
+  CHECK(cascade.sample_time == 0.01);
   CHECK(cascade.position_every == 4.0);
   CHECK(cascade.input_step == 1e-6);
   CHECK(made.out.find("\n# ") < made.out.find("[loop.plant]"));  // comments, but no optional keys

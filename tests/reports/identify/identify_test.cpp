@@ -85,7 +85,8 @@ TEST_CASE("identify report: the fitted law takes the place of the one in the cas
              Contains("[loop.friction]\nkind = \"coulomb\"\nFc = ") && Contains("# not determined by the records"));
   CHECK_THAT(fitted, Contains("[loop.controller]") && Contains("[search]\namplitude = [1.0, 2.0]\n"));
   CHECK_THAT(fitted, !Contains("lugre") && !Contains("identify") && !Contains("samples = 4"));
-  CHECK_THAT(fitted, Contains("path = \"loop.friction.sigma2\"") && !Contains("path = \"loop.friction.Fs\""));
+  CHECK_THAT(fitted, Contains("path = \"loop.friction.sigma2\"") &&
+                         Contains("path = \"loop.friction.Fs\"\ndistribution = \"log-uniform\""));
   IdentifiedLaw joint = report.laws.front();
   joint.correlated = {"Fc", "sigma2", "other"};
   joint.correlations = (Eigen::MatrixXd(3, 3) << 1.0, -0.25, 0.5, -0.25, 1.0, 0.1, 0.5, 0.1, 1.0).finished();

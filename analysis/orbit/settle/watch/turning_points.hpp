@@ -29,17 +29,19 @@ class TurningPoints {
     const bool reversed = (y - last_) * trend_ < 0.0;
     if (y != last_) trend_ = y > last_ ? 1 : -1;
     last_ = y;
+    const double last_swing = points_.empty() ? 0.0 : std::abs(extreme_.y - points_.back().y);
     if (direction_ * (y - extreme_.y) >= 0.0) {
+      // Peaks that are alike but for roundings, as those of a small oscillation, do not begin the wait anew.
+      if (direction_ * (y - advanced_.y) > alike * last_swing) advanced_ = {t, y};
       extreme_ = {t, y};
       return false;
     }
-    if (reversed && !only_large_ && t - extreme_.t > 2.0 * longest_) part_ *= 0.8;
-    const double last_swing = points_.empty() ? 0.0 : std::abs(extreme_.y - points_.back().y);
+    if (reversed && !only_large_ && t - advanced_.t > 2.0 * longest_) part_ *= 0.8;
     if (std::abs(y - extreme_.y) <= part_ * last_swing) return false;
     if (!points_.empty()) longest_ = std::max(longest_, extreme_.t - points_.back().t);
     points_.push_back(extreme_);
     direction_ = -direction_;
-    extreme_ = {t, y};
+    extreme_ = advanced_ = {t, y};
     part_ = share;
     return true;
   }
@@ -58,12 +60,15 @@ class TurningPoints {
     if (y == extreme_.y) return false;
     direction_ = y > extreme_.y ? 1 : -1;
     points_.push_back(extreme_);
-    extreme_ = {t, y};
+    extreme_ = advanced_ = {t, y};
     return true;
   }
 
+  static constexpr double alike = 1e-9;  ///< of the last swing
+
   std::vector<Point> points_;
   Point extreme_{};
+  Point advanced_{};  ///< the last that went clearly beyond the one before
   double last_ = 0.0, part_ = share, longest_ = 0.0;
   int trend_ = 0;
   int direction_ = 0;

@@ -157,7 +157,8 @@ BreakAwayEvent extrapolated(const FrictionRecord& record, std::size_t last, std:
 }
 
 /// Speed that a body at rest is measured to have at most: five standard deviations of the noise of the velocity, which
-/// its second differences show (their median: few of them are of a body that speeds up). 0 of an exact measurement.
+/// its second differences show (their median: few of them are of a body that speeds up). 0 of an exact measurement, and
+/// of one that would always be at rest (the steps of an encoder).
 double speed_at_rest(const FrictionRecord& record, const std::vector<double>& v) {
   if (record.kind != RecordKind::break_away || v.size() < 3) return 0.0;
   constexpr double deviations = 5.0, median_of_normal = 0.6745;
@@ -166,10 +167,12 @@ double speed_at_rest(const FrictionRecord& record, const std::vector<double>& v)
   for (std::size_t i = 1; i + 1 < v.size(); ++i) bends.push_back(std::abs(v[i - 1] - 2.0 * v[i] + v[i + 1]));
   const auto middle = bends.begin() + std::ssize(bends) / 2;
   std::ranges::nth_element(bends, middle);
-  return deviations * *middle / (median_of_normal * std::sqrt(6.0));
+  const double rest = deviations * *middle / (median_of_normal * std::sqrt(6.0));
+  return std::ranges::any_of(v, [&](double one) { return std::abs(one) > rest; }) ? rest : 0.0;
 }
 
-/// Slips of a body that was measured at rest for at least four rows of which none is left out.
+/// Slips of a body that was measured at rest for at least four rows of which none is left out. `v`: measured; empty
+/// without.
 std::vector<BreakAwayEvent> break_aways_of(const FrictionRecord& record, const std::vector<double>& v, double rest) {
   constexpr std::size_t fewest = 4, most = 12, surely = 3;
   std::vector<BreakAwayEvent> events;
@@ -290,7 +293,7 @@ PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing) {
       append_pieces(interval(record, v, i), result.pieces);
       result.pieces.back().sample = compared_at[i + 1];
     }
-    result.break_aways = break_aways_of(record, v, rest);
+    result.break_aways = break_aways_of(record, record.v, rest);
   }
   measure(record, result);
   return result;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "limcycle/models/element/with_memory/rate_limit.hpp"
 #include "limcycle/tests/loops.hpp"

@@ -336,6 +336,15 @@ TEST_CASE("whiteness: white noise passes as often as it should, and a moving ave
   CHECK(rejected < 40);  // 20 expected
 }
 
+TEST_CASE("whiteness: an offset is not white, and few rows are not tested") {
+  RandomStream random(1, "offset");
+  std::vector<double> noise(200);
+  for (double& one : noise) one = random.uniform();
+  CHECK(whiteness(noise).probability < 1e-6);
+  noise.resize(19);
+  CHECK(std::isnan(whiteness(noise).probability));
+}
+
 TEST_CASE("synthesize: a seed gives the same records, and noise of the size that was asked for") {
   const Element truth = stribeck_rig();
   const auto one = synthesize(truth, {}, 9), again = synthesize(truth, {}, 9),

@@ -2,11 +2,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/delay.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
 #include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -247,4 +249,135 @@ TEST_CASE("sampled diagram: the motions are those of the slots and of the cascad
   same(build_loop(parts),
        axis({{"position", "diagram.position", Controller(position), {error}},
              {"velocity", "diagram.velocity", Controller(velocity), {{{1.0, "position", ""}, {-1.0, "axis", "v"}}}}}));
+}
+
+namespace {
+
+struct QuantizedPi {
+  double kp, ki;
+  int delay;  ///< samples
+  double reference;
+};
+
+constexpr double lag_sample = 0.25, reading = 0.01, command = 0.02;
+
+/// 2 exp(-s delay)/(3 s + 1) under a sampled PI that reads in 0.01 and commands in 0.02.
+Loop lag_under(const QuantizedPi& law) {
+  LoopParts parts;
+  FirstOrder plant;
+  plant.gain = 2.0;
+  plant.time_constant = 3.0;
+  plant.delay = law.delay * lag_sample;
+  parts.plant = plant;
+  Pid controller = pid(law.kp, law.ki, 0.0);
+  controller.sample_time = lag_sample;
+  controller.input_step = reading;
+  controller.output_step = command;
+  parts.controller = controller;
+  Saturation<double> limit;
+  limit.limit = 1.0;
+  parts.element = limit;
+  parts.reference = law.reference;
+  return build_loop(parts);
+}
+
+/// Samples after which that loop is exactly where it was, and half its swing at the samples; with the integral counted
+/// in thousandths.
+std::pair<int, double> recursion(const QuantizedPi& law) {
+  constexpr int settling = 8000, more = 4000;
+  const double a = std::exp(-lag_sample / 3.0);
+  double y = 0.0;
+  long integral = 0;
+  std::vector<double> waiting(static_cast<std::size_t>(law.delay), 0.0);
+  std::vector<std::pair<double, long>> past;
+  for (int k = 0; k < settling + more; ++k) {
+    const long count = std::lround(std::floor(y / reading + 0.5));
+    integral += std::lround(1000.0 * law.reference) - 10 * count;
+    const double e = law.reference - static_cast<double>(count) * reading;
+    const double u = law.kp * e + law.ki * lag_sample * static_cast<double>(integral) / 1000.0;
+    past.emplace_back(y, integral);
+    waiting.push_back(std::clamp(command * std::floor(u / command + 0.5), -1.0, 1.0));
+    y = a * y + 2.0 * (1.0 - a) * waiting.front();
+    waiting.erase(waiting.begin());
+  }
+  int period = 0;
+  for (int j = 1; j < 2000 && period == 0; ++j) {
+    const auto& before = past[past.size() - 1 - static_cast<std::size_t>(j)];
+    if (before.second == past.back().second && std::abs(before.first - past.back().first) < 1e-12) period = j;
+  }
+  double low = infinite, high = -infinite;
+  for (std::size_t k = settling; k < past.size(); ++k) {
+    low = std::min(low, past[k].first);
+    high = std::max(high, past[k].first);
+  }
+  return {period, 0.5 * (high - low)};
+}
+
+}  // namespace
+
+TEST_CASE("sampled loops with quanta that repeat themselves after a whole number of samples are cycles of it") {
+  for (const QuantizedPi& law : {QuantizedPi{0.8, 0.3, 2, 1.003}, QuantizedPi{1.0, 0.4, 2, 0.507},
+                                 QuantizedPi{0.6, 0.2, 2, 1.203}, QuantizedPi{0.8, 0.3, 1, 0.777}}) {
+    const auto [period, half_swing] = recursion(law);
+    CAPTURE(law.kp, law.delay, period, half_swing);
+    REQUIRE(period > 0);
+    const Loop loop = in_time_domain(lag_under(law), lowest_pade_order).loop;
+    for (const double start : {0.9, 40.0}) {
+      CAPTURE(start);
+      const Settled found = settled(loop, start);
+      CAPTURE(found.why);
+      REQUIRE(found.outcome == Outcome::cycle);
+      const double samples = found.shot->cycle.period / lag_sample;
+      CHECK(samples == Approx(std::round(samples)).epsilon(1e-9));
+      CHECK(samples == Approx(period).epsilon(1e-9));
+      CHECK(found.shot->cycle.amplitude == Approx(half_swing).epsilon(0.02));  // between samples it swings no farther
+      CHECK(found.shot->cycle.stable == true);
+    }
+  }
+}
+
+TEST_CASE("sampled servo without quanta that creeps to its set-point rests, and does not slide") {
+  LoopParts parts = servo_parts(coulomb(0.3, 0.3));
+  parts.plant = Mass{5.0, 20.0, 0.0};
+  Pid controller = pid(2000.0, 8000.0, 150.0);
+  controller.tf = 0.005;
+  controller.sample_time = 0.01;
+  parts.controller = controller;
+  const Loop loop = in_time_domain(build_loop(parts), lowest_pade_order).loop;
+  for (const double start : {4e-4, 2.078e-5, 1e-5}) {
+    CAPTURE(start);
+    CHECK(settled(loop, start).outcome == Outcome::rest);
+  }
+}
+
+TEST_CASE("a servo that reads in steps hunts by them, however little friction it has") {
+  for (const double Fc : {1e-9, 1e-6, 0.3}) {
+    CAPTURE(Fc);
+    LoopParts parts = servo_parts(coulomb(Fc, Fc));
+    parts.plant = Mass{5.0, 20.0, 0.0};
+    Pid controller = pid(2000.0, 8000.0, 150.0);
+    controller.tf = 0.005;
+    controller.sample_time = 0.01;
+    controller.input_step = 1e-3;
+    parts.controller = controller;
+    parts.reference = 0.00037;
+    const PredictReport report = predict(build_loop(parts), {});
+    for (const auto& one : report.outcomes) {
+      CHECK((one.outcome == Outcome::irregular || one.outcome == Outcome::cycle));
+      if (one.outcome == Outcome::irregular) CHECK(one.irregular.half_range < 1e-3);
+    }
+  }
+}
+
+TEST_CASE("a sampled body that winds up on its bristles for longer than can be followed is said to, early") {
+  LoopParts parts = servo_parts(lugre(1.5, 1.0, 0.4));
+  Pid& controller = std::get<Pid>(parts.controller);
+  controller.sample_time = 0.001;
+  controller.input_step = 1e-6;
+  const Loop loop = in_time_domain(build_loop(parts), lowest_pade_order).loop;
+  SettleOptions options;
+  const Settled found = settle(loop, displaced(loop, 1.36e-5), options);
+  CHECK(found.outcome == Outcome::undecided);
+  CHECK(found.why.find("winds up") != std::string::npos);
+  CHECK(found.steps < options.max_readings / 4);
 }

@@ -114,7 +114,7 @@ TEST_CASE("friction response: derivatives by the numbers are those of the forces
 }
 
 TEST_CASE("friction response: steady sliding is g(v) sgn v + sigma2 v for every law with a curve") {
-  FrictionRecord record{RecordKind::steady_velocity, "sweep", {}, {}, {1e-4, -5e-4, 2e-3, -0.02}, {1, 2, 3, 4}, 0.0};
+  FrictionRecord record{RecordKind::steady_velocity, "sweep", {}, {}, {1e-4, -5e-4, 2e-3, -0.02}, {1, -2, 3, -4}, 0.0};
   const PreparedRecord prepared = prepare(record, false);
   std::vector<double> forces;
   for (const Element& law : {stribeck_rig(), lugre_rig(), elasto_plastic_rig(), gms_rig()}) {

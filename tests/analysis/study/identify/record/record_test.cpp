@@ -132,3 +132,32 @@ TEST_CASE("record: of a long one every few rows are compared, and all move the l
   CHECK(prepared.pieces.size() >= 10 * most_compared - 1);
   CHECK(prepared.notes.size() == 1);
 }
+
+TEST_CASE("record: a force that pushes along the motion is refused, for it has the other sign") {
+  FrictionRecord record = oscillation(301);
+  for (std::size_t i = 0; i < record.F.size(); ++i) record.F[i] = 3.0 * record.v[i] / 5e-3;
+  CHECK(refusal_of(record).empty());
+  for (double& F : record.F) F = -F;
+  CHECK_THAT(refusal_of(record), Contains("pushes along the motion") && Contains("scale = {force = -1.0}"));
+}
+
+TEST_CASE("record: a body at rest whose velocity is noisy rests, and breaks away once") {
+  // A ramp of 1 N/s to 2 N, then sliding at 20 mm/s; noise of 0.1 mm/s.
+  const auto ramp = [](double noise) {
+    FrictionRecord record{RecordKind::break_away, "ramp.csv", {}, {}, {}, {}, 0.0};
+    for (int i = 0; i < 400; ++i) {
+      const double t = 0.01 * i;
+      record.t.push_back(t);
+      const bool slides = t > 2.0;
+      record.v.push_back((slides ? 0.02 : 0.0) + noise * std::sin(12.9898 * i * i));
+      record.F.push_back(slides ? 1.0 : t);
+    }
+    return record;
+  };
+  const PreparedRecord clean = prepare(ramp(0.0), true), noisy = prepare(ramp(1e-4), true);
+  REQUIRE(clean.break_aways.size() == 1);
+  REQUIRE(noisy.break_aways.size() == 1);
+  CHECK(noisy.break_aways[0].F == Approx(clean.break_aways[0].F).epsilon(1e-9));
+  CHECK(noisy.break_aways[0].forward);
+  CHECK(noisy.compared.size() == clean.compared.size());
+}
