@@ -105,7 +105,7 @@ class Settling {
     note();
     const double y = result_.trace.y.back();
     if (std::abs(y) > options_.amplitude_ceiling) return decide(Outcome::divergence, "y grows without bound");
-    if (march_.t() >= 1e15) return decide(Outcome::undecided, "undecided after 1e15 s");
+    if (march_.t() >= 1e15) return after_longest_time();
     low_ = std::min(low_, y);
     high_ = std::max(high_, y);
     if (of_y_.turning.feed(march_.t(), y)) {
@@ -124,6 +124,15 @@ class Settling {
     if (march_.last().by_clock) return read();
     if (auto still = stillness_.switched(march_.t(), march_.x(), dx_)) return come_to(*still);
     if (auto still = switching_.switched(field_, march_.x(), march_.t(), *march_.last().switched)) come_to(*still);
+  }
+
+  /// A body that is held for 1e15 s rests, whatever winds up.
+  void after_longest_time() {
+    bool held = false;
+    for (std::size_t i = 0; i < loop_.elements.size(); ++i)
+      held = held || (field_.holds(i) && loop_.elements[i].may_stick());
+    if (held && field_.y_rate(dx_) == 0.0) return decide(Outcome::rest, "held at rest for 1e15 s");
+    decide(Outcome::undecided, "undecided after 1e15 s");
   }
 
   /// After the clock of a sampled controller has switched.

@@ -247,21 +247,26 @@ class PredictionStudy {
     const Loop in_time =
         loop_.sampled->delay > 0.0 ? loop_in_time(averaged, 0.0).treated.loop : in_time_domain(averaged, order).loop;
     CycleHunt hunt(in_time, options_, box_);
-    const auto moves_on = [&](const BetweenStarts::Start& start) {
-      const Outcome outcome = hunt_->outcomes()[start.outcome].outcome;
-      return outcome == Outcome::irregular || outcome == Outcome::cycle;
-    };
-    const auto from = std::ranges::find_if(starts_, moves_on);
-    const double place = (from == starts_.end() ? starts_.front() : *from).place;
-    const OutcomeOfStart one = hunt.settle_from(displaced(in_time, place), start_name(place));
-    std::string does = "ends in " + std::string(to_string(one.outcome));
-    if (one.cycle) {
-      const Cycle& cycle = hunt.cycles()[*one.cycle];
-      does = "comes to a limit cycle of period " + short_number(cycle.period, 5) + " s and amplitude " +
-             short_number(cycle.amplitude, 4);
+    std::vector<OutcomeOfStart> all;
+    for (const auto& start : starts_) {
+      if (stopped()) return;
+      all.push_back(hunt.settle_from(displaced(in_time, start.place), start_name(start.place)));
     }
-    note("with the continuous controller that acts on average as this one does, and that dead time, the loop " + does +
-         " from " + one.start);
+    std::string does;
+    const auto add = [&](const std::string& what, const auto& is_one) {
+      const auto count = std::ranges::count_if(all, is_one);
+      if (count == 0) return;
+      does += (does.empty() ? "" : ", ") + what + " from " + std::to_string(count) + " of " +
+              std::to_string(all.size()) + " starts";
+    };
+    for (std::size_t i = 0; i < hunt.cycles().size(); ++i)
+      add("comes to a limit cycle of period " + short_number(hunt.cycles()[i].period, 5) + " s",
+          [&](const OutcomeOfStart& one) { return one.cycle == i; });
+    for (const Outcome outcome : {Outcome::rest, Outcome::sliding, Outcome::irregular, Outcome::family,
+                                  Outcome::divergence, Outcome::undecided})
+      add(outcome == Outcome::rest ? "comes to rest" : "ends in " + std::string(to_string(outcome)),
+          [&](const OutcomeOfStart& one) { return !one.cycle && one.outcome == outcome; });
+    note("with the continuous controller that acts on average as this one does, and that dead time, the loop " + does);
   }
 
   void note_memory() {

@@ -166,6 +166,10 @@ Block read_block(const Section& section, const std::string& name) {
     return block;
   }
   if (kind == compensation_kind) throw section.error("on", "is required: the plant whose velocity is compensated");
+  if (!section.find("input") && find_kind(catalogue_of_elements().friction_laws, kind) != nullptr)
+    throw section.error("on",
+                        "is required: the body that friction acts on (or between = [...] for two bodies, or input "
+                        "for a law in the path of a signal)");
   const Keys signal_keys = kind == Constant::kind ? Keys{"name"} : Keys{"name", "input"};
   const Keys keys = with({"kind"}, signal_keys);
   if (kind == TransferFunction::kind)

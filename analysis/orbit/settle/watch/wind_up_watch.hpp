@@ -7,7 +7,7 @@ namespace limcycle {
 
 /// Watches a body that stays on its bristles while a sampled controller winds up: it creeps with every sample, so that
 /// none of them may be leapt over, and may do so for more samples than can be followed. Seen as such is a friction
-/// force that has grown at the same rate, to 1 %, in two windows of 100,000 switches of clocks each.
+/// force that has grown at the same rate, to 1 %, in two windows of 20,000 switches of clocks each.
 class WindUpWatch {
  public:
   explicit WindUpWatch(const Loop& loop);
@@ -20,7 +20,7 @@ class WindUpWatch {
   std::optional<Forecast> read(double t, const LoopField& field);
 
  private:
-  static constexpr long window = 100'000;
+  static constexpr long window = 20'000;
 
   std::optional<std::size_t> rubs_;  ///< the element that rubs last
   double size_ = 0.0;                ///< of its force

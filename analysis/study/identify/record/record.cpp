@@ -156,6 +156,12 @@ BreakAwayEvent extrapolated(const FrictionRecord& record, std::size_t last, std:
   return {mF + tF / tt * ahead, forward, 1.0 / std::sqrt(1.0 / n + ahead * ahead / tt)};
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 /// Speed that a body at rest is measured to have at most: five standard deviations of the noise of the velocity, which
 /// its second differences show (their median: few of them are of a body that speeds up). 0 of an exact measurement, and
 /// of one that would always be at rest (the steps of an encoder).
@@ -165,10 +171,28 @@ double speed_at_rest(const FrictionRecord& record, const std::vector<double>& v)
   std::vector<double> bends;
   bends.reserve(v.size());
   for (std::size_t i = 1; i + 1 < v.size(); ++i) bends.push_back(std::abs(v[i - 1] - 2.0 * v[i] + v[i + 1]));
-  const auto middle = bends.begin() + std::ssize(bends) / 2;
-  std::ranges::nth_element(bends, middle);
-  const double rest = deviations * *middle / (median_of_normal * std::sqrt(6.0));
+  const double rest = deviations * median(std::move(bends)) / (median_of_normal * std::sqrt(6.0));
   return std::ranges::any_of(v, [&](double one) { return std::abs(one) > rest; }) ? rest : 0.0;
+}
+
+/// Notes a velocity that is estimated from positions, if their noise makes it uncertain: the noise by its third
+/// differences, which a smooth motion hardly has.
+void note_estimated_velocity(const FrictionRecord& record, const std::vector<double>& v, PreparedRecord& into) {
+  if (!record.v.empty() || record.t.size() < 8) return;
+  constexpr double worth_saying = 0.05, median_of_normal = 0.6745;
+  const auto& x = record.x;
+  std::vector<double> bends, speeds;
+  for (std::size_t i = 3; i < x.size(); ++i)
+    bends.push_back(std::abs(x[i] - 3.0 * x[i - 1] + 3.0 * x[i - 2] - x[i - 3]));
+  for (const double one : v) speeds.push_back(std::abs(one));
+  const double noise = median(std::move(bends)) / (median_of_normal * std::sqrt(20.0));
+  const double step = (record.t.back() - record.t.front()) / static_cast<double>(record.t.size() - 1);
+  const double share = noise / (std::sqrt(2.0) * step) / median(std::move(speeds));
+  if (share > worth_saying)
+    into.notes.push_back("the velocity is estimated from the position, whose noise makes it uncertain by " +
+                         short_number(100.0 * share, 2) +
+                         " % of a typical speed: numbers that act on the velocity (sigma1, sigma2) may be biased, and "
+                         "their intervals too narrow");
 }
 
 /// Slips of a body that was measured at rest for at least four rows of which none is left out. `v`: measured; empty
@@ -273,6 +297,7 @@ PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing) {
   const std::vector<double> v = velocities(record);
   check_sign(record, v);
   PreparedRecord result;
+  note_estimated_velocity(record, v, result);
   result.kind = record.kind;
   result.name = record.name;
   result.v_start = v.front();

@@ -231,3 +231,17 @@ TEST_CASE("a thermostat of first order: y turns at corners, by its closed form w
     CHECK(settled.shot->cycle.stable == true);
   }
 }
+
+TEST_CASE("settle: a body that the command cannot break away rests, however two integrals wind up") {
+  Cascade law;
+  law.position_kp = 20.0;
+  law.position_ki = 3.0;
+  law.velocity_kp = 300.0;
+  law.velocity_ki = 6000.0;
+  law.limit = 30.0;
+  LoopParts parts = servo_parts(coulomb(35.0, 20.0));
+  parts.plant = Mass{12.0, 5.0, 0.0};
+  parts.controller = law;
+  const Loop loop = build_loop(parts);
+  for (const double start : {1e-3, 1e-5}) CHECK(settle(loop, displaced(loop, start), {}).outcome == Outcome::rest);
+}

@@ -158,6 +158,7 @@ TEST_CASE("diagram: a mistake is refused with line, block and what to write") {
              StartsWith("a.toml:10: diagram.block.name = \"position\": is taken by the block of line 4"));
   CHECK_THAT(message(with(cascade, "name = \"velocity\"", "name = \"r\"")), Contains("is a word of the case format"));
   CHECK_THAT(message(with(cascade, "on = \"axis\"\n", "input = \"axis.v\"\n")), Contains("nothing reads the output"));
+  CHECK_THAT(message(with(cascade, "on = \"axis\"\n", "")), Contains("diagram.guide.on: is required: the body"));
   CHECK_THAT(message(with(cascade, "on = \"axis\"", "on = \"position\"")),
              Contains("diagram.guide") && Contains("acts on position, which is no plant"));
   CHECK_THAT(message(with(cascade, "kind = \"gain\"", "kind = \"gian\"")), Contains("did you mean \"gain\"?"));

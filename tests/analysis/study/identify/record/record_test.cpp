@@ -1,5 +1,6 @@
 #include "limcycle/analysis/study/identify/record/record.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
@@ -160,4 +161,18 @@ TEST_CASE("record: a body at rest whose velocity is noisy rests, and breaks away
   CHECK(noisy.break_aways[0].F == Approx(clean.break_aways[0].F).epsilon(1e-9));
   CHECK(noisy.break_aways[0].forward);
   CHECK(noisy.compared.size() == clean.compared.size());
+}
+
+TEST_CASE("record: a velocity estimated from noisy positions is said to be uncertain, one from exact ones is not") {
+  for (const bool noisy : {true, false}) {
+    CAPTURE(noisy);
+    FrictionRecord record = oscillation(301);
+    record.v.clear();
+    for (std::size_t i = 0; i < record.x.size() && noisy; ++i)
+      record.x[i] += 1e-5 * std::sin(12.9898 * static_cast<double>(i * i));
+    const auto notes = prepare(record, false).notes;
+    const bool said = std::ranges::any_of(
+        notes, [](const std::string& one) { return one.find("estimated from the position") != std::string::npos; });
+    CHECK(said == noisy);
+  }
 }
