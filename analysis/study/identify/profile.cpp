@@ -25,8 +25,8 @@ double farthest(Coordinate coordinate) {
 }
 
 /// Starts for a sliding level that is to fall, or a Stribeck velocity that is to rise: the break-away level is one of
-/// the two levels, sliding is lower, and the velocity between them is the fastest of the records or beyond. None for
-/// other coordinates.
+/// the two levels, sliding is lower, and the velocity between them is beyond the fastest of the records. None for other
+/// coordinates.
 std::vector<Eigen::VectorXd> beyond_speeds(const ParameterSpace& space, const Eigen::VectorXd& u, Eigen::Index k,
                                            bool falls) {
   constexpr double lower = 0.4;  // as a logarithm
@@ -37,7 +37,7 @@ std::vector<Eigen::VectorXd> beyond_speeds(const ParameterSpace& space, const Ei
   const double fastest = std::log(space.numbers()[*vs].high);
   for (const auto& levels : space.bounds()) {
     if (levels.above < 0 || levels.below < 0 || !(falls ? k == levels.below : k == speed)) continue;
-    for (const double beyond : {0.0, std::log(3.0)})
+    for (const double beyond : {std::log(3.0), std::log(30.0)})
       for (const Eigen::Index level : {levels.above, levels.below}) {
         if (level == levels.below && u(levels.above) - u(levels.below) < 1e-3) continue;
         Eigen::VectorXd start = u;
@@ -93,7 +93,8 @@ class Profile {
   /// True if the sum is as low several times that distance away on the same side, from another start: where the level
   /// that the records show is that of breaking away, and sliding lies below it at speeds that they do not reach.
   bool goes_on_elsewhere(double distance, double most) {
-    constexpr double times = 4.0, least = 0.3, hopeless = 30.0;
+    constexpr double times = 4.0, least = 0.3, hopeless = 30.0, far_off = 100.0;
+    Eigen::VectorXd entries;
     constexpr int few = 8, many = 40;
     const double at = std::min(std::max(times * std::abs(distance), least), most);
     for (const Eigen::VectorXd& start : beyond_speeds(at_.misfit.space(), at_.fit.u, k_, distance < 0.0)) {
@@ -101,6 +102,9 @@ class Profile {
       Fit there;
       there.u = start;
       there.u(k_) = at_.fit.u(k_) + std::copysign(at, distance);
+      // Records that say nothing of the fall are met nearly as well at once.
+      const bool answered = at_.misfit.at(there.u, entries, nullptr);
+      if (!answered || entries.squaredNorm() - at_.fit.sum_of_squares > far_off * at_.rise) continue;
       for (const int iterations : {few, many}) {
         there = fit_within(at_.misfit, there, felt_coordinates(at_.misfit, there.u), iterations, stop_, k_);
         const double rise = there.sum_of_squares - at_.fit.sum_of_squares;
