@@ -254,10 +254,13 @@ std::string largest_measured(const IdentifyReport& report) {
 
 const IdentifiedLaw* shown_law(const IdentifyReport& report) {
   if (report.chosen) return &report.laws[*report.chosen];
-  const IdentifiedLaw* best = nullptr;
-  for (const auto& law : report.laws)
-    if (!law.records.empty() && (best == nullptr || law.held_out < best->held_out)) best = &law;
-  return best;
+  const auto error = [](const IdentifiedLaw& law) {
+    return law.records.empty() || std::isnan(law.held_out) ? infinite : law.held_out;
+  };
+  const auto best = std::ranges::min_element(report.laws, {}, error);
+  if (best != report.laws.end() && error(*best) < infinite) return &*best;
+  const auto any = std::ranges::find_if(report.laws, [](const auto& law) { return !law.records.empty(); });
+  return any == report.laws.end() ? nullptr : &*any;
 }
 
 Document identify_document(const std::string& title, const IdentifyReport& report) {
