@@ -17,6 +17,7 @@
 #include "limcycle/analysis/study/composite/composite_predictions.hpp"
 #include "limcycle/analysis/study/predict/between_starts.hpp"
 #include "limcycle/analysis/study/predict/cycle_hunt.hpp"
+#include "limcycle/analysis/study/predict/cycle_search.hpp"
 #include "limcycle/analysis/study/predict/interest.hpp"
 #include "limcycle/analysis/study/predict/loop_in_time.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"
