@@ -66,11 +66,12 @@ class CauseStudy {
     if (ends("without friction compensation", without_compensation(parts_)))
       return decided(CauseKind::over_compensation,
                      "The friction compensation is too strong: without it the loop does not hunt.");
-    if (ends("without quanta", without_quanta(parts_)))
-      return decided(CauseKind::quantization,
-                     "The controller reads, or commands, in steps: with exact numbers the loop does not hunt.");
-    if (ends("without dead time and sampling", without_delay(parts_)))
+    if (ends("without dead time and sampling", without_delay(parts_))) {
+      if (ends("without quanta", without_quanta(parts_)))  // which end with the sampling
+        return decided(CauseKind::quantization,
+                       "The controller reads, or commands, in steps: with exact numbers the loop does not hunt.");
       return decided(CauseKind::delay, "The loop reacts too late: without dead time and sampling it does not hunt.");
+    }
     const bool integral = ends(no_integral, without_integral_action(parts_));
     const std::string level = friction_is_measured(parts_) ? "with a friction curve that is level at its least force"
                                                            : "with Fs lowered to Fc";
