@@ -108,8 +108,8 @@ class Assembly {
         if (ports[k].contact != Contact::opposes) continue;
         const bool same = ports[k].on == ports[i].on && ports[k].against == ports[i].against;
         const bool reversed = ports[k].on == ports[i].against && ports[k].against == ports[i].on;
-        const bool leads = ports[i].contact == Contact::senses || (k > i && hold_together(ports[i], ports[k]));
-        if (!(same || reversed) || !leads || !ports[k].element->facts().has_selection) continue;
+        if (!(same || reversed) || !ports[k].element->facts().has_selection) continue;
+        if (ports[i].contact == Contact::opposes && !(k > i && hold_together(ports[i], ports[k]))) continue;
         loop.ports[i].selection_of = k;
         loop.ports[i].reversed = reversed;
       }

@@ -172,4 +172,8 @@ TEST_CASE("diagram: a law that needs the applied force is no second one at a bod
   by_force.dv = 1e-4;
   CHECK_THROWS_WITH(loop_of_diagram(servo_under({coulomb(0.9, 0.6), by_force})),
                     Catch::Matchers::Contains("holds the same body"));
+  Diagram apart = servo_under({by_force});
+  apart.blocks.push_back(block("b", Plant(Mass{2.0, 0.3, 5.0}), {{{1.0, "a", "y"}, {-1.0, "a", "y"}}}));
+  apart.blocks.push_back(friction("fb", "b", coulomb(0.7, 0.7)));
+  CHECK_NOTHROW(loop_of_diagram(apart));
 }
