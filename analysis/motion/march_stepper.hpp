@@ -37,11 +37,9 @@ struct ExplicitStepper {
 
 /// An explicit step from one switch of a clock to the next: as accurate as an implicit one, at half its cost, where
 /// clocks are faster than bristles. Where it is refused, the implicit stepper goes on, ever longer.
-struct ClockedDopri5 {
+struct ClockedDopri5 : ExplicitStepper<ControlledDopri5> {
   static constexpr int shortest_pause = 16, longest_pause = 1024;  ///< steps from one that was refused to the next try
 
-  ControlledDopri5 controlled;
-  ControlledDopri5::stepper_type plain{};
   State rate_at_end{};
   bool in_use = false;  ///< for the present step
   int pause = shortest_pause, left = 0;
@@ -73,6 +71,7 @@ struct March::Stepper {
   std::optional<ClockedDopri5> clocked;  ///< of a stiff loop with clocks
 
   AnyStepper& any() { return waits ? *waiting : moving; }
+  bool uses_clocked() const { return clocked && clocked->in_use; }
   /// Discards what the steppers keep of earlier steps.
   void restart();
 };

@@ -42,7 +42,7 @@ AnyStepper make_stepper(StepperKind kind, const ErrorWeights& w, LoopField& fiel
 
 March::Stepper::Stepper(StepperKind kind, const ErrorWeights& weights, LoopField& field)
     : moving(make_stepper(kind, weights, field)) {
-  if (kind == StepperKind::rodas5p && field.has_clocks()) clocked.emplace(ClockedDopri5{make_dopri5(weights)});
+  if (kind == StepperKind::rodas5p && field.has_clocks()) clocked.emplace(ClockedDopri5{{make_dopri5(weights)}});
 }
 
 void March::Stepper::restart() {
@@ -115,7 +115,7 @@ bool March::try_step(double& dt) {
     return is_finite(step_.x1);
   }
   const double tried = dt;
-  if (stepper_->clocked && stepper_->clocked->in_use) {
+  if (stepper_->uses_clocked()) {
     if (try_clocked(dt)) return true;
     step_.x1 = x_;
     step_.t1 = t_;
@@ -154,7 +154,7 @@ bool March::try_clocked(double& dt) {
 
 /// The same step with length h: a whole step of the method, not its interpolant.
 void March::repeat(double h, State& out) {
-  if (stepper_->clocked && stepper_->clocked->in_use) {
+  if (stepper_->uses_clocked()) {
     stepper_->clocked->plain.do_step(right_side(field_), step_.x0, step_.dx0, step_.t0, out,
                                      stepper_->clocked->rate_at_end, h);
     return field_.keep_held(step_.x0, out);
@@ -196,7 +196,7 @@ Status March::accepted_step(double& dt) {
 bool March::ends_within_error() {
   constexpr double most = 10.0;  // times the tolerance
   const double h = step_.t1 - step_.t0;
-  const bool is_explicit = kind_ != StepperKind::rodas5p || (stepper_->clocked && stepper_->clocked->in_use);
+  const bool is_explicit = kind_ != StepperKind::rodas5p || stepper_->uses_clocked();
   if (is_explicit || h <= 8.0 * shortest_step()) return true;
   return weights_.norm(step_.x0, step_.x1, repeat_error_) <= most;
 }

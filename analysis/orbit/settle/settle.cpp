@@ -128,10 +128,7 @@ class Settling {
 
   /// A body that is held for 1e15 s rests, whatever winds up.
   void after_longest_time() {
-    bool held = false;
-    for (std::size_t i = 0; i < loop_.elements.size(); ++i)
-      held = held || (field_.holds(i) && loop_.elements[i].may_stick());
-    if (held && field_.y_rate(dx_) == 0.0) return decide(Outcome::rest, "held at rest for 1e15 s");
+    if (is_stuck(field_) && field_.y_rate(dx_) == 0.0) return decide(Outcome::rest, "held at rest for 1e15 s");
     decide(Outcome::undecided, "undecided after 1e15 s");
   }
 

@@ -87,6 +87,13 @@ bool nearly_linear(LoopField& field, const State& centre, const LinearMotion& mo
 
 }  // namespace
 
+bool is_stuck(const LoopField& field) {
+  const auto& elements = field.loop().elements;
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    if (field.holds(i) && elements[i].may_stick()) return true;
+  return false;
+}
+
 bool rubs_at(const LoopField& field, const State& x) {
   const Loop& loop = field.loop();
   const std::size_t last = loop.elements.size() - 1;

@@ -20,6 +20,8 @@ struct LoopSizes {
 };
 LoopSizes loop_sizes(const Loop& loop);
 
+/// True if a body sticks, by a law that holds it.
+bool is_stuck(const LoopField& field);
 /// True if the body rubs at x in the present modes, at a speed above rounding (see rubbing_speed).
 bool rubs_at(const LoopField& field, const State& x);
 

@@ -14,14 +14,6 @@ constexpr int patience = 12;
 constexpr double drift = 1e-6;  ///< rates below this are rounding, in sizes per slowest time constant
 constexpr double fades = 1e-6;  ///< largest rate of a state of rest that no algebra confirms, likewise
 
-/// True if a body sticks, by a law that holds it.
-bool sticks(const LoopField& field) {
-  const auto& elements = field.loop().elements;
-  for (std::size_t i = 0; i < elements.size(); ++i)
-    if (field.holds(i) && elements[i].may_stick()) return true;
-  return false;
-}
-
 }  // namespace
 
 StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, double rtol)
@@ -37,7 +29,7 @@ std::optional<Stillness> StillnessWatch::look(double t, const State& x, const St
   if (verdict == RestWatch::Verdict::moving && !algebra && !waits) return std::nullopt;
   LoopField field(loop_);
   field.modes() = modes;
-  if (waits && sticks(field)) return Stillness{Outcome::rest, "came to rest, but for a drift within rounding"};
+  if (waits && is_stuck(field)) return Stillness{Outcome::rest, "came to rest, but for a drift within rounding"};
   if (verdict == RestWatch::Verdict::at_rest) return at_rest(field, x, dx);
   if (verdict == RestWatch::Verdict::steady && slides_steadily(field, x, dx, scale_))
     return Stillness{Outcome::sliding, "slides at constant speed"};
@@ -109,7 +101,7 @@ std::optional<Stillness> StillnessWatch::at_rest(LoopField& field, const State& 
   const auto still = [](bool slides) {
     return slides ? Stillness{Outcome::sliding, "slides at constant speed"} : Stillness{Outcome::rest, "came to rest"};
   };
-  if (sticks(field) && rest_.rate(dx) > rounding && !approach_from(field, x, scale_) &&
+  if (is_stuck(field) && rest_.rate(dx) > rounding && !approach_from(field, x, scale_) &&
       !held_while_winding_up(field, x, dx, scale_))
     return std::nullopt;
   const auto found = standstill_near(field, x, scale_);
