@@ -7,6 +7,7 @@
 #include "limcycle/models/element/memoryless/lookup.hpp"
 #include "limcycle/models/element/memoryless/quantizer.hpp"
 #include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/element/memoryless/sine.hpp"
 #include "limcycle/models/element/memoryless/window.hpp"
 #include "limcycle/models/element/of_controllers/clamped_pi.hpp"
 #include "limcycle/models/element/of_controllers/compensation.hpp"
@@ -60,8 +61,9 @@ struct KindList {
 using FrictionLaws = KindList<Coulomb, Stribeck, StribeckTable, Karnopp, Quinn, Kikuuwe, Awrejcewicz, Wojewoda, Dahl,
                               BoucWen, LuGre, LuGreTable, LuGreSpline, ElastoPlastic, Leuven, Jenkins, MaxwellSlip,
                               Iwan, Gms, GmsTable, Xiong, TwoState, NonDrift>;
-using ForwardElements = KindList<Relay, Saturation, RateLimit, DeadZone, HystereticDeadZone, Backlash, ValveStiction,
-                                 Cubic, Lookup, ClampedPi, ResetIntegrator, StopResetIntegrator, Impulses, Window>;
+using ForwardElements =
+    KindList<Relay, Saturation, RateLimit, DeadZone, HystereticDeadZone, Backlash, ValveStiction, Cubic, Sine, Lookup,
+             ClampedPi, ResetIntegrator, StopResetIntegrator, Impulses, Window>;
 using ErrorElements = KindList<DeadZone, Quantizer, Saturation>;
 using MadeElements = KindList<Compensation, OutputRate, DelayedRelay, Gravity, Sampled>;
 

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "limcycle/models/diagram/assemble.hpp"
+#include "limcycle/models/diagram/expand.hpp"
 #include "limcycle/models/diagram/on_clock.hpp"
+#include "limcycle/models/diagram/quanta.hpp"
 #include "limcycle/models/element/memoryless/quantizer.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/sampled_response.hpp"
@@ -110,14 +112,17 @@ std::optional<BrokenRule> validate_sampling(const LoopParts& parts) {
   return std::nullopt;
 }
 
+bool has_no_elements(const Diagram& diagram) {
+  return std::ranges::none_of(diagram.blocks,
+                              [](const Block& block) { return std::holds_alternative<Element>(block.what); });
+}
+
 std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
   const PlantModel plant = model_of(parts.plant);
   const ControllerModel controller = model_of(parts.controller);
   if (const auto* froude = std::get_if<FroudePendulum>(&parts.plant); froude && froude->clearance > 0.0)
     return BrokenRule{"loop.plant.clearance",
                       "must be 0 in a loop: clearance needs `limcycle experiment froude-pendulum`"};
-  if (!parts.element && !parts.friction && !parts.error)
-    return BrokenRule{"loop", "needs a nonlinear element: add [loop.friction], [loop.element] or [loop.error]"};
   if (parts.element && needs_applied_force(*parts.element))
     return BrokenRule{"loop.element", "needs the applied force: it can only stand as [loop.friction]"};
   if (parts.friction && (!does_not_reach(plant.C_x, plant.B_F) || !does_not_reach(plant.C_y, plant.B_F)))
@@ -133,7 +138,12 @@ std::optional<BrokenRule> validate_slots(const LoopParts& parts) {
   if (const auto* pid = std::get_if<Pid>(&parts.controller)) together = pid->broken_together();
   if (together) return BrokenRule{"loop.controller." + together->key, together->rule};
   if (auto broken = validate_error(parts, controller.D_rate)) return broken;
-  return validate_sampling(parts);
+  if (auto broken = validate_sampling(parts)) return broken;
+  const bool named = parts.element || parts.friction || parts.error;
+  if (!named &&
+      has_no_elements(short_form(parts, sampling_of(parts.controller).is_on() ? Clock::averaged : Clock::continuous)))
+    return BrokenRule{"loop", "needs a nonlinear element: add [loop.friction], [loop.element] or [loop.error]"};
+  return std::nullopt;
 }
 
 std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {
@@ -159,8 +169,10 @@ std::optional<BrokenRule> validate_diagram(const Diagram& diagram) {
     if (element != nullptr && block.contact == Contact::none && needs_applied_force(*element))
       return BrokenRule{block.path, "needs the applied force: it can only act on a body, with `on`"};
   }
-  if (!nonlinear) return BrokenRule{"diagram", "needs a nonlinear element, such as a friction law"};
-  return broken_clocks(diagram);
+  if (auto broken = broken_clocks(diagram)) return broken;
+  if (!nonlinear && has_no_elements(with_quantizers(expanded(diagram))))
+    return BrokenRule{"diagram", "needs a nonlinear element, such as a friction law"};
+  return std::nullopt;
 }
 
 /// What does not go together with a sampled controller yet.

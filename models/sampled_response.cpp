@@ -93,17 +93,24 @@ class SampledEquations {
   void write_element(std::size_t k) {
     const Index row = output(k);
     left_(row, row) = 1.0;
-    if (const Sampled<double>* part = clock(k)) return write_part(k, *part);
-    if (const auto known = position(averaged_, loop_.ports[k].path)) right_(row, static_cast<Index>(*known)) = 1.0;
+    const Sampled<double>* part = clock(k);
+    if (part && !position(averaged_, loop_.ports[k].path)) return write_part(k, *part);
+    if (const auto known = position(averaged_, loop_.ports[k].path))
+      right_(row, static_cast<Index>(*known)) = part ? out_of(*part) : 1.0;
+  }
+
+  /// From what a part puts out at its ticks to its output in between, behind its delay.
+  Complex out_of(const Sampled<double>& part) const {
+    return hold(s_ * period(part)) * std::exp(-s_ * part.computation_delay);
   }
 
   /// X_(k+1) = A X_k + B e_k + hold_back (limited - u_k), u_k = C X_k + D e_k.
   void write_part(std::size_t k, const Sampled<double>& part) {
     const Index row = output(k), first = first_own_[k];
-    const auto limit = position(averaged_, loop_.ports[k].path + ".limit");
+    const auto limit = position(averaged_, loop_.ports[k].path + ".limit"),
+               steps = position(averaged_, loop_.ports[k].path + ".steps");
     const RowVectorXcd e = input(k), u = command(k, part);
-    const Complex z = std::exp(s_ * period(part)),
-                  out = hold(s_ * period(part)) * std::exp(-s_ * part.computation_delay);
+    const Complex z = std::exp(s_ * period(part)), out = out_of(part);
     for (Index i = 0; i < part.order(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       left_(first + i, first + i) += z;
@@ -114,8 +121,8 @@ class SampledEquations {
       left_.row(first + i) += part.hold_back[at] * u;
       right_(first + i, static_cast<Index>(*limit)) += part.hold_back[at];
     }
-    if (limit)
-      right_(row, static_cast<Index>(*limit)) = out;
+    if (steps || limit)
+      right_(row, static_cast<Index>(steps ? *steps : *limit)) = out;
     else
       left_.row(row) -= out * u;
   }
@@ -127,11 +134,14 @@ class SampledEquations {
     return u;
   }
 
-  /// Input of the limit of a part of the controller, an element of the averaged loop only: the command, or of a PI that
-  /// holds its integral itself the error.
+  /// Input of the limit of a part of the controller, or of the steps behind it, an element of the averaged loop only:
+  /// the command, or of a PI that holds its integral itself the error, or of steps what the limit lets through.
   RowVectorXcd limited(std::size_t i) const {
     const std::string& path = averaged_.ports[i].path;
-    const std::size_t k = position(loop_, path.substr(0, path.rfind('.'))).value();
+    const std::string whole = path.substr(0, path.rfind('.'));
+    if (const auto limit = position(averaged_, whole + ".limit"); limit && *limit != i)
+      return RowVectorXcd::Unit(std::ssize(averaged_.elements), static_cast<Index>(*limit));
+    const std::size_t k = position(loop_, whole).value();
     const bool own_integral = averaged_.elements[i].as<ClampedPi<double>>() != nullptr;
     return (own_integral ? input(k) : command(k, *clock(k))) * solution_;
   }

@@ -129,18 +129,20 @@ Json spread_json(const std::optional<RootSpread>& spread) {
 }
 
 Json prediction_json(const Prediction& prediction) {
-  return {{"method", prediction.method},
-          {"amplitude", number(prediction.amplitude)},
-          {"frequency", number(prediction.frequency)},
-          {"stable", or_null(prediction.stable)},
-          {"verdict", to_string(prediction.verdict)},
-          {"cycle", or_null(prediction.cycle)},
-          {"input_amplitude", number(prediction.input_amplitude)},
-          {"residual", number(prediction.residual)},
-          {"why", prediction.why},
-          {"harmonics", prediction.harmonics},
-          {"uncertainty", spread_json(prediction.spread)},
-          {"trust", trust_json(prediction.trust)}};
+  Json out = {{"method", prediction.method},
+              {"amplitude", number(prediction.amplitude)},
+              {"frequency", number(prediction.frequency)},
+              {"stable", or_null(prediction.stable)},
+              {"verdict", to_string(prediction.verdict)},
+              {"cycle", or_null(prediction.cycle)},
+              {"input_amplitude", number(prediction.input_amplitude)},
+              {"residual", number(prediction.residual)},
+              {"why", prediction.why},
+              {"harmonics", prediction.harmonics},
+              {"uncertainty", spread_json(prediction.spread)},
+              {"trust", trust_json(prediction.trust)}};
+  if (prediction.sampling) out["sampling"] = spread_json(prediction.sampling);
+  return out;
 }
 
 /// Appends a number as the library does; null for one that does not exist. A table has a million of them, so that no
@@ -216,6 +218,7 @@ Json outcome_json(const OutcomeOfStart& outcome, const std::optional<std::size_t
     out["mean_period"] = number(outcome.irregular.mean_period);
     out["periods"] = {number(outcome.irregular.shortest_period), number(outcome.irregular.longest_period)};
     out["observed"] = number(outcome.irregular.observed);
+    if (outcome.irregular.beat_frequency > 0.0) out["beat_frequency"] = number(outcome.irregular.beat_frequency);
   }
   return out;
 }

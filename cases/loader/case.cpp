@@ -129,6 +129,8 @@ const SimulateOptions& need_simulate(const Case& from) {
 const Element& df_element(const Case& from) {
   if (!from.loop) return need_element(from);
   const Subject subject = subject_of(*from.loop);
+  if (subject.element == nullptr && !from.loop->diagram)
+    throw missing(from, "loop.friction", "is required by this command: the loop holds neither friction nor an element");
   if (subject.element == nullptr)
     throw missing(from, "diagram", "has several friction laws or elements: a describing function is of one");
   return *subject.element;

@@ -5,6 +5,7 @@
 
 #include "limcycle/models/diagram/controller_blocks.hpp"
 #include "limcycle/models/diagram/expand.hpp"
+#include "limcycle/models/diagram/quanta.hpp"
 #include "limcycle/models/linear/discrete.hpp"
 
 namespace limcycle {
@@ -51,6 +52,11 @@ bool reads(const Block& block, const std::string& name) {
       block.inputs, [&](const SignalSum& sum) { return std::ranges::find(sum, name, &Term::block) != sum.end(); });
 }
 
+bool is_read_on_clock(const Diagram& diagram, const std::string& name) {
+  return std::ranges::any_of(diagram.blocks,
+                             [&](const Block& block) { return clock_of(block) != nullptr && reads(block, name); });
+}
+
 const Block& named(const Diagram& diagram, const std::string& name) {
   return diagram.blocks[*find_block(diagram, name)];
 }
@@ -89,8 +95,8 @@ void add_encoders(std::vector<Block>& behind, const Diagram& diagram, Block& blo
   shared.sample_time = tick_of(diagram);
   for (Term& term : block.inputs.front()) {
     if (!is_plant(diagram, term.block)) continue;
-    const std::string name = block.name + ".encoder" + (behind.empty() ? "" : std::to_string(behind.size() + 1));
-    behind.push_back({name, block.path + ".encoder", encoder(shared, every), {{{1.0, term.block, term.output}}}});
+    const std::string suffix = encoder_name(behind.size()), name = block.name + suffix;
+    behind.push_back({name, block.path + suffix, encoder(shared, every), {{{1.0, term.block, term.output}}}});
     term = {term.factor, name, ""};
   }
 }
@@ -222,8 +228,10 @@ std::optional<BrokenRule> broken_clocks(const Diagram& given) {
     const double count = ticks(*sampling, tick);
     if (std::abs(sampling->sample_time - count * tick) > 1e-9 * sampling->sample_time)
       return refuse("must be a whole multiple of the shortest sample_time in the diagram");
-    if (sampling->computation_delay >= tick)
-      return BrokenRule{block.path + ".computation_delay", "must be less than the shortest sample_time in the diagram"};
+    if (sampling->computation_delay >= tick && is_read_on_clock(diagram, block.name))
+      return BrokenRule{block.path + ".computation_delay",
+                        "must be less than the shortest sample_time in the diagram where a sampled block reads " +
+                            block.name + ": it reads it one sample late for any delay above 0"};
     if (!has_differences(*controller)) return refuse("must not be the inverse of a pole of the controller");
   }
   return std::nullopt;

@@ -16,7 +16,8 @@ std::vector<std::string> numbered(Eigen::Index n) {
   return names;
 }
 
-constexpr double widest_window = 100.0;  ///< samples: the past inputs are states
+constexpr double widest_window = 100.0;   ///< samples: the past inputs are states
+constexpr double latest_command = 100.0;  ///< samples: the commands that wait are states
 constexpr double slowest_position = 1e6;
 
 }  // namespace
@@ -30,7 +31,8 @@ std::optional<BrokenRule> Sampling::broken_together() const {
       if (value > 0.0) return BrokenRule{key, "needs sample_time: a continuous controller has none"};
     return std::nullopt;
   }
-  if (computation_delay >= sample_time) return BrokenRule{"computation_delay", "must be less than sample_time"};
+  if (computation_delay > latest_command * sample_time)
+    return BrokenRule{"computation_delay", "must be at most 100 times sample_time"};
   if (velocity_window != std::floor(velocity_window) || velocity_window > widest_window)
     return BrokenRule{"velocity_window", "must be a whole number of samples, at most 100"};
   return std::nullopt;

@@ -51,8 +51,8 @@ struct Sampling {
   static void append_clock(std::vector<Parameter<Owner, double>>& table) {
     table.push_back({"sample_time", "s", "time between two readings of y; 0: continuous", &Owner::sample_time,
                      not_negative, false});
-    table.push_back({"computation_delay", "s", "from a reading to its command, less than sample_time",
-                     &Owner::computation_delay, not_negative, false});
+    table.push_back(
+        {"computation_delay", "s", "from a reading to its command", &Owner::computation_delay, not_negative, false});
     table.push_back(
         {"input_step", "m", "y is read in multiples of it; 0: exactly", &Owner::input_step, not_negative, false});
     table.push_back({"output_step", "N", "the command comes in multiples of it; 0: exactly", &Owner::output_step,

@@ -66,6 +66,8 @@ constexpr std::array typical_rows{
     TypicalRow{"element", "backlash", "half_gap", {"0.1", "0.1 to 10 % of the largest input"}},
     TypicalRow{"element", "valve-stiction", "S", {"0.1", "1 to 10 % of the travel"}},
     TypicalRow{"element", "valve-stiction", "J", {"0.05", "0 to S"}},
+    TypicalRow{"element", "sine", "amplitude", {"1.0", "of the output"}},
+    TypicalRow{"element", "sine", "period", {"6.283185307179586", "of the input: a turn"}},
     TypicalRow{"element", "lookup", "inputs", {"[0.0, 1.0, 3.0]", "ascending; from 0: odd"}},
     TypicalRow{"element", "lookup", "outputs", {"[0.0, 2.0, 3.0]", "at these inputs"}},
     TypicalRow{"element", "clamped-pi", "ki", {"1.0", ""}},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "limcycle/analysis/study/predict/interest.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
@@ -76,11 +77,15 @@ std::string irregular_size(const PredictReport& report, const Units& units) {
       std::ranges::max_element(report.outcomes, {}, [](const OutcomeOfStart& one) { return one.irregular.half_range; });
   const IrregularMotion& motion = largest->irregular;
   const bool always = count(report, Outcome::irregular) == report.outcomes.size();
-  return fmt::format(" {}: half-range {}, mean period {} s, single ones from {} to {} s over {} s.",
+  const std::string beat = motion.beat_frequency > 0.0
+                               ? fmt::format(" Against the samples it beats once in {} s.",
+                                             with_digits(2.0 * std::numbers::pi / motion.beat_frequency, 2))
+                               : "";
+  return fmt::format(" {}: half-range {}, mean period {} s, single ones from {} to {} s over {} s.{}",
                      always ? "It never comes to rest" : "Where it moves",
                      Units::attach(with_digits(motion.half_range, 3), units.y), with_digits(motion.mean_period, 4),
                      with_digits(motion.shortest_period, 4), with_digits(motion.longest_period, 4),
-                     with_digits(motion.observed, 2));
+                     with_digits(motion.observed, 2), beat);
 }
 
 std::string without_cycle(const PredictReport& report, const Units& units) {

@@ -75,6 +75,9 @@ TEST_CASE("elements are odd where they say so") {
   Cubic<double> cubic;
   cubic.coefficient = 2.0;
   check_odd(cubic, {{0}});
+  Sine<double> sine;
+  sine.amplitude = 2.0;
+  check_odd(sine, {{0}});
   auto uneven = coulomb(1.5, 1.0);
   uneven.Fc_minus = 0.8;
   CHECK_FALSE(uneven.odd());

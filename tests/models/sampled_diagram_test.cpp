@@ -231,7 +231,11 @@ TEST_CASE("sampled diagram: rules") {
   Pid late = on_computer(slow, 0.06);
   late.computation_delay = 0.03;
   CHECK(rule(late, fast) ==
-        "diagram.position.computation_delay: must be less than the shortest sample_time in the diagram");
+        "diagram.position.computation_delay: must be less than the shortest sample_time in the diagram where a sampled "
+        "block reads position: it reads it one sample late for any delay above 0");
+  Pid behind = fast;
+  behind.computation_delay = 0.05;
+  CHECK(rule(on_computer(slow, 0.06), behind).empty());
   Pid counted = pid(1.0, 0.0, 0.0);
   counted.input_step = 0.1;
   CHECK(rule(counted, fast) == "diagram.position.input_step: needs sample_time: a continuous controller has none");

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -156,7 +157,8 @@ std::optional<IrregularMotion> motion_after(double share, const Trace& trace, bo
                          returns.times.back() - returns.times.front(),
                          std::accumulate(sizes.begin(), sizes.end(), 0.0) / static_cast<double>(sizes.size()),
                          smallest,
-                         largest};
+                         largest,
+                         0.0};
 }
 
 }  // namespace
@@ -177,6 +179,14 @@ double repeat_time(const Trace& trace) {
   const Returns returns = returns_to(0.5 * (*low + *high), trace, from);
   const std::size_t lag = repeat_lag(returns, *high - *low, same);
   return lag > 0 ? returns.times.back() - returns.times[returns.times.size() - 1 - lag] : 0.0;
+}
+
+double beat_frequency(const IrregularMotion& motion, double repetition) {
+  if (!(motion.longest_period - motion.shortest_period < repetition)) return 0.0;
+  const double turns = motion.mean_period / repetition, beats = std::abs(turns - std::round(turns));
+  constexpr double fewest = 2.0;
+  if (!(beats * motion.observed >= fewest * motion.mean_period)) return 0.0;
+  return 2.0 * std::numbers::pi * beats / motion.mean_period;
 }
 
 bool agree(const IrregularMotion& one, const IrregularMotion& other) {

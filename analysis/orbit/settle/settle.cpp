@@ -188,8 +188,7 @@ class Settling {
   bool is_known_irregular(const IrregularMotion& motion) {
     const auto known = [&](const IrregularMotion& other) { return agree(other, motion); };
     if (std::ranges::none_of(options_.known_irregular, known)) return false;
-    result_.irregular = motion;
-    decide(Outcome::irregular, "bounded without a period, in the range of another start");
+    come_to(motion, "bounded without a period, in the range of another start");
     return true;
   }
 
@@ -205,9 +204,8 @@ class Settling {
     if (!motion || !again || !agree(*motion, *again))
       return motion ? "bounded, but its range differs between two tolerances"
                     : "step limit reached before rest or a cycle was recognised";
-    result_.irregular = *again;
-    decide(Outcome::irregular,
-           exact ? "bounded without a period" : "bounded without a period; a second tolerance gives the same range");
+    come_to(*again,
+            exact ? "bounded without a period" : "bounded without a period; a second tolerance gives the same range");
     return {};
   }
 
@@ -230,6 +228,12 @@ class Settling {
       trace.rate.push_back(field.y_rate(march.last().dx1));
     }
     return trace;
+  }
+
+  void come_to(const IrregularMotion& motion, std::string why) {
+    result_.irregular = motion;
+    if (loop_.continuous) result_.irregular.beat_frequency = beat_frequency(motion, repetition_time(loop_));
+    decide(Outcome::irregular, std::move(why));
   }
 
   void come_to(Stillness& still) {

@@ -48,8 +48,10 @@ CompositePredictions composite_predictions(CompositeBalance& balance, const Sear
     p.frequency = root.frequency;
     p.residual = root.residual;
     p.stable = root.stable;
-    if (!root.on_break_away_front)
+    if (!root.on_break_away_front) {
       p.spread = root_spread(balance.loop(), root_of_composite(), root.force, root.frequency);
+      p.sampling = sampling_band(balance.loop(), root_of_composite(), root.force, root.frequency);
+    }
     result.predictions.push_back(std::move(p));
   }
   result.roots = std::move(found.roots);

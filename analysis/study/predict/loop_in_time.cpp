@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "limcycle/analysis/motion/parallel.hpp"
+#include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/models/element/of_controllers/sampled.hpp"
 
 namespace limcycle {
 
@@ -12,12 +14,32 @@ bool exact_in_time(const Loop& loop) {
   return loop.delay == 0.0 || in_time_domain(loop, lowest_pade_order).pade_order == 0;
 }
 
+namespace {
+
+/// True if a sampled controller that reads in steps also commands in steps: the describing functions see the former.
+bool has_steps_in_command(const Loop& sampled) {
+  bool reads = false, commands = false;
+  for (std::size_t i = 0; i < sampled.elements.size(); ++i) {
+    const Sampled<double>* part = sampled_at(sampled, i);
+    reads = reads || (part && part->input_quantum > 0.0);
+    commands = commands || (part && part->output_quantum > 0.0);
+  }
+  return reads && commands;
+}
+
+}  // namespace
+
 LoopInTime loop_in_time(const Loop& loop, double highest) {
   if (loop.sampled) {
     LoopInTime made = loop_in_time(*loop.sampled, highest);
+    const bool seen = std::ranges::any_of(loop.ports, [](const Port& port) {
+      return port.path.ends_with(".encoder") || port.path.ends_with(".steps");  // beside no other element
+    });
     made.note =
         "the controller reads and writes at its sample instants in every simulation; the describing functions see "
-        "its pulse transfer function, hold and computation delay, without aliases and without its quanta" +
+        "its pulse transfer function, hold and computation delay, without aliases and " +
+        std::string(seen ? "with its quanta as those of a quantizer" : "without its quanta") +
+        (seen && has_steps_in_command(*loop.sampled) ? ", but without those of its command" : "") +
         (made.note.empty() ? "" : "; " + made.note) +
         (made.treated.pade_order > 0 ? ", which the ripple between two samples passes with a wrong phase" : "");
     return made;

@@ -287,6 +287,10 @@ class PredictionStudy {
         note("prediction " + std::to_string(i) + ": the uncertainty of the data leaves a standard deviation of " +
              percent(spread->amplitude) + " in its amplitude and of " + percent(spread->frequency) +
              " in its frequency");
+    for (std::size_t i = 0; i < report_.predictions.size(); ++i)
+      if (const auto& band = report_.predictions[i].sampling)
+        note("prediction " + std::to_string(i) + ": by the instants of the samples its amplitude is up to " +
+             percent(band->amplitude) + " larger or smaller, its frequency up to " + percent(band->frequency));
   }
 
   void finish() {

@@ -46,7 +46,7 @@ struct PredictOptions {
 /// Verdict on a prediction.
 enum class Verdict { confirmed, biased, wrong, undecided };  // "wrong" is printed "false"
 
-/// Standard deviations, relative, of a root that stands on measured data of known deviation.
+/// Standard deviations, or half-widths, relative, of a root.
 struct RootSpread {
   double amplitude = 0.0, frequency = 0.0;
 };
@@ -60,11 +60,12 @@ struct Prediction {
   double residual = 0.0;         ///< of the method's own equation at the root
   std::optional<bool> stable;    ///< Loeb's rule; empty if it does not decide, or for harmonic balance
   Verdict verdict = Verdict::undecided;
-  std::optional<std::size_t> cycle;    ///< index of the matching cycle
-  std::string why;                     ///< one sentence
-  int harmonics = 1;                   ///< number of harmonics that the method balances
-  std::optional<Trust> trust{};        ///< assessment of the method's assumptions here, before any check in time
-  std::optional<RootSpread> spread{};  ///< of measured plants; empty if their data state no uncertainty
+  std::optional<std::size_t> cycle;      ///< index of the matching cycle
+  std::string why;                       ///< one sentence
+  int harmonics = 1;                     ///< number of harmonics that the method balances
+  std::optional<Trust> trust{};          ///< assessment of the method's assumptions here, before any check in time
+  std::optional<RootSpread> spread{};    ///< of measured plants; empty if their data state no uncertainty
+  std::optional<RootSpread> sampling{};  ///< half-widths by the instants of the samples, see sampling_band()
 };
 
 /// Outcome of a simulation from one start.

@@ -85,6 +85,19 @@ double reach(const Loop& loop, double slow, double fast) {
   return std::min(open, std::max(beyond, largest_response(with_gains(loop, gain_within), level, 0.1 * slow, fast)));
 }
 
+/// Largest amplitude of interest in a loop of which quantizers are all that is not linear: far above their steps it is
+/// a linear loop. Infinite for any other.
+double where_steps_count(const Loop& loop) {
+  constexpr double many = 30.0;
+  const auto rounds = [](const Element& element) { return element.as<Quantizer<double>>() != nullptr; };
+  if (loop.elements.empty() || !std::ranges::all_of(loop.elements, rounds)) return infinite;
+  double largest = loop.elements.back().switching_input();  // or what a step of another one makes of its input
+  for (std::size_t k = 0; k + 1 < loop.elements.size(); ++k)
+    largest = std::max(
+        largest, std::abs(loop.ports.back().D(static_cast<Eigen::Index>(k))) * loop.elements[k].switching_input());
+  return many * largest;
+}
+
 }  // namespace
 
 /// Two decades around the loop's poles; amplitudes up to three times the largest response to the element's level there,
@@ -104,7 +117,7 @@ SearchBox default_search_box(const Loop& loop) {
     box.frequency_max = std::min(box.frequency_max, std::max(3.0 * fastest_resonance(loop), 30.0 / loop.delay));
   double largest = reach(loop, slow, fast);
   if (!(largest > 0.0)) largest = 1.0;
-  box.amplitude_max = std::min(3.0 * largest, widest_swing(loop));
+  box.amplitude_max = std::min({3.0 * largest, widest_swing(loop), where_steps_count(loop)});
   box.amplitude_min = 1e-6 * box.amplitude_max;
   return box;
 }

@@ -9,6 +9,8 @@
 #include "limcycle/analysis/golden_maximum.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/remedy/without.hpp"
+#include "limcycle/models/diagram/quanta.hpp"
+#include "limcycle/models/element/memoryless/quantizer.hpp"
 
 namespace limcycle {
 namespace {
@@ -50,6 +52,15 @@ std::optional<FallingRange> falling_range_of(const Element& law) {
       golden_maximum([&](double v) { return -force(v); }, speeds[least - 1], speeds[least], speeds[least + 1], 40)};
 }
 
+/// True if the steps of a sampled controller are all that is not linear.
+bool only_quanta_bend(const LoopParts& parts) {
+  const Loop loop = build_loop(parts);
+  return loop.sampled &&
+         std::ranges::all_of(loop.elements,
+                             [](const Element& element) { return element.as<Quantizer<double>>() != nullptr; }) &&
+         has_only_quanta(parts);
+}
+
 class CauseStudy {
  public:
   /// A loop without its cause comes to rest soon, or is no answer: a sampled one is not followed for long.
@@ -66,6 +77,10 @@ class CauseStudy {
     if (ends("without friction compensation", without_compensation(parts_)))
       return decided(CauseKind::over_compensation,
                      "The friction compensation is too strong: without it the loop does not hunt.");
+    if (only_quanta_bend(parts_))
+      return decided(CauseKind::quantization,
+                     "The controller reads, or commands, in steps, and nothing else in the loop "
+                     "is not linear: with exact numbers it does not hunt.");
     if (ends("without dead time and sampling", without_delay(parts_))) {
       if (ends("without quanta", without_quanta(parts_)))  // which end with the sampling
         return decided(CauseKind::quantization,

@@ -1,7 +1,5 @@
 #pragma once
-#include <cmath>
-
-#include "limcycle/models/element/concepts.hpp"
+#include "limcycle/models/element/memoryless/sine.hpp"
 
 namespace limcycle {
 
@@ -21,25 +19,22 @@ struct Gravity : Memoryless<S> {
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
 
-  S output(const Input<S>& in, Mode, std::span<const S>) const {
-    using std::sin;
-    return mass * gravity * arm * sin(in.x);
-  }
+  S output(const Input<S>& in, Mode mode, std::span<const S> z) const { return torque().output(in, mode, z); }
   bool odd() const { return true; }
   Scales scales() const { return {.output = value_of(mass * gravity * arm)}; }
 
-  /// The mean of sin(b + A sin wt) is J0(A) sin b (Abramowitz and Stegun, 9.1.44-45), J0 the Bessel function.
-  double mean_output(double b, double A) const {
-    return value_of(mass * gravity * arm) * std::cyl_bessel_j(0.0, std::abs(A)) * std::sin(b);
-  }
-  double mean_slope(double b, double A) const {
-    return value_of(mass * gravity * arm) * std::cyl_bessel_j(0.0, std::abs(A)) * std::cos(b);
+  double mean_output(double b, double A) const { return torque().mean_output(b, A); }
+  double mean_slope(double b, double A) const { return torque().mean_slope(b, A); }
+  std::optional<std::complex<double>> exact_describing_function(double A, double w,
+                                                                double bias) const requires std::same_as<S, double> {
+    return torque().exact_describing_function(A, w, bias);
   }
 
-  /// N = mass gravity arm 2 J1(A)/A cos(bias): the sine part of sin(b + A sin wt) is 2 J1(A) cos b.
-  std::optional<std::complex<double>> exact_describing_function(double A, double,
-                                                                double bias) const requires std::same_as<S, double> {
-    return mass * gravity * arm * 2.0 * std::cyl_bessel_j(1.0, A) / A * std::cos(bias);
+ private:
+  Sine<S> torque() const {
+    Sine<S> sine;
+    sine.amplitude = mass * gravity * arm;
+    return sine;
   }
 };
 

@@ -32,7 +32,8 @@ struct Sampled {
   std::vector<S> A, B, C, hold_back;
 
   static constexpr std::string_view kind = "sampled";
-  static constexpr int first_own = 2;  ///< position of X in the state
+  static constexpr int first_own = 2;      ///< position of X in the state
+  static constexpr double latest = 100.0;  ///< samples from a reading to its output: those between are states
   static constexpr bool piecewise_affine = true;
   static constexpr std::string_view equation =
       "u_k = C X_k + D e_k, X_(k+1) = A X_k + B e_k, e_k = input at k sample_time; u_k is held";
@@ -63,7 +64,8 @@ struct Sampled {
       return BrokenRule{"A", "must be of the order of B and C"};
     if (!hold_back.empty() && hold_back.size() != B.size())
       return BrokenRule{"hold_back", "must be of the order of B and C"};
-    if (computation_delay >= sample_time) return BrokenRule{"computation_delay", "must be less than the sample time"};
+    if (computation_delay > latest * sample_time)
+      return BrokenRule{"computation_delay", "must be at most 100 sample times"};
     return std::nullopt;
   }
 

@@ -44,6 +44,7 @@ double last_of_recursion(const Process& of, const Element& element, double y0, d
   int samples = 0;
   std::deque<std::pair<double, double>> past;  ///< of the plant: time from which on, and y and command there
   std::deque<double> commands;
+  std::deque<std::pair<double, double>> waiting;  ///< times of commands, and these
   past.emplace_back(0.0, y0);
   commands.push_back(0.0);
   const auto at = [&](double when) {
@@ -58,18 +59,21 @@ double last_of_recursion(const Process& of, const Element& element, double y0, d
     y = rest + (y - rest) * std::exp(-(to - t) / of.time_constant);
     t = to;
   };
-  while (true) {
-    const double tick = samples++ * of.sample_time, out = tick + of.computation_delay;
-    if (out > end) break;
-    if (tick > t) go(tick);
+  const auto put_out_until = [&](double when) {
+    for (; !waiting.empty() && waiting.front().first <= when; waiting.pop_front()) {
+      go(std::max(t, waiting.front().first));
+      command = waiting.front().second;
+      past.emplace_back(t, y);
+      commands.push_back(command);
+    }
+  };
+  for (double tick = 0.0; tick <= end; tick = ++samples * of.sample_time) {
+    put_out_until(tick);
     const double e = -at(tick - of.delay);
     integral += of.sample_time * e;
-    const double next = element(of.kp * e + of.ki * integral);
-    if (out > t) go(out);
-    command = next;
-    past.emplace_back(t, y);
-    commands.push_back(command);
+    waiting.emplace_back(tick + of.computation_delay, element(of.kp * e + of.ki * integral));
   }
+  put_out_until(end);
   go(end);
   return y;
 }
@@ -94,7 +98,7 @@ TEST_CASE("dead time before a sampled controller: exact, for any number of sampl
   for (int k = 0; k < samples(20); ++k) {
     Process of;
     of.sample_time = 0.05 + part(random);
-    of.computation_delay = k % 2 == 0 ? 0.0 : part(random) * of.sample_time;
+    of.computation_delay = k % 2 == 0 ? 0.0 : (k % 3 == 0 ? 1.0 : 4.0 * part(random)) * of.sample_time;
     // Also a whole number of samples, where each reading coincides with a command.
     of.delay = k % 3 == 0 ? (1 + k) * of.sample_time : 3.0 * part(random);
     of.kp = 2.0 * part(random);
@@ -124,7 +128,8 @@ TEST_CASE("relay with sampling and dead time: locked cycles of closed form, and 
   // Between two commands the plant tends to +-gain: y = gain tanh(period/(4 time_constant)) at its turns, the period
   // being an even number of samples. Deviations of y decay with the plant.
   for (const double ki : {0.0, 0.2})
-    for (const auto& [delay, computation] : {std::pair(0.0, 0.0), {0.93, 0.0}, {1.0, 0.0}, {0.0, 0.07}, {0.93, 0.07}}) {
+    for (const auto& [delay, computation] :
+         {std::pair(0.0, 0.0), {0.93, 0.0}, {1.0, 0.0}, {0.0, 0.07}, {0.93, 0.07}, {0.0, 0.2}, {0.93, 0.5}}) {
       Process of;
       of.ki = ki;
       of.delay = delay;

@@ -213,6 +213,29 @@ TEST_CASE("a body that slides on a belt with constant friction on an undamped sp
   }
 }
 
+TEST_CASE("beat of a motion against the samples of its loop: the distance of its period from whole samples") {
+  // A period of 10.3 samples, the phase of which wobbles with the beat.
+  constexpr double sample = 0.1, period = 10.3 * sample, beat = 2.0 * M_PI * 0.3 / period;
+  const auto motion = [](double wobble) {
+    Trace trace;
+    for (int i = 0; i < 40000; ++i) {
+      const double t = 0.01 * i, phase = 2.0 * M_PI * t / period + wobble * std::sin(beat * t);
+      trace.t.push_back(t);
+      trace.y.push_back(std::sin(phase));
+      trace.rate.push_back(std::cos(phase) * (2.0 * M_PI / period + wobble * beat * std::cos(beat * t)));
+    }
+    const auto found = permanent_motion(trace, true);
+    REQUIRE(found);
+    return *found;
+  };
+  const IrregularMotion regular = motion(0.1);
+  const double error = 2.0 * M_PI * (regular.longest_period - regular.shortest_period) / (sample * regular.observed);
+  CHECK(std::abs(beat_frequency(regular, sample) - beat) <= error);
+  CHECK(error < 0.05 * beat);
+  CHECK(beat_frequency(motion(0.9), sample) == 0.0);     // single periods differ by more than a sample
+  CHECK(beat_frequency(regular, period / 10.0) == 0.0);  // whole samples on the mean: no beat was seen
+}
+
 TEST_CASE("a body that creeps to rest at the edge of stiction rests, however long it waited before") {
   // Viscous friction is stronger than the fall of the curve at low speed (delta = 2), and the slowest pole of the
   // sliding motion is real (-0.22 1/s, beside -0.54 +- 0.63j): with a start of y0, the integrator winds up for Fs/(ki

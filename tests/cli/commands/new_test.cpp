@@ -118,8 +118,8 @@ TEST_CASE("new: the kinds that are told beside the chosen one are those that may
   CHECK(others(text, "loop.error") == "# others quantizer, saturation ");
   CHECK(others(text, "loop.element")
             .starts_with("# others saturation, rate-limit, dead-zone, hysteretic-dead-zone, backlash, # "
-                         "valve-stiction, cubic, lookup, "
-                         "clamped-pi, reset-integrator, # stop-reset-integrator, impulses, window, or a"));
+                         "valve-stiction, cubic, sine, "
+                         "lookup, clamped-pi, reset-integrator, # stop-reset-integrator, impulses, window, or a"));
 }
 
 TEST_CASE("new: every element on the error, and every friction law as an element, where the format has it") {

@@ -33,6 +33,7 @@ void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& ba
     p.stable = balance.stable(root.amplitude, root.frequency, root.index);
     p.trust = trust(loop, balance, root.amplitude, root.frequency);
     p.spread = root_spread(loop, root_of_df(), root.amplitude, root.frequency);
+    p.sampling = sampling_band(loop, root_of_df(), root.amplitude, root.frequency);
     result.predictions.push_back(std::move(p));
   }
   if (options.stop && options.stop()) return;

@@ -20,4 +20,10 @@ struct RootOf {
 /// Cost: 4 evaluations of both functions, and 4 more for each measured plant.
 std::optional<RootSpread> root_spread(const Loop& loop, const RootOf& root, double a, double w);
 
+/// How much a root of a sampled loop moves with the instants of its samples, relative, to first order: what the
+/// controller puts out is held for a sample, and an element that waits for it may meet it at its beginning or at its
+/// end, half a sample from the mean that the hold stands for. Empty without a sampled controller. Cost: 6 evaluations
+/// of both functions.
+std::optional<RootSpread> sampling_band(const Loop& loop, const RootOf& root, double a, double w);
+
 }  // namespace limcycle
