@@ -91,7 +91,7 @@ const loop = table('The loop, or one lone friction or element', {
   reference: reference_of_loop,
   load: number('a constant force on the plant, such as weight, N', { default: 0 }),
 }, [], {
-  anyOf: ['friction', 'element', 'error'].map((key) => ({ required: [key] })),
+  anyOf: ['friction', 'element', 'error', 'controller'].map((key) => ({ required: [key] })),
   if: { maxProperties: 1, anyOf: ['friction', 'element'].map((key) => ({ required: [key] })) },
   else: { required: ['plant'] },
 });

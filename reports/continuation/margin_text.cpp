@@ -147,10 +147,11 @@ std::string margin_answer(const MarginReport& report, const Units& units) {
   }
   const auto design = smallest_change(report, false), law = smallest_change(report, true);
   const std::string verb = report.hunts ? "ends it" : "starts one";
+  const std::string where = report.status == Status::interrupted ? "the numbers below" : "plant or controller";
   if (design)
-    out += fmt::format(" The smallest change of plant or controller that {}: {}.", verb, in_words(*design));
+    out += fmt::format(" The smallest change of {} that {}: {}.", where, verb, in_words(*design));
   else if (std::ranges::any_of(report.parameters, [](const auto& one) { return !one.parameter.friction; }))
-    out += fmt::format(" No single change of plant or controller within a factor of {:g} {}{}.", report.factor, verb,
+    out += fmt::format(" No single change of {} within a factor of {:g} {}{}.", where, report.factor, verb,
                        has_unknown_side(report) ? " (some directions are undetermined)" : "");
   if (law) out += fmt::format(" The smallest change of the friction: {}.", in_words(*law));
   return out + of_balance(report);

@@ -44,8 +44,10 @@ def broken_json(document):
 
 
 def names_its_place(message, file):
-    """Does it name a file with a line or a key, or an option?"""
+    """Does it name a file with a line or a key, be it one of data that the case names, or an option?"""
     rest = message.partition(os.path.basename(file))[2] if os.path.basename(file) in message else ""
+    if re.search(r"[\w-]+\.csv:\d+: ", message):
+        return True
     return bool(re.match(r":\d+: |: (the file |[\w.\[\]\"-]+( =|:| ))", rest)) or "--" in message
 
 

@@ -24,16 +24,18 @@ OutcomeSide::OutcomeSide(const MarginParameter& parameter, bool up, const Margin
       progress_(std::move(progress)),
       limit_(up ? parameter.value * options.factor : parameter.value / options.factor) {}
 
-OutcomeSide::Does OutcomeSide::does(double p) const {
+OutcomeSide::Does OutcomeSide::does(double p) {
   const auto loop = parameter_.family(p);
   if (!loop) return Does::invalid;
   const Loop time = loop_in_time(*loop, 0.0).treated.loop;
-  const SettleOptions settling = cycle_search(time, starts_.box, options_.accuracy, options_.predict.stop);
+  SettleOptions settling = cycle_search(time, starts_.box, options_.accuracy, options_.predict.stop);
+  settling.known_irregular = known_;
   Does all = Does::ends;
   for (const double place : starts_.displacements) {
     const Settled motion = settle(time, displaced(time, place), settling);
     switch (motion.outcome) {
       case Outcome::irregular:
+        known_.push_back(motion.irregular);
         return Does::hunts;
       case Outcome::cycle:
         if (motion.shot && motion.shot->cycle.stable == true) return Does::hunts;
@@ -54,7 +56,7 @@ OutcomeSide::Does OutcomeSide::does(double p) const {
 }
 
 /// Halves the distance of the two values until they are close, or a simulation does not decide.
-void OutcomeSide::bisect(bool hunts, Change& change) const {
+void OutcomeSide::bisect(bool hunts, Change& change) {
   constexpr double narrow = 2e-3;
   while (std::abs(std::log(change.changed / change.as_now)) > narrow && !stopped()) {
     const double middle = change.as_now * std::sqrt(change.changed / change.as_now);
@@ -68,7 +70,7 @@ void OutcomeSide::bisect(bool hunts, Change& change) const {
 
 /// A value a little beyond the change at which the loop does again what it does at its own: near an edge a motion that
 /// never repeats itself may end by chance. Nothing if there is none short of `far`.
-std::optional<double> OutcomeSide::as_now_beyond(bool hunts, const Change& change, double far) const {
+std::optional<double> OutcomeSide::as_now_beyond(bool hunts, const Change& change, double far) {
   const double outward = change.changed / change.as_now > 1.0 ? 1.0 : -1.0;
   for (const double farther : {1.01, 1.0 + looked_beyond}) {
     const double p = change.changed * std::pow(farther, outward);

@@ -1,7 +1,9 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <vector>
 
+#include "limcycle/analysis/orbit/settle/irregular.hpp"
 #include "limcycle/analysis/study/continuation/margin.hpp"
 
 namespace limcycle {
@@ -26,14 +28,14 @@ class OutcomeSide {
 
  private:
   enum class Does { hunts, ends, diverges, undecided, invalid };
-  Does does(double p) const;
+  Does does(double p);
   /// Two values, and what the loop does at the second.
   struct Change {
     double as_now, changed;
     Does then;
   };
-  void bisect(bool hunts, Change& change) const;
-  std::optional<double> as_now_beyond(bool hunts, const Change& change, double far) const;
+  void bisect(bool hunts, Change& change);
+  std::optional<double> as_now_beyond(bool hunts, const Change& change, double far);
   MarginSide located(bool hunts, Change change);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
 
@@ -42,6 +44,7 @@ class OutcomeSide {
   Starts starts_;
   std::function<void(double)> progress_;
   double limit_;
+  std::vector<IrregularMotion> known_;  ///< at other values: one of the same size and period needs no second tolerance
 };
 
 }  // namespace limcycle

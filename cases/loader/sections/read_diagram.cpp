@@ -217,11 +217,12 @@ void check_names(const Section& section, const Diagram& diagram) {
   }
 }
 
-/// Throws for a block whose output nothing reads: a wire was forgotten, or the block.
+/// Throws for a block whose output nothing but itself reads: a wire was forgotten, or the block.
 void check_all_are_read(const Section& section, const Diagram& diagram) {
   for (const Block& block : diagram.blocks) {
     const auto reads = [&](const Block& other) {
       if (other.on == block.name || other.against == block.name) return true;
+      if (&other == &block) return false;
       return std::ranges::any_of(other.inputs, [&](const SignalSum& sum) {
         return std::ranges::find(sum, block.name, &Term::block) != sum.end();
       });

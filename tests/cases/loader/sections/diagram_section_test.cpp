@@ -170,6 +170,10 @@ TEST_CASE("diagram: a mistake is refused with line, block and what to write") {
                             "[[diagram.block]]\nname = \"extra\"\nkind = \"gain\"\ngain = 1.0\n" +
                             "input = \"axis.y\"\n";
   CHECK_THAT(message(loose), Contains("diagram.extra") && Contains("nothing reads the output"));
+  const std::string of_itself = std::string(cascade) +
+                                "[[diagram.block]]\nname = \"extra\"\nkind = \"low-pass\"\ntime_constant = 1.0\n" +
+                                "input = \"axis.y - extra\"\n";
+  CHECK_THAT(message(of_itself), Contains("diagram.extra") && Contains("nothing reads the output"));
   CHECK_THAT(message(with(cascade, "input = \"position - axis.v\"", "input = \"position - velocity\"")),
              Contains("diagram.velocity") && Contains("algebraic loop"));
 }
