@@ -64,8 +64,8 @@ struct Sampled {
       return BrokenRule{"A", "must be of the order of B and C"};
     if (!hold_back.empty() && hold_back.size() != B.size())
       return BrokenRule{"hold_back", "must be of the order of B and C"};
-    if (computation_delay > latest * sample_time)
-      return BrokenRule{"computation_delay", "must be at most 100 sample times"};
+    if (computation_delay > latest * sample_time * every)
+      return BrokenRule{"computation_delay", "must be at most 100 times the time between two readings"};
     return std::nullopt;
   }
 

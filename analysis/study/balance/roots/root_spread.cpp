@@ -43,8 +43,10 @@ Eigen::Vector2d kept(const RootSlopes& at, const Eigen::Vector3d& by) {
   return {by(2) + at.slopes.row(2) * step, step(1)};
 }
 
-/// A sampled loop of which everything that leaves the controller is that much later.
-Loop later(Loop loop, double by) {
+/// A sampled loop of which everything that leaves the controller is that much later; empty where another part of it
+/// reads all of that.
+std::optional<Loop> later(Loop loop, double by) {
+  bool any = false;
   auto sampled = std::make_shared<Loop>(*loop.sampled);
   const auto is_read_on_clock = [&](std::size_t j) {
     for (std::size_t i = 0; i < sampled->elements.size(); ++i)
@@ -57,7 +59,9 @@ Loop later(Loop loop, double by) {
     Sampled<double> moved = *part;
     moved.computation_delay += by;
     sampled->elements[j] = Element(moved);
+    any = true;
   }
+  if (!any) return std::nullopt;
   loop.sampled = std::move(sampled);
   return loop;
 }
@@ -92,8 +96,9 @@ std::optional<RootSpread> sampling_band(const Loop& loop, const RootOf& root, do
   const auto at = slopes_at(loop, root, a, w);
   if (!at) return std::nullopt;
   const double half = 0.5 * sample_time(*loop.sampled), step = difference / w;
-  const Eigen::Vector3d by =
-      (values(later(loop, step), root, a, w) - values(later(loop, -step), root, a, w)) * (half / (2.0 * step));
+  const auto late = later(loop, step), early = later(loop, -step);
+  if (!late || !early) return std::nullopt;
+  const Eigen::Vector3d by = (values(*late, root, a, w) - values(*early, root, a, w)) * (half / (2.0 * step));
   const Eigen::Vector2d moved = kept(*at, by).cwiseAbs();
   if (!moved.allFinite()) return std::nullopt;
   return RootSpread{moved(0), moved(1)};
