@@ -76,6 +76,11 @@ std::string irregular_size(const PredictReport& report, const Units& units) {
   const auto largest =
       std::ranges::max_element(report.outcomes, {}, [](const OutcomeOfStart& one) { return one.irregular.half_range; });
   const IrregularMotion& motion = largest->irregular;
+  int digits = 4;  // and as many as tell the shortest period from the longest
+  constexpr int most_digits = 8;
+  while (digits < most_digits &&
+         with_digits(motion.shortest_period, digits) == with_digits(motion.longest_period, digits))
+    ++digits;
   const bool always = count(report, Outcome::irregular) == report.outcomes.size();
   const std::string beat = motion.beat_frequency > 0.0
                                ? fmt::format(" Against the samples it beats once in {} s.",
@@ -83,8 +88,8 @@ std::string irregular_size(const PredictReport& report, const Units& units) {
                                : "";
   return fmt::format(" {}: half-range {}, mean period {} s, single ones from {} to {} s over {} s.{}",
                      always ? "It never comes to rest" : "Where it moves",
-                     Units::attach(with_digits(motion.half_range, 3), units.y), with_digits(motion.mean_period, 4),
-                     with_digits(motion.shortest_period, 4), with_digits(motion.longest_period, 4),
+                     Units::attach(with_digits(motion.half_range, 3), units.y), with_digits(motion.mean_period, digits),
+                     with_digits(motion.shortest_period, digits), with_digits(motion.longest_period, digits),
                      with_digits(motion.observed, 2), beat);
 }
 
