@@ -58,6 +58,11 @@ void scale(PredictedOscillation& one, double k) {
   }
 }
 
+void scale(IrregularMotion& one, double k) {
+  for (double* size : {&one.half_range, &one.mean_amplitude, &one.smallest_amplitude, &one.largest_amplitude})
+    *size *= k;
+}
+
 void scale(Estimate& one, double k) {
   one.value *= k;
   one.low *= k;
@@ -79,13 +84,12 @@ PredictReport in_units(PredictReport report, const Units& units) {
   for (Prediction& one : report.predictions) {
     one.amplitude *= k;
     if (one.trust) scale(one.trust->band.amplitude, k);
+    if (one.motion) scale(*one.motion, k);
   }
   for (OutcomeOfStart& one : report.outcomes) {
     scale_displacement(one.start, k);
     scale(one.trace, k);
-    for (double IrregularMotion::*size : {&IrregularMotion::half_range, &IrregularMotion::mean_amplitude,
-                                          &IrregularMotion::smallest_amplitude, &IrregularMotion::largest_amplitude})
-      one.irregular.*size *= k;
+    scale(one.irregular, k);
   }
   return report;
 }

@@ -128,13 +128,13 @@ Json spread_json(const std::optional<RootSpread>& spread) {
   return {{"amplitude", number(spread->amplitude)}, {"frequency", number(spread->frequency)}};
 }
 
-Json prediction_json(const Prediction& prediction) {
+Json prediction_json(const Prediction& prediction, const std::optional<std::size_t>& cycle) {
   Json out = {{"method", prediction.method},
               {"amplitude", number(prediction.amplitude)},
               {"frequency", number(prediction.frequency)},
               {"stable", or_null(prediction.stable)},
               {"verdict", to_string(prediction.verdict)},
-              {"cycle", or_null(prediction.cycle)},
+              {"cycle", or_null(cycle)},
               {"input_amplitude", number(prediction.input_amplitude)},
               {"residual", number(prediction.residual)},
               {"why", prediction.why},
@@ -188,24 +188,25 @@ void append_point(std::string& out, const DfPoint& point, const DescribingFuncti
   out.append(R"(","status":")").append(to_string(result.status)).append(R"("})");
 }
 
-/// Adds the motions of a sampled loop that are not locked to its samples to the cycles, each once, and the index to its
-/// outcomes.
-void add_unlocked(const PredictReport& report, Json& cycles, std::vector<std::optional<std::size_t>>& cycle_of) {
-  std::vector<std::pair<const IrregularMotion*, std::size_t>> known;
-  for (std::size_t i = 0; i < report.outcomes.size(); ++i) {
-    const OutcomeOfStart& one = report.outcomes[i];
-    if (!(report.sample_time > 0.0) || one.outcome != Outcome::irregular) continue;
-    const auto same =
-        std::ranges::find_if(known, [&](const auto& other) { return agree(*other.first, one.irregular); });
-    if (same == known.end()) {
-      cycle_of[i] = cycles.size();
-      known.emplace_back(&one.irregular, cycles.size());
+/// The motions of a sampled loop that are not locked to its samples, each once, as cycles behind the others.
+class UnlockedMotions {
+ public:
+  UnlockedMotions(const PredictReport& report, Json& cycles) {
+    if (!(report.sample_time > 0.0)) return;
+    for (const OutcomeOfStart& one : report.outcomes) {
+      if (one.outcome != Outcome::irregular || index_of(one.irregular)) continue;
+      known_.emplace_back(&one.irregular, cycles.size());
       cycles.push_back(unlocked_json(one.irregular));
-    } else {
-      cycle_of[i] = same->second;
     }
   }
-}
+  std::optional<std::size_t> index_of(const IrregularMotion& motion) const {
+    const auto same = std::ranges::find_if(known_, [&](const auto& other) { return agree(*other.first, motion); });
+    return same == known_.end() ? std::nullopt : std::optional(same->second);
+  }
+
+ private:
+  std::vector<std::pair<const IrregularMotion*, std::size_t>> known_;
+};
 
 Json outcome_json(const OutcomeOfStart& outcome, const std::optional<std::size_t>& cycle) {
   Json out = {{"start", outcome.start},
@@ -245,14 +246,16 @@ std::string predict_json(const Provenance& provenance, const PredictReport& repo
   Json top;
   for (const char* key : {"cycles", "predictions", "missed", "outcomes"}) top[key] = Json::array();
   for (const auto& cycle : report.cycles) top["cycles"].push_back(cycle_json(cycle, report.sample_time));
-  std::vector<std::optional<std::size_t>> cycle_of;
-  for (const auto& outcome : report.outcomes) cycle_of.push_back(outcome.cycle);
-  add_unlocked(report, top["cycles"], cycle_of);
-  for (const auto& prediction : report.predictions) top["predictions"].push_back(prediction_json(prediction));
+  const UnlockedMotions unlocked(report, top["cycles"]);
+  for (const auto& prediction : report.predictions)
+    top["predictions"].push_back(
+        prediction_json(prediction, prediction.motion ? unlocked.index_of(*prediction.motion) : prediction.cycle));
   for (const auto& missed : report.missed)
     top["missed"].push_back({{"method", missed.method}, {"cycle", missed.cycle}});
-  for (std::size_t i = 0; i < report.outcomes.size(); ++i)
-    top["outcomes"].push_back(outcome_json(report.outcomes[i], cycle_of[i]));
+  for (const auto& outcome : report.outcomes) {
+    const bool irregular = outcome.outcome == Outcome::irregular;
+    top["outcomes"].push_back(outcome_json(outcome, irregular ? unlocked.index_of(outcome.irregular) : outcome.cycle));
+  }
   top["search"] = {
       {"amplitude", Json::array({number(report.search.amplitude_min), number(report.search.amplitude_max)})},
       {"frequency", Json::array({number(report.search.frequency_min), number(report.search.frequency_max)})}};

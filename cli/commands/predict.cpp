@@ -44,9 +44,10 @@ int exit_code(const PredictReport& report, bool require_agreement) {
     return std::any_of(report.predictions.begin(), report.predictions.end(),
                        [&](const auto& one) { return one.verdict == verdict; });
   };
-  // No method predicts a motion without a period.
+  // No method predicts a motion without a period, but perhaps the mean of one.
   const bool irregular =
-      std::ranges::find(report.outcomes, Outcome::irregular, &OutcomeOfStart::outcome) != report.outcomes.end();
+      std::ranges::find(report.outcomes, Outcome::irregular, &OutcomeOfStart::outcome) != report.outcomes.end() &&
+      std::ranges::none_of(report.predictions, [](const Prediction& one) { return one.motion.has_value(); });
   if (any(Verdict::wrong) || any(Verdict::biased) || !report.missed.empty() || irregular) return exit_disagreed;
   // An undecided verdict is no agreement.
   return any(Verdict::undecided) || !answered ? exit_no_answer : exit_done;

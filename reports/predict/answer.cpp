@@ -163,6 +163,14 @@ std::string of_one(const PredictReport& report, const Prediction& one, const Uni
                                        Units::attach(with_digits(one.amplitude, sentence_digits), units.y),
                                        with_digits(one.frequency, sentence_digits));
   if (one.verdict == Verdict::wrong) return "predicts a limit cycle (" + size + ") that does not exist";
+  if (one.motion) {
+    const std::string of_size = deviation(one.amplitude, one.motion->mean_amplitude),
+                      of_speed = deviation(one.frequency, 2.0 * std::numbers::pi / one.motion->mean_period);
+    if (one.verdict == Verdict::biased)
+      return fmt::format("finds this motion on the mean, but the amplitude is {} and the frequency {}", of_size,
+                         of_speed);
+    return fmt::format("finds this motion on the mean: amplitude {}, frequency {}", of_size, of_speed);
+  }
   if (one.verdict == Verdict::undecided || !one.cycle || *one.cycle >= report.cycles.size())
     return "predicts a limit cycle (" + size + "), which is unverified";
   const Cycle& cycle = report.cycles[*one.cycle];

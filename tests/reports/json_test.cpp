@@ -61,7 +61,10 @@ TEST_CASE("predict: a sampled loop tells of each cycle if it is locked, and of a
   report.outcomes = {one, one};
   report.outcomes.back().irregular.mean_period = 5.01;  // the same motion, from another start
   one.irregular.mean_period = 9.0;
+  one.irregular.beat_frequency = 0.25;
   report.outcomes.push_back(one);
+  report.predictions.front().motion = one.irregular;
+  report.predictions.front().sampling = RootSpread{0.02, 0.01};
   const auto document = OrderedJson::parse(predict_json(provenance(), report));
   const auto& cycles = document["cycles"];
   REQUIRE(cycles.size() == report.cycles.size() + 2);
@@ -79,6 +82,10 @@ TEST_CASE("predict: a sampled loop tells of each cycle if it is locked, and of a
   CHECK(document["outcomes"][0]["cycle"] == first);
   CHECK(document["outcomes"][1]["cycle"] == first);
   CHECK(document["outcomes"][2]["cycle"] == first + 1);
+  CHECK(document["outcomes"][2]["beat_frequency"] == 0.25);
+  CHECK_FALSE(document["outcomes"][0].contains("beat_frequency"));
+  CHECK(document["predictions"][0]["cycle"] == first + 1);
+  CHECK(document["predictions"][0]["sampling"] == OrderedJson({{"amplitude", 0.02}, {"frequency", 0.01}}));
 }
 
 TEST_CASE("predict: keys and values") {

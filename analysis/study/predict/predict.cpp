@@ -289,8 +289,9 @@ class PredictionStudy {
              " in its frequency");
     for (std::size_t i = 0; i < report_.predictions.size(); ++i)
       if (const auto& band = report_.predictions[i].sampling)
-        note("prediction " + std::to_string(i) + ": by the instants of the samples its amplitude is up to " +
-             percent(band->amplitude) + " larger or smaller, its frequency up to " + percent(band->frequency));
+        note("prediction " + std::to_string(i) + ": depending on where its swings meet the samples, its amplitude is " +
+             "up to " + percent(band->amplitude) + " and its frequency up to " + percent(band->frequency) +
+             " larger or smaller");
   }
 
   void finish() {

@@ -60,12 +60,13 @@ struct Prediction {
   double residual = 0.0;         ///< of the method's own equation at the root
   std::optional<bool> stable;    ///< Loeb's rule; empty if it does not decide, or for harmonic balance
   Verdict verdict = Verdict::undecided;
-  std::optional<std::size_t> cycle;      ///< index of the matching cycle
-  std::string why;                       ///< one sentence
-  int harmonics = 1;                     ///< number of harmonics that the method balances
-  std::optional<Trust> trust{};          ///< assessment of the method's assumptions here, before any check in time
-  std::optional<RootSpread> spread{};    ///< of measured plants; empty if their data state no uncertainty
-  std::optional<RootSpread> sampling{};  ///< half-widths by the instants of the samples, see sampling_band()
+  std::optional<std::size_t> cycle;         ///< index of the matching cycle
+  std::string why;                          ///< one sentence
+  int harmonics = 1;                        ///< number of harmonics that the method balances
+  std::optional<Trust> trust{};             ///< assessment of the method's assumptions here, before any check in time
+  std::optional<RootSpread> spread{};       ///< of measured plants; empty if their data state no uncertainty
+  std::optional<IrregularMotion> motion{};  ///< of a sampled loop: what it refers to, if that is locked to no sample
+  std::optional<RootSpread> sampling{};     ///< half-widths by the instants of the samples, see sampling_band()
 };
 
 /// Outcome of a simulation from one start.

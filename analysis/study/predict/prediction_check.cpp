@@ -47,6 +47,8 @@ void PredictionCheck::check(Prediction& p, const LoopState& start, std::string n
     return compare(p, hunt_.cycles(), *cycle);
   // The criterion of a balance may err: a stable cycle at its place is what it predicted.
   if (outcome.cycle && is_close(p, hunt_.cycles()[*outcome.cycle])) return compare(p, hunt_.cycles(), *outcome.cycle);
+  if (loop_.continuous && outcome.outcome == Outcome::irregular && p.stable != false && compare(p, outcome.irregular))
+    return;
   conclude_without_cycle(p, outcome);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "limcycle/analysis/short_number.hpp"
 
@@ -61,6 +62,20 @@ void compare(Prediction& prediction, const std::vector<Cycle>& cycles, std::size
     prediction.verdict = Verdict::biased;
     prediction.why += "; its stability is wrong";
   }
+}
+
+bool compare(Prediction& prediction, const IrregularMotion& motion) {
+  const double amplitude = prediction.amplitude / motion.mean_amplitude;
+  const double frequency = prediction.frequency * motion.mean_period / (2.0 * std::numbers::pi);
+  if (!(std::abs(std::log(amplitude)) <= std::log(amplitude_reach)) ||
+      !(std::abs(std::log(frequency)) <= std::log(frequency_reach)))
+    return false;
+  const bool close = std::abs(amplitude - 1.0) <= agreement && std::abs(frequency - 1.0) <= agreement;
+  prediction.motion = motion;
+  prediction.verdict = close ? Verdict::confirmed : Verdict::biased;
+  prediction.why = "amplitude " + percent_off(amplitude) + ", frequency " + percent_off(frequency) +
+                   " against the mean of a motion that is locked to no sample";
+  return true;
 }
 
 std::vector<Missed> missed_by(const std::string& method, const std::vector<Cycle>& cycles,

@@ -17,6 +17,10 @@ bool is_close(const Prediction& prediction, const Cycle& cycle);
 /// does not err about stability, biased otherwise.
 void compare(Prediction& prediction, const std::vector<Cycle>& cycles, std::size_t cycle);
 
+/// The same for a motion that has no period, by the means of its swings and their periods; false, and nothing is set,
+/// if those are farther off than nearest() allows.
+bool compare(Prediction& prediction, const IrregularMotion& motion);
+
 /// Cycles to which no prediction of the method refers.
 std::vector<Missed> missed_by(const std::string& method, const std::vector<Cycle>& cycles,
                               const std::vector<Prediction>& predictions);

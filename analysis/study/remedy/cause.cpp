@@ -79,8 +79,8 @@ class CauseStudy {
                      "The friction compensation is too strong: without it the loop does not hunt.");
     if (only_quanta_bend(parts_))
       return decided(CauseKind::quantization,
-                     "The controller reads, or commands, in steps, and nothing else in the loop "
-                     "is not linear: with exact numbers it does not hunt.");
+                     "The controller reads, or commands, in steps, and everything else in the loop is linear: with "
+                     "exact numbers it does not hunt.");
     if (ends("without dead time and sampling", without_delay(parts_))) {
       if (ends("without quanta", without_quanta(parts_)))  // which end with the sampling
         return decided(CauseKind::quantization,

@@ -7,7 +7,9 @@
 
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
+#include "limcycle/analysis/study/predict/verdicts.hpp"
 #include "limcycle/models/delay.hpp"
+#include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/models/element/memoryless/saturation.hpp"
 #include "limcycle/models/element/with_memory/relay.hpp"
 #include "limcycle/tests/loops.hpp"
@@ -123,6 +125,92 @@ TEST_CASE("sampled relay: by the instants of its samples a root moves as by half
   // The cycles that lock lie within it, but for what the describing function is off by without samples (1.5 %).
   for (const Cycle& cycle : report.cycles)
     if (cycle.stable == true) CHECK(std::abs(std::log(cycle.frequency() / w)) < one.sampling->frequency + 0.02);
+}
+
+namespace {
+
+/// d2y/dt2 = 0.3 v - 0.3 v^3 - y + u, u = -0.2 y read every 0.7 s: van der Pol's (Rayleigh's) oscillator, whose period
+/// is no whole number of samples.
+Loop sampled_oscillator() {
+  Cubic<double> bend;
+  bend.coefficient = 0.3;
+  Block gain{"gain", "diagram.gain", LinearBlock(Gain{-0.2}), {{{1.0, "axis", "y"}}}};
+  gain.sampling.sample_time = 0.7;
+  LoopParts parts;
+  Diagram& diagram = parts.diagram.emplace();
+  diagram.blocks = {{"axis", "diagram.axis", Plant(Mass{1.0, -0.3, 1.0}), {{{1.0, "gain", ""}, {-1.0, "bend", ""}}}},
+                    {"bend", "diagram.bend", Element(bend), {{{1.0, "axis", "v"}}}},
+                    gain};
+  diagram.output = {1.0, "axis", "y"};
+  diagram.load_on = "axis";
+  return build_loop(parts);
+}
+
+/// Mean time between upward crossings of zero, by Runge-Kutta steps of 1/200 sample after 100 swings.
+double oscillator_period() {
+  constexpr double h = 0.7 / 200.0;
+  double y = 1.0, v = 0.0, u = 0.0, first = 0.0, last = 0.0;
+  int rises = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    if (i % 200 == 0) u = -0.2 * y;
+    const auto rate = [&](double at, double speed) { return 0.3 * speed * (1.0 - speed * speed) - at + u; };
+    const double k1 = rate(y, v), v2 = v + 0.5 * h * k1, k2 = rate(y + 0.5 * h * v, v2), v3 = v + 0.5 * h * k2,
+                 k3 = rate(y + 0.5 * h * v2, v3), v4 = v + h * k3, k4 = rate(y + h * v3, v4), before = y;
+    y += h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
+    v += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    if (!(before < 0.0 && y >= 0.0) || i < 100'000) continue;
+    last = h * (i + before / (before - y));
+    if (rises++ == 0) first = last;
+  }
+  return (last - first) / (rises - 1);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "sampled oscillator: a torus, with its mean period and its beat, and what a prediction of its mean is worth") {
+  const double period = oscillator_period(), turns = period / 0.7, beat = 2.0 * M_PI * std::abs(turns - 8.0) / period;
+  const PredictReport report = predict(sampled_oscillator(), {});
+  CHECK(report.cycles.empty());
+  REQUIRE_FALSE(report.outcomes.empty());
+  for (const OutcomeOfStart& one : report.outcomes) {
+    REQUIRE(one.outcome == Outcome::irregular);
+    const IrregularMotion& motion = one.irregular;
+    CHECK(motion.mean_period == Approx(period).epsilon(1e-4));
+    const double error = 2.0 * M_PI * (motion.longest_period - motion.shortest_period) / (0.7 * motion.observed);
+    CHECK(std::abs(motion.beat_frequency - beat) <= error);
+    CHECK(error < 1e-3 * beat);
+  }
+  const auto df = std::ranges::find(report.predictions, "describing-function", &Prediction::method);
+  REQUIRE(df != report.predictions.end());
+  CHECK(df->verdict == Verdict::confirmed);  // within 5 % of the mean
+  REQUIRE(df->motion);
+  CHECK(df->frequency == Approx(2.0 * M_PI / period).epsilon(0.02));
+  CHECK_FALSE(df->cycle);
+  CHECK_THAT(df->why, Catch::Contains("locked to no sample"));
+}
+
+TEST_CASE("a prediction is compared with a motion that has no period within the reach of a cycle") {
+  IrregularMotion motion;
+  motion.mean_amplitude = 2.0;
+  motion.mean_period = M_PI;  // 2 rad/s
+  Prediction one;
+  one.amplitude = 2.05;
+  one.frequency = 1.95;
+  CHECK(compare(one, motion));
+  CHECK(one.verdict == Verdict::confirmed);
+  one.amplitude = 3.0;
+  CHECK(compare(one, motion));
+  CHECK(one.verdict == Verdict::biased);
+  CHECK_THAT(one.why, Catch::Contains("amplitude +50 %, frequency -2.5 %"));
+  Prediction far;
+  far.amplitude = 21.0;
+  far.frequency = 2.0;
+  CHECK_FALSE(compare(far, motion));
+  CHECK_FALSE(far.motion);
+  far.amplitude = 2.0;
+  far.frequency = 6.1;
+  CHECK_FALSE(compare(far, motion));
 }
 
 TEST_CASE("sampled servo: its mean period tends to that of the continuous one, and its first-order change is known") {
