@@ -27,14 +27,27 @@ bool has_steps_in_command(const Loop& sampled) {
   return reads && commands;
 }
 
+/// True if an element of the averaged loop stands for the steps in which a sampled controller reads or commands (beside
+/// no other nonlinear element): it has the path of a reading, or of a controller and ".steps".
+bool sees_quanta(const Loop& averaged) {
+  const Loop& sampled = *averaged.sampled;
+  const auto is_clock = [&](const std::string& path) {
+    for (std::size_t i = 0; i < sampled.ports.size(); ++i)
+      if (sampled.ports[i].path == path) return sampled_at(sampled, i) != nullptr;
+    return false;
+  };
+  return std::ranges::any_of(averaged.ports, [&](const Port& port) {
+    return is_clock(port.path) ||
+           (port.path.ends_with(".steps") && is_clock(port.path.substr(0, port.path.rfind('.'))));
+  });
+}
+
 }  // namespace
 
 LoopInTime loop_in_time(const Loop& loop, double highest) {
   if (loop.sampled) {
     LoopInTime made = loop_in_time(*loop.sampled, highest);
-    const bool seen = std::ranges::any_of(loop.ports, [](const Port& port) {
-      return port.path.ends_with(".encoder") || port.path.ends_with(".steps");  // beside no other element
-    });
+    const bool seen = sees_quanta(loop);
     made.note =
         "the controller reads and writes at its sample instants in every simulation; the describing functions see "
         "its pulse transfer function, hold and computation delay, without aliases and " +

@@ -54,11 +54,11 @@ std::optional<FallingRange> falling_range_of(const Element& law) {
 
 /// True if the steps of a sampled controller are all that is not linear.
 bool only_quanta_bend(const LoopParts& parts) {
+  if (!has_only_quanta(parts)) return false;
   const Loop loop = build_loop(parts);
-  return loop.sampled &&
-         std::ranges::all_of(loop.elements,
-                             [](const Element& element) { return element.as<Quantizer<double>>() != nullptr; }) &&
-         has_only_quanta(parts);
+  return loop.sampled && std::ranges::all_of(loop.elements, [](const Element& element) {
+           return element.as<Quantizer<double>>() != nullptr;
+         });
 }
 
 class CauseStudy {

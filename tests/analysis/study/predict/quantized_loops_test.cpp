@@ -3,8 +3,10 @@
 #include <cmath>
 #include <random>
 
+#include "limcycle/analysis/study/predict/loop_in_time.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/analysis/study/remedy/cause.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
 #include "limcycle/tests/loops.hpp"
 #include "limcycle/tests/share.hpp"
 
@@ -180,6 +182,22 @@ TEST_CASE("quanta alone: they are the cause, and a loop without them is refused"
   const PredictReport report = predict(build_loop(parts), {});
   const Cause cause = cause_of(parts, {}, report.cycles);
   CHECK(cause.kind == CauseKind::quantization);
+}
+
+TEST_CASE("quanta alone: the note on them goes by what stands for them, not by the name of a block") {
+  FreeServo of;
+  const auto note = [](const LoopParts& parts) { return loop_in_time(build_loop(parts), 0.0).note; };
+  CHECK_THAT(note(parts_of(of)), Catch::Contains("with its quanta as those of a quantizer"));
+  LoopParts limited = diagram_of(of);
+  auto& blocks = limited.diagram->blocks;
+  std::get<Pid>(std::get<Controller>(blocks.back().what)).tf = 0.1;
+  Saturation<double> sensor;
+  sensor.limit = 2.0;
+  blocks.back().inputs = {{{1.0, "r", ""}, {-1.0, "encoder", ""}}};
+  blocks.push_back({"encoder", "diagram.encoder", Element(sensor), {{{1.0, "axis", "y"}}}});
+  CHECK_THAT(note(limited), Catch::Contains("without its quanta"));
+  of.output_step = 0.1;
+  CHECK_THAT(note(parts_of(of)), Catch::Contains("but without those of its command"));
 }
 
 TEST_CASE("a limit of the command alone is a nonlinear element too") {
