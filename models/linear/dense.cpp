@@ -45,7 +45,18 @@ Eigen::MatrixXcd solve_columns(const Eigen::MatrixXcd& A, const Eigen::MatrixXcd
 }
 
 Eigen::VectorXd solve_fully_pivoted(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  return A.fullPivLu().solve(b);
+  Eigen::VectorXd x;
+  solve_fully_pivoted(A, b, x);
+  return x;
+}
+
+void solve_fully_pivoted(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  if (A.size() != 1) {
+    x = A.fullPivLu().solve(b);
+    return;
+  }
+  x.resize(1);
+  x(0) = A(0, 0) == 0.0 ? 0.0 : b(0) / A(0, 0);
 }
 
 Eigen::VectorXcd solve_fully_pivoted(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {

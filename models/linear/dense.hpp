@@ -48,6 +48,8 @@ Eigen::MatrixXcd solve_columns(const Eigen::MatrixXcd& A, const Eigen::MatrixXcd
 
 /// The same by full pivoting, for a matrix that may be singular, when something is zero in x.
 Eigen::VectorXd solve_fully_pivoted(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+/// Into x, without memory of its own for a single equation; x must not be b.
+void solve_fully_pivoted(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd& x);
 Eigen::VectorXcd solve_fully_pivoted(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b);
 Eigen::MatrixXd solve_columns_fully_pivoted(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 

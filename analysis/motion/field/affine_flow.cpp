@@ -47,9 +47,9 @@ MatrixXd exponential(const MatrixXd& A) {
 }  // namespace
 
 AffineFlow::InMode& AffineFlow::present() {
-  std::vector<std::int64_t> key;
-  for (const Mode mode : field_->modes()) key.push_back(mode.value);
-  const auto known = modes_.find(key);
+  key_.clear();
+  for (const Mode mode : field_->modes()) key_.push_back(mode.value);
+  const auto known = modes_.find(key_);
   if (known != modes_.end()) return known->second;
   const auto n = static_cast<Index>(field_->size());
   const State zero(field_->size(), 0.0);
@@ -62,7 +62,7 @@ AffineFlow::InMode& AffineFlow::present() {
   fresh.generator.topLeftCorner(n, n) = J;
   fresh.generator.topRightCorner(n, 1) = Eigen::Map<const Eigen::VectorXd>(constant.data(), n);
   fresh.least = -halvings(fresh.generator);
-  return modes_.emplace(std::move(key), std::move(fresh)).first->second;
+  return modes_.emplace(key_, std::move(fresh)).first->second;
 }
 
 /// exp(M 2^k s) - I for k >= mode.least, from those before it.
@@ -94,19 +94,22 @@ const MatrixXd& AffineFlow::over_power(int k) {
 void AffineFlow::move(double h, const State& x, State& out) {
   InMode& mode = present();
   const Index n = mode.generator.rows() - 1;
-  Eigen::VectorXd y(n + 1);
+  Eigen::VectorXd& y = moved_;
+  y.resize(n + 1);
   y << Eigen::Map<const Eigen::VectorXd>(x.data(), n), 1.0;
   if (std::isfinite(h) && h > 0.0)
     for (int k = std::ilogb(h); k >= mode.least; --k) {
       const double part = std::ldexp(1.0, k);
       if (h < part) continue;
-      y += doubled_to(mode, k) * y;
+      part_.noalias() = doubled_to(mode, k) * y;
+      y += part_;
       h -= part;  // exactly: the leading digit of h
     }
-  Eigen::VectorXd term = y;
+  term_ = y;
   for (int k = 1; h > 0.0 && k <= terms + 1; ++k) {
-    term = mode.generator * term * (h / k);
-    y += term;
+    part_.noalias() = mode.generator * term_;
+    term_ = part_ * (h / k);
+    y += term_;
   }
   out.assign(y.begin(), y.begin() + n);
 }

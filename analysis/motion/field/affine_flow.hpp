@@ -45,6 +45,8 @@ class AffineFlow {
 
   LoopField* field_;
   std::map<std::vector<std::int64_t>, InMode> modes_;
+  std::vector<std::int64_t> key_;        ///< memory of what is done at every step, kept for the next one
+  Eigen::VectorXd moved_, term_, part_;  ///< likewise
 };
 
 }  // namespace limcycle

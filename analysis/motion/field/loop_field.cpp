@@ -126,23 +126,24 @@ double LoopField::drive_at_turn(std::size_t i) const {
 /// The same for a friction law whose selection a compensation shares: both together hold the body. Overcompensated
 /// friction holds nothing.
 double LoopField::drive_with_follower(std::size_t i, const State& x) {
-  const auto kept_w = w_, kept_dX = dX_;
-  const auto kept_holding = holding_;
   const Mode kept_mode = modes_[i];
-  const auto kept_inputs = inputs_;
+  kept_.w = w_;
+  kept_.dX = dX_;
+  kept_.holding = holding_;
+  kept_.inputs = inputs_;
   modes_[i] = Mode{};  // as if stuck
-  holding_ = {i};
+  holding_.assign(1, i);
   followed_ = true;
   const double output = outputs_by_superposition(x)(0);
   w_[i] = 0.0;
   sweep(x);
-  const double without = hold_residual()(0);
+  const double without = free_rate_of_held(i);
   const bool holds = reach_(0, 0) < 0.0;
   modes_[i] = kept_mode;
-  w_ = kept_w;
-  dX_ = kept_dX;
-  inputs_ = kept_inputs;
-  holding_ = kept_holding;
+  w_ = kept_.w;
+  dX_ = kept_.dX;
+  inputs_ = kept_.inputs;
+  holding_ = kept_.holding;
   followed_ = std::ranges::any_of(holding_, [this](std::size_t k) { return has_follower_[k]; });
   if (!holds) return without >= 0.0 ? infinite : -infinite;
   return output;
@@ -214,29 +215,31 @@ void LoopField::sweep(const State& x) {
 }
 
 /// Rates of the held signals at the last sweep.
-Eigen::VectorXd LoopField::hold_residual() const {
-  Eigen::VectorXd residual(std::ssize(holding_));
+void LoopField::hold_residual(Eigen::VectorXd& residual) const {
+  residual.resize(std::ssize(holding_));
   for (Index k = 0; k < residual.size(); ++k) residual(k) = free_rate_of_held(holding_[static_cast<std::size_t>(k)]);
-  return residual;
 }
 
 /// Holding outputs if other elements follow them: in fixed modes everything is affine in them, on either side of zero
 /// (a selection may have another slope there).
-Eigen::VectorXd LoopField::outputs_by_superposition(const State& x) {
+const Eigen::VectorXd& LoopField::outputs_by_superposition(const State& x) {
   const Index m = std::ssize(holding_);
-  Eigen::VectorXd side = Eigen::VectorXd::Ones(m), outputs(m);
+  auto& [base, side, outputs, residual] = superposition_;
+  side.setOnes(m);
   for (int attempt = 0; attempt < 2; ++attempt) {
     for (const std::size_t i : holding_) w_[i] = 0.0;
     sweep(x);
-    const Eigen::VectorXd base = hold_residual();
+    hold_residual(base);
     reach_.resize(m, m);
     for (Index k = 0; k < m; ++k) {
       for (Index j = 0; j < m; ++j) w_[holding_[static_cast<std::size_t>(j)]] = j == k ? side(j) : 0.0;
       sweep(x);
-      reach_.col(k) = (hold_residual() - base) / side(k);
+      hold_residual(residual);
+      reach_.col(k) = (residual - base) / side(k);
     }
-    outputs = solve_fully_pivoted(reach_, -base);
-    const Eigen::VectorXd found = outputs.unaryExpr([](double w) { return w < 0.0 ? -1.0 : 1.0; });
+    base = -base;
+    solve_fully_pivoted(reach_, base, outputs);
+    const auto found = outputs.unaryExpr([](double w) { return w < 0.0 ? -1.0 : 1.0; });
     if (found == side) break;
     side = found;
   }
@@ -246,7 +249,7 @@ Eigen::VectorXd LoopField::outputs_by_superposition(const State& x) {
 /// Outputs of the holding elements: all held signals have zero rate. On entry dX_ holds the rates without them.
 void LoopField::solve_held(const State& x) {
   if (followed_) {
-    const Eigen::VectorXd outputs = outputs_by_superposition(x);
+    const Eigen::VectorXd& outputs = outputs_by_superposition(x);
     for (Index k = 0; k < outputs.size(); ++k) w_[holding_[static_cast<std::size_t>(k)]] = outputs(k);
     sweep(x);
   } else if (holding_.size() == 1) {
@@ -263,8 +266,10 @@ void LoopField::solve_held(const State& x) {
       for (Index j = 0; j < m; ++j)
         reach_(k, j) = (row * loop_->B.col(static_cast<Index>(holding_[static_cast<std::size_t>(j)]))).value();
     }
-    const Eigen::VectorXd free = hold_residual();
-    const Eigen::VectorXd outputs = solve_fully_pivoted(reach_, -free);
+    auto& [free, side, outputs, residual] = superposition_;
+    hold_residual(free);
+    free = -free;
+    solve_fully_pivoted(reach_, free, outputs);
     for (Index k = 0; k < m; ++k) {
       const std::size_t i = holding_[static_cast<std::size_t>(k)];
       w_[i] = outputs(k);
@@ -336,8 +341,9 @@ Eigen::VectorXd LoopField::held_and_drive(const State& x, const Eigen::VectorXd&
   for (Index k = 0; k < m; ++k) w_[holding_[static_cast<std::size_t>(k)]] = unknowns(k);
   inputs_[*asks_drive_].drive = unknowns(m);
   sweep(x);
-  Eigen::VectorXd residual(m + 1);
-  residual << hold_residual(), drive_of(*asks_drive_) - unknowns(m);
+  Eigen::VectorXd rates, residual(m + 1);
+  hold_residual(rates);
+  residual << rates, drive_of(*asks_drive_) - unknowns(m);
   return residual;
 }
 

@@ -109,8 +109,8 @@ class LoopField {
   double drive_at_turn(std::size_t i) const;
   void arrest(State& x, std::size_t i);
   bool arrests_at(std::size_t i, std::size_t guard) const;
-  Eigen::VectorXd hold_residual() const;
-  Eigen::VectorXd outputs_by_superposition(const State& x);
+  void hold_residual(Eigen::VectorXd& residual) const;
+  const Eigen::VectorXd& outputs_by_superposition(const State& x);
   double follow(std::size_t i) const;
   double follow_slope(std::size_t i) const;
   bool follows_held(std::size_t i) const;
@@ -195,6 +195,15 @@ class LoopField {
   Eigen::RowVectorXd input_gradient_, rate_gradient_;
   std::vector<Input<double>> inputs_;
   Eigen::MatrixXd reach_;  ///< rates of the held signals per unit of the holding outputs; of held_and_drive()
+  /// Memory of what is done at every evaluation, kept for the next one.
+  struct Superposition {
+    Eigen::VectorXd base, side, outputs, residual;
+  } superposition_;
+  struct Kept {
+    std::vector<double> w{}, dX{};
+    std::vector<std::size_t> holding{};
+    std::vector<Input<double>> inputs{};
+  } kept_;
   /// Gradients over the state, and over time in the last column: of the outputs, and of the element states' rates.
   Eigen::MatrixXd w_gradient_, z_gradient_;
 };
