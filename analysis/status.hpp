@@ -27,7 +27,7 @@ enum class Status {
   /// The caller asked to stop; what was computed until then is kept.
   interrupted,
   /// The question has no answer here: the law needs the applied force, which a prescribed motion does not have (see
-  /// analysis/frequency/describing_function/drive_dependence.hpp).
+  /// analysis/frequency/describing_function/df_undefined.hpp).
   undefined
 };
 

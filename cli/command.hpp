@@ -7,6 +7,7 @@
 
 #include "limcycle/analysis/lanes/isa.hpp"
 #include "limcycle/cases/loader/case.hpp"
+#include "limcycle/cli/help/description.hpp"
 #include "limcycle/questions/asking/answer_of.hpp"
 #include "limcycle/reports/provenance.hpp"
 
@@ -47,8 +48,7 @@ struct CommonFlags {
 using Action = std::function<int()>;
 
 /// Declares subcommand `name` with the common flags; with `takes_case` also the positional CASE. Its own options are
-/// added to the returned object. `run` becomes the action if the subcommand is chosen. Its long description for help
-/// and manual page is in descriptions.cpp.
+/// added to the returned object. `run` becomes the action if the subcommand is chosen.
 CLI::App* add_command(CLI::App& program, Action& action, const std::string& name, const std::string& summary,
                       bool takes_case, const std::shared_ptr<CommonFlags>& flags, Action run);
 
@@ -71,29 +71,13 @@ Provenance provenance(const CommonFlags& flags, const Case* from = nullptr);
 /// Error in the command line: `key` is the flag or word, with its value. Message: "KEY: RULE; SUGGESTION".
 InputError refusal(const std::string& key, const std::string& rule, const std::string& suggestion = {});
 
-// Subcommands, one file each. A new one is its file, a line here and a line in the list in main.cpp.
-void add_adequate(CLI::App& program, Action& action);
-void add_check(CLI::App& program, Action& action);
-void add_claims(CLI::App& program, Action& action);
-void add_completion(CLI::App& program, Action& action);
-void add_continue(CLI::App& program, Action& action);
-void add_dissipativity(CLI::App& program, Action& action);
-void add_df(CLI::App& program, Action& action);
-void add_experiment(CLI::App& program, Action& action);
-void add_identify(CLI::App& program, Action& action);
-void add_laws(CLI::App& program, Action& action);
-void add_map(CLI::App& program, Action& action);
-void add_manual(CLI::App& program, Action& action);
-void add_margin(CLI::App& program, Action& action);
-void add_new(CLI::App& program, Action& action);
-void add_precision(CLI::App& program, Action& action);
-void add_predict(CLI::App& program, Action& action);
-void add_remedy(CLI::App& program, Action& action);
-void add_report(CLI::App& program, Action& action);
-void add_sensitivity(CLI::App& program, Action& action);
-void add_simulate(CLI::App& program, Action& action);
-void add_status(CLI::App& program, Action& action);
-void add_synthesize(CLI::App& program, Action& action);
-void add_tune(CLI::App& program, Action& action);
+/// A subcommand: its text for help and manual, and what declares it to the parser by one of the above.
+struct Command {
+  Description description;
+  void (*add)(CLI::App& program, Action& action);
+};
+
+/// All subcommands, in the order in which a user needs them.
+const std::vector<Command>& commands();
 
 }  // namespace limcycle

@@ -25,13 +25,6 @@
 namespace limcycle {
 namespace {
 
-// Their order in help and manual is that of descriptions.cpp.
-constexpr void (*declarations[])(CLI::App&, Action&) = {
-    add_predict,    add_report,      add_df,         add_simulate, add_continue,      add_margin,
-    add_map,        add_sensitivity, add_precision,  add_adequate, add_dissipativity, add_claims,
-    add_experiment, add_status,      add_check,      add_laws,     add_new,           add_manual,
-    add_completion, add_identify,    add_synthesize, add_remedy,   add_tune};
-
 std::string version_text() {
   return std::string("limcycle ") + build_info::version + " (" + build_info::commit + ", " + build_info::compiler +
          ", " + build_info::build_type + (built_for_ranks() ? ", MPI" : "") + ")";
@@ -91,7 +84,7 @@ int run(int argc, char** argv) {
   Action action;
   program.set_version_flag("--version", version_text(), "Print the version and exit");
   program.require_subcommand(1);
-  for (const auto add : declarations) add(program, action);
+  for (const Command& command : commands()) command.add(program, action);
   for (auto* command : program.get_subcommands({})) {
     command->set_version_flag("--version", version_text(), "Print the version and exit");
     check_option_values(*command);

@@ -6,15 +6,16 @@
 
 namespace limcycle {
 
-FollowReport ask_continue(const Case& from, const CaseNumber& number, double low, double high, const Asking& asking) {
-  FollowOptions options;
+ContinueCyclesReport ask_continue(const Case& from, const CaseNumber& number, double low, double high,
+                                  const Asking& asking) {
+  ContinueCyclesOptions options;
   options.continuation.from = low;
   options.continuation.to = high;
   options.predict = from.predict;
   options.predict.stop = asking.stop;
   options.predict.progress = asking.progress;
   if (std::isfinite(number.value)) options.own = number.value;
-  return follow(LoopVariation(from, "parameter", number.path), options);
+  return continue_cycles(LoopVariation(from, "parameter", number.path), options);
 }
 
 }  // namespace limcycle

@@ -91,7 +91,7 @@ void look_nearby(const Case& from, const Loop& loop, const SensitivityWishes& wi
   change_each(numbers, factors, options, asking, report.one_at_a_time);
 }
 
-std::string design_text(const GlobalPlan& plan, const HuntingQuestion& question) {
+std::string design_text(const GlobalPlan& plan, const EnsembleQuestion& question) {
   std::string text = fmt::format("sensitivity {}: {} trajectories, {} samples{}", to_string(question.isa),
                                  plan.morris().trajectories(), plan.sobol().samples(),
                                  plan.sobol().second_order() ? ", second order" : "");
@@ -108,10 +108,10 @@ std::string design_text(const GlobalPlan& plan, const HuntingQuestion& question)
 /// The loops of a plan, each predicted from the same starts.
 SweptRows sweep_plan(const Case& from, const Loop& loop, const GlobalPlan& plan, const Asking& asking,
                      const SweepRunner& sweep) {
-  HuntingQuestion question = hunting_question(loop);
+  EnsembleQuestion question = ensemble_question(loop);
   question.isa = asking.isa;
   question.stop = asking.stop;
-  const std::vector<std::string> columns(std::begin(HuntingAnswer::names), std::end(HuntingAnswer::names));
+  const std::vector<std::string> columns(std::begin(EnsembleOutcome::names), std::end(EnsembleOutcome::names));
   std::vector<std::string> paths;
   for (const auto& one : plan.spread().parameters) paths.push_back(one.path);
   const LoopVariation variation(from, "[sensitivity]", paths);
@@ -119,7 +119,7 @@ SweptRows sweep_plan(const Case& from, const Loop& loop, const GlobalPlan& plan,
   task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) {
     std::vector<std::optional<Loop>> loops;
     for (const std::size_t point : points) loops.push_back(variation.loop(plan.values(point)));
-    const auto answers = hunting_answers(loops, question);
+    const auto answers = ensemble_outcomes(loops, question);
     for (std::size_t i = 0; i < answers.size(); ++i) {
       const double numbers[] = {answers[i].hunts, answers[i].amplitude, answers[i].period};
       std::ranges::copy(numbers, rows.begin() + static_cast<std::ptrdiff_t>(i * columns.size()));
@@ -131,7 +131,7 @@ SweptRows sweep_plan(const Case& from, const Loop& loop, const GlobalPlan& plan,
 
 /// Values and answers at Sobol's points A and B.
 std::vector<std::vector<double>> fair_sample(const GlobalPlan& plan,
-                                             const std::vector<std::optional<HuntingAnswer>>& answers) {
+                                             const std::vector<std::optional<EnsembleOutcome>>& answers) {
   std::vector<std::vector<double>> sample;
   for (std::size_t k = 0; k < plan.fair_rows(); ++k) {
     const std::size_t row = plan.fair_row(k);
@@ -149,11 +149,11 @@ Status look_everywhere(const Case& from, const Loop& loop, const SensitivityWish
   const GlobalPlan plan(report.spread, static_cast<std::size_t>(trajectories), static_cast<std::size_t>(samples),
                         wishes.second_order);
   const SweptRows swept = sweep_plan(from, loop, plan, asking, sweep);
-  std::vector<std::optional<HuntingAnswer>> answers(plan.size());
+  std::vector<std::optional<EnsembleOutcome>> answers(plan.size());
   for (std::size_t k = 0; k < plan.size(); ++k)
     if (swept.known[k]) answers[k] = {swept.rows[3 * k], swept.rows[3 * k + 1], swept.rows[3 * k + 2]};
   if (std::ranges::none_of(swept.known, [](bool known) { return known; })) return swept.status;
-  report.global = global_sensitivity(plan, answers, hunting_question(loop).accuracy);
+  report.global = global_sensitivity(plan, answers, ensemble_question(loop).accuracy);
   report.sample = fair_sample(plan, answers);
   return swept.status;
 }
@@ -178,7 +178,7 @@ void need_memory_for(const SensitivityWishes& wishes, const ParameterSpread& spr
   const auto parameters = static_cast<double>(spread.parameters.size());
   const double rows = samples * (2.0 + parameters * (wishes.second_order ? 2.0 : 1.0));
   // The plan, and the answer of each of its loops, are in memory at the same time.
-  const double bytes_a_row = sizeof(std::optional<HuntingAnswer>) + sizeof(std::optional<double>) + 4.0 * 8.0;
+  const double bytes_a_row = sizeof(std::optional<EnsembleOutcome>) + sizeof(std::optional<double>) + 4.0 * 8.0;
   const double bytes_a_sample = 16.0 * parameters + 2.0 * (40.0 + 8.0 * (3.0 + parameters));
   need_memory(dashes + "samples", samples, bytes_a_sample + bytes_a_row * rows / samples, "fewer samples");
   need_memory(dashes + "trajectories", trajectories, (parameters + 1.0) * (bytes_a_row + 8.0), "fewer trajectories");

@@ -4,8 +4,8 @@
 #include <initializer_list>
 #include <stdexcept>
 
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/number.hpp"
-#include "limcycle/reports/frame.hpp"
 
 namespace limcycle {
 namespace {

@@ -6,8 +6,8 @@
 #include "limcycle/reports/json.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
-#include "limcycle/reports/predict/answer.hpp"
 #include "limcycle/reports/predict/predict_sections.hpp"
+#include "limcycle/reports/predict/verdict_text.hpp"
 
 namespace limcycle {
 namespace {
@@ -23,7 +23,7 @@ std::string tables(const PredictReport& report, const Units& units) {
 
 std::string predict_page(const PredictReport& report, const Provenance& provenance, const std::string& case_text,
                          const Units& units) {
-  const CycleAnswer words = answer(report, units);
+  const VerdictText words = answer(report, units);
   const auto figures = predict_figures(report, units);
   std::string body = tables(report, units) + html_notes(report.notes);
   if (!figures.empty()) body += "<h2>Figures</h2>\n" + figures_html(figures);

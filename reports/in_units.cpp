@@ -140,7 +140,7 @@ SensitivityReport in_units(SensitivityReport report, const Units& units) {
   for (auto& one : report.local) scale(one, k);
   for (auto& one : report.predicted) scale(one, k);
   for (auto& one : report.one_at_a_time) one.found.amplitude *= k;
-  constexpr std::size_t amplitude = 1;  // of HuntingAnswer::names
+  constexpr std::size_t amplitude = 1;  // of EnsembleOutcome::names
   const std::size_t column = report.spread.parameters.size() + amplitude;
   for (auto& row : report.sample)
     if (row.size() > column) row[column] *= k;

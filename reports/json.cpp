@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
-#include "limcycle/reports/frame.hpp"
 
 namespace limcycle {
 namespace {

@@ -8,7 +8,7 @@
 #include "limcycle/reports/figures/multipliers.hpp"
 #include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/in_units.hpp"
-#include "limcycle/reports/predict/answer.hpp"
+#include "limcycle/reports/predict/verdict_text.hpp"
 
 namespace limcycle {
 namespace {
@@ -124,7 +124,7 @@ std::string absence_in_words(const PredictReport& report) {
 }
 
 Document predict_document(const std::string& title, const PredictReport& report, const Units& units) {
-  const CycleAnswer words = answer(report, units);
+  const VerdictText words = answer(report, units);
   Document out(wrapped(title) + "\n" + wrapped(words.what_happens));
   for (const auto& sentence : words.worth) out += wrapped(sentence);
   if (!report.cycles.empty()) out.add("Limit cycles", cycle_table(report, units));

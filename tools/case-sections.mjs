@@ -89,7 +89,7 @@ const loop = table('The loop, or one lone friction or element', {
   element: ref('series-element'),
   error: ref('error'),
   reference: reference_of_loop,
-  load: number('a constant force on the plant, such as weight, N', { default: 0 }),
+  load: number('a constant force on the plant, such as weight, N; it is added to u: A for a servo-drive', { default: 0 }),
 }, [], {
   anyOf: ['friction', 'element', 'error', 'controller'].map((key) => ({ required: [key] })),
   if: { maxProperties: 1, anyOf: ['friction', 'element'].map((key) => ({ required: [key] })) },

@@ -57,18 +57,19 @@ struct SlidingSpeed {
 };
 
 std::optional<SlidingSpeed> sliding_speed(const LoopParts& parts) {
-  if (const auto* belt = std::get_if<Belt>(&parts.plant); belt && belt->speed != 0.0)
-    return SlidingSpeed{"loop.plant.speed", belt->speed, [parts](double v) {
-                          LoopParts other = parts;
-                          std::get<Belt>(other.plant).speed = v;
-                          return build_loop(other);
-                        }};
-  if (const auto* froude = std::get_if<FroudePendulum>(&parts.plant); froude && froude->shaft_speed != 0.0)
-    return SlidingSpeed{"loop.plant.shaft_speed", froude->shaft_speed, [parts](double v) {
-                          LoopParts other = parts;
-                          std::get<FroudePendulum>(other.plant).shaft_speed = v;
-                          return build_loop(other);
-                        }};
+  const auto of_surface = [&parts]<class P>(P plant) -> std::optional<SlidingSpeed> {
+    if constexpr (requires { plant.surface_speed(); }) {
+      if (plant.surface_speed() == 0.0) return std::nullopt;
+      return SlidingSpeed{"loop.plant." + std::string(P::surface_speed_key), plant.surface_speed(), [parts](double v) {
+                            LoopParts other = parts;
+                            std::get<P>(other.plant).surface_speed() = v;
+                            return build_loop(other);
+                          }};
+    } else {
+      return std::nullopt;
+    }
+  };
+  if (auto speed = std::visit(of_surface, parts.plant)) return speed;
   if (parts.reference_rate != 0.0)
     return SlidingSpeed{"loop.reference.rate", parts.reference_rate, [parts](double v) {
                           LoopParts other = parts;

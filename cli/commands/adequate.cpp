@@ -109,8 +109,6 @@ int run(AdequateFlags flags) {
   return report.status == Status::undefined || report.status == Status::interrupted ? exit_no_answer : exit_done;
 }
 
-}  // namespace
-
 void add_adequate(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<AdequateFlags>();
   flags->threads = 0;  // laws are compared in parallel; the results do not depend on it
@@ -133,6 +131,17 @@ void add_adequate(CLI::App& program, Action& action) {
       ->check(number_in(0.0, 0.9));
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command adequate_command() {
+  return {{"adequate",
+           trust_group,
+           "Replaces the friction law by simpler ones fitted to it, and each method by cheaper ones, and prints the "
+           "simplest law and the cheapest method whose answer stays within a tolerance.",
+           {{"limcycle adequate cases/belt-coulomb.toml --spread 0 --tolerance 0.05", "for these numbers exactly"}}},
+          add_adequate};
 }
 
 }  // namespace limcycle

@@ -116,8 +116,6 @@ int check(CheckFlags flags) {
   return exit_done;
 }
 
-}  // namespace
-
 void add_check(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CheckFlags>();
   flags->has_tables = false;
@@ -129,6 +127,22 @@ void add_check(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command->add_option("--fit", flags->fit, "Write a picture of the data of the (first) measured plant and their fit")
       ->type_name("FILE.svg");
+}
+
+}  // namespace
+
+Command check_command() {
+  return {
+      {"check",
+       begin_group,
+       "Reads a case file, checks every key and every rule between them, and prints a summary of the loop: its "
+       "elements, its states, its stability without the elements, and the search box. Of a plant that is known by "
+       "measured data it states what they cover, and the order and the error of their fit; --fit draws both. An error "
+       "names the file, line, key and value, and what is allowed.",
+       {{"limcycle check cases/pid-lugre.toml", "summary of this case"},
+        {"limcycle check cases/measured-axis.toml --fit fit.svg", "the same, and a picture of data and fit"},
+        {"limcycle check cases/pid-lugre.toml --set loop.controller.kd=12.0", "the same with a different gain"}}},
+      add_check};
 }
 
 }  // namespace limcycle

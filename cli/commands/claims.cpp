@@ -136,8 +136,6 @@ int run(ClaimsFlags flags) {
   return exit_code(tested, ended);
 }
 
-}  // namespace
-
 void add_claims(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<ClaimsFlags>();
   flags->threads = 0;  // claims are tested in parallel; the results do not depend on it
@@ -154,6 +152,21 @@ void add_claims(CLI::App& program, Action& action) {
   command->add_flag("--list", flags->list, "List the claims, test none");
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command claims_command() {
+  return {
+      {"claims",
+       evidence_group,
+       "Compares analytic statements about describing functions, laws and cycles with the numbers of this program: "
+       "each gets a verdict, with a counter-example where it fails. A case may hold claims of its own ([[claim]]). The "
+       "exit code is 1 if a verdict is not the expected one.",
+       {{"limcycle claims --list", "all claims"},
+        {"limcycle claims A1 --verbose", "one claim, with every comparison"},
+        {"limcycle claims cases/relay-claims.toml", "the claims of a case"}}},
+      add_claims};
 }
 
 }  // namespace limcycle

@@ -16,8 +16,6 @@ std::string completion(const CLI::App& program, const std::string& shell) {
                 suggest(shell, std::vector<std::string>{"bash", "zsh", "fish"}));
 }
 
-}  // namespace
-
 void add_completion(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
   const auto shell = std::make_shared<std::string>();
@@ -31,6 +29,18 @@ void add_completion(CLI::App& program, Action& action) {
                           return static_cast<int>(exit_done);
                         });
   command->add_option("SHELL", *shell, "bash, zsh or fish")->type_name("SHELL")->required();
+}
+
+}  // namespace
+
+Command completion_command() {
+  return {{"completion",
+           install_group,
+           "Prints a script that lets the shell complete commands, options, names and files.",
+           {{"limcycle completion bash > limcycle.bash", "then: source limcycle.bash, in ~/.bashrc"},
+            {"limcycle completion zsh > _limcycle", "into a folder of $fpath"},
+            {"limcycle completion fish > limcycle.fish", "into ~/.config/fish/completions"}}},
+          add_completion};
 }
 
 }  // namespace limcycle

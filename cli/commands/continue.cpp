@@ -21,7 +21,7 @@ struct ContinueFlags : CommonFlags {
   std::string picture;    ///< --svg
 };
 
-int exit_code(const FollowReport& found) {
+int exit_code(const ContinueCyclesReport& found) {
   const bool answered = found.status == Status::converged || found.status == Status::no_cycle;
   return found.status == Status::interrupted || (found.branches.empty() && !answered) ? exit_no_answer : exit_done;
 }
@@ -59,8 +59,6 @@ int run(ContinueFlags flags) {
   return exit_code(report.found);
 }
 
-}  // namespace
-
 void add_continue(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<ContinueFlags>();
   CLI::App* command = add_command(program, action, "continue",
@@ -74,6 +72,19 @@ void add_continue(CLI::App& program, Action& action) {
   command
       ->add_option("--svg", flags->picture, "Write the bifurcation diagram to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command continue_command() {
+  return {
+      {"continue",
+       change_group,
+       "Follows the limit cycles, stable and unstable, over a range of one number, around folds and to their ends. It "
+       "prints the folds, the changes of stability and the ends, each with an error.",
+       {{"limcycle continue cases/relay-third-order.toml --parameter loop.element.dead_zone=0.05:0.1",
+         "to the fold at which the oscillation ends"}}},
+      add_continue};
 }
 
 }  // namespace limcycle

@@ -41,13 +41,23 @@ int run(const SweepFlags& flags) {
   return answered && ended != Status::interrupted ? exit_done : exit_no_answer;
 }
 
-}  // namespace
-
 void add_df(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<SweepFlags>();
   CLI::App* command = add_command(program, action, "df", "Describing functions over amplitude x frequency x bias", true,
                                   flags, [flags] { return run(*flags); });
   add_sweep_flags(*command, *flags);
+}
+
+}  // namespace
+
+Command df_command() {
+  return {
+      {"df",
+       hunt_group,
+       "Tabulates the describing function of the case's element over the amplitudes, frequencies and biases of [df], "
+       "each value with an estimate of its error.",
+       {{"limcycle df cases/df-lugre.toml --set df.frequency=[1.0] --csv df.csv", "one frequency, as a table"}}},
+      add_df};
 }
 
 }  // namespace limcycle

@@ -60,8 +60,6 @@ int run(DissipativityFlags flags) {
   return report.status == Status::interrupted ? exit_no_answer : exit_done;
 }
 
-}  // namespace
-
 void add_dissipativity(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<DissipativityFlags>();
   CLI::App* command = add_command(program, action, "dissipativity",
@@ -77,6 +75,18 @@ void add_dissipativity(CLI::App& program, Action& action) {
       ->type_name("PATH=FROM:TO");
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command dissipativity_command() {
+  return {{"dissipativity",
+           trust_group,
+           "Determines for the law (not the loop) whether its state and force stay bounded, whether it is passive, how "
+           "much energy can be extracted, and the least viscous friction that makes it passive. For a law that is not "
+           "passive it gives a counter-example: a motion that extracts energy.",
+           {{"limcycle dissipativity cases/pid-lugre.toml", "of the friction of this case"}}},
+          add_dissipativity};
 }
 
 }  // namespace limcycle

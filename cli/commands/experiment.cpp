@@ -111,8 +111,6 @@ int run(ExperimentFlags flags) {
   return results.empty() || ended == Status::interrupted ? exit_no_answer : exit_done;
 }
 
-}  // namespace
-
 void add_experiment(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<ExperimentFlags>();
   flags->threads = 0;  // laws run in parallel; the results do not depend on it
@@ -125,6 +123,19 @@ void add_experiment(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command->add_option("--svg", flags->pictures, "Write the figures to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command experiment_command() {
+  return {
+      {"experiment",
+       evidence_group,
+       "Runs the experiments of the source documents for all friction laws side by side. Without NAME it lists them; "
+       "`all` runs all of them.",
+       {{"limcycle experiment", "the list"},
+        {"limcycle experiment pre-sliding --law lugre --law dahl -o loops.svg", "one, for two laws, as a picture"}}},
+      add_experiment};
 }
 
 }  // namespace limcycle

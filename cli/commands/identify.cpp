@@ -64,8 +64,6 @@ int run(IdentifyFlags flags) {
   return report.chosen && report.status == Status::converged ? exit_done : exit_no_answer;
 }
 
-}  // namespace
-
 void add_identify(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<IdentifyFlags>();
   CLI::App* command = add_command(program, action, "identify", "Fit friction laws to measured records", true, flags,
@@ -77,6 +75,27 @@ void add_identify(CLI::App& program, Action& action) {
       ->add_option("--svg", flags->picture,
                    "Write measured and fitted forces to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command identify_command() {
+  return {
+      {"identify",
+       trust_group,
+       "Fits the friction laws of [identify] to measured records: force against steady velocity, sliding with a "
+       "varying "
+       "velocity, small motions before sliding, break-away, or the free motion of the case's plant. It prints each "
+       "number with its 95 % interval, names those "
+       "that the records do not determine, and chooses the simplest law that the records support. -o FILE.toml writes "
+       "the case with the fitted law, for `predict`, `sensitivity` and `report`; -o FILE.svg draws measured and fitted "
+       "forces. --plan shows which further record would narrow which number most.",
+       {{"limcycle identify cases/records/servo.toml -o fitted.toml",
+         "fit three laws, and write the case with the best"},
+        {"limcycle identify cases/records/carriage.toml", "the friction force was not measured, only the motion"},
+        {"limcycle identify cases/records/servo.toml -o fit.svg", "measured and fitted forces as a picture"},
+        {"limcycle identify cases/records/servo.toml --plan", "and what should be measured next"}}},
+      add_identify};
 }
 
 }  // namespace limcycle

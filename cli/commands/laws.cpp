@@ -33,8 +33,6 @@ int laws(const CommonFlags& flags, const std::string& kind, bool markdown) {
   return exit_done;
 }
 
-}  // namespace
-
 void add_laws(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
   flags->has_tables = false;
@@ -45,6 +43,19 @@ void add_laws(CLI::App& program, Action& action) {
                   false, flags, [flags, kind, markdown] { return laws(*flags, *kind, *markdown); });
   command->add_option("KIND", *kind, "One of them, in full")->type_name("NAME");
   command->add_flag("--markdown", *markdown, "The friction laws as a page of documentation");
+}
+
+}  // namespace
+
+Command laws_command() {
+  return {
+      {"laws",
+       begin_group,
+       "Lists the friction laws, elements, plants and controllers that a case may name. With KIND it describes that "
+       "one: equation, states, memory, drift, passivity, source, and every parameter with unit, default and valid "
+       "range.",
+       {{"limcycle laws", "all of them"}, {"limcycle laws lugre", "one in full"}}},
+      add_laws};
 }
 
 }  // namespace limcycle

@@ -21,8 +21,6 @@ std::string page(const CLI::App& program, const std::string& name) {
   throw refusal("manual", "no page '" + name + "'", suggest(name, names));
 }
 
-}  // namespace
-
 void add_manual(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
   const auto name = std::make_shared<std::string>();
@@ -34,6 +32,19 @@ void add_manual(CLI::App& program, Action& action) {
         return static_cast<int>(exit_done);
       });
   command->add_option("PAGE", *name, "A command, or case: the format of case files")->type_name("PAGE");
+}
+
+}  // namespace
+
+Command manual_command() {
+  return {
+      {"manual",
+       install_group,
+       "Prints a manual page in roff: of limcycle, of one of its commands, or, with `case`, of the case-file format.",
+       {{"limcycle manual > limcycle.1", "of the program"},
+        {"limcycle manual predict > limcycle-predict.1", "of a command"},
+        {"limcycle manual case > limcycle-case.5", "of case files"}}},
+      add_manual};
 }
 
 }  // namespace limcycle

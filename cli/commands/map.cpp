@@ -70,8 +70,6 @@ int run(MapFlags flags) {
   return report.map.known() == 0 || ended == Status::interrupted ? exit_no_answer : exit_done;
 }
 
-}  // namespace
-
 void add_map(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<MapFlags>();
   CLI::App* command =
@@ -97,6 +95,25 @@ void add_map(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command->add_option("--svg", flags->picture, "Write the picture to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command map_command() {
+  return {
+      {"map",
+       change_group,
+       "Computes the outcome, and whether each method predicts it, at every point of a grid over two numbers. With "
+       "--store every point is saved as soon as it is known: Ctrl-C loses nothing, --resume continues, and under "
+       "mpirun many machines share the work. --outcomes simulates from the starts alone and judges no method: it is "
+       "faster, but finds no cycle that none of the starts reaches.",
+       {{"limcycle map cases/relay-third-order.toml --x loop.element.dead_zone=0.05:0.1:5 "
+         "--y loop.element.level=0.5:2:4 --store plane.db",
+         "20 points, kept in a store"},
+        {"limcycle map cases/relay-third-order.toml --x loop.element.dead_zone=0.05:0.1:5 "
+         "--y loop.element.level=0.5:2:4 --store plane.db --resume -o plane.svg",
+         "continue it, and draw it"}}},
+      add_map};
 }
 
 }  // namespace limcycle

@@ -78,8 +78,6 @@ int run(MarginFlags flags) {
   return exit_code(report);
 }
 
-}  // namespace
-
 void add_margin(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<MarginFlags>();
   CLI::App* command =
@@ -97,6 +95,20 @@ void add_margin(CLI::App& program, Action& action) {
       ->allow_extra_args(false);
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command margin_command() {
+  return {
+      {"margin",
+       change_group,
+       "Varies each number of the case separately, up and down by a factor, until hunting begins or ends, and prints "
+       "the margin; with --toward several numbers together. Where a cycle ends at a fold, the fold itself is located.",
+       {{"limcycle margin cases/relay-third-order.toml", "every number that is not 0"},
+        {"limcycle margin cases/tutorial-servo.toml --parameter loop.friction.Fs --factor 3", "one number only"},
+        {"limcycle margin cases/tutorial-servo.toml --toward kd=300,kp=4000", "how far on the way to other gains"}}},
+      add_margin};
 }
 
 }  // namespace limcycle

@@ -76,8 +76,6 @@ int run(NewFlags flags) {
   return exit_done;
 }
 
-}  // namespace
-
 void add_new(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<NewFlags>();
   CLI::App* command =
@@ -93,6 +91,23 @@ void add_new(CLI::App& program, Action& action) {
   command->add_flag("--brief", flags->brief, "Leave out optional keys and sections");
   command->add_flag("--all", flags->all, "Write the optional sections too, not as comments");
   command->add_flag("--force", flags->force, "Replace a file that exists");
+}
+
+}  // namespace
+
+Command new_command() {
+  return {{"new",
+           begin_group,
+           "Writes a complete, valid case file for the plant, the controller and the friction law or element that you "
+           "name. It lists every key with its unit, meaning and default; optional keys are commented out. Replace the "
+           "numbers by your own.\n"
+           "Without options the case is a mass under PID control with LuGre friction. With --element and without "
+           "--friction, the loop has that element in place of friction. An existing file is not overwritten without "
+           "--force.",
+           {{"limcycle new -o servo.toml", "the default: mass, PID, LuGre friction"},
+            {"limcycle new --plant two-mass --friction coulomb -o drive.toml", "a drive with an elastic shaft"},
+            {"limcycle new --plant zpk --controller none --element relay", "a relay before a plant, printed only"}}},
+          add_new};
 }
 
 }  // namespace limcycle

@@ -102,8 +102,6 @@ int run(PrecisionFlags flags) {
   return exit_code(report);
 }
 
-}  // namespace
-
 void add_precision(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<PrecisionFlags>();
   flags->threads = 0;  // methods run in parallel; only their CPU times depend on it
@@ -117,6 +115,18 @@ void add_precision(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command precision_command() {
+  return {
+      {"precision",
+       trust_group,
+       "Measures the accuracy and cost of every method on this case, against a verified reference. With --stability it "
+       "shows instead where time steppers fail, over stiffness and tolerance.",
+       {{"limcycle precision cases/relay-integrator.toml --no-stiffness", "methods for the cycle and its element"}}},
+      add_precision};
 }
 
 }  // namespace limcycle

@@ -90,8 +90,6 @@ int run(PredictFlags flags) {
   return exit_code(report, flags.require_agreement);
 }
 
-}  // namespace
-
 void add_predict(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<PredictFlags>();
   flags->time_limit = 60.0;
@@ -105,6 +103,26 @@ void add_predict(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command->add_flag("--require-agreement", flags->require_agreement,
                     "Exit with 1 if a prediction is false or biased, or a limit cycle is missed");
+}
+
+}  // namespace
+
+Command predict_command() {
+  return {
+      {"predict",
+       hunt_group,
+       "Searches for limit cycles by describing function, by the composite describing function (mass and friction as "
+       "one element) and by harmonic balance. Simulates the loop from several states, verifies each cycle by shooting "
+       "and determines its stability from its Floquet multipliers. Each prediction gets a verdict: confirmed (within 5 "
+       "% of a cycle), biased, false or undecided; cycles that a method did not find are listed as missed.\n"
+       "[search] sets the search box; [predict] sets the methods, the number of starts and the accuracy.",
+       {{"limcycle predict cases/pid-lugre.toml", "the answer as text"},
+        {"limcycle predict cases/pid-lugre.toml -o servo.html", "and as one page with figures"},
+        {"limcycle predict cases/tutorial-servo.toml --set loop.friction.Fs=9.0 --verbose",
+         "another break-away force, with the work of each method"},
+        {"limcycle predict cases/relay-integrator.toml --require-agreement --json result.json",
+         "for a script: exit code 1 if a method is wrong"}}},
+      add_predict};
 }
 
 }  // namespace limcycle

@@ -101,8 +101,6 @@ int run(RemedyFlags flags) {
   return exit_code(report);
 }
 
-}  // namespace
-
 void add_remedy(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<RemedyFlags>();
   CLI::App* command = add_command(program, action, "remedy", "Why the loop hunts, what ends it, and what that costs",
@@ -121,6 +119,20 @@ void add_remedy(CLI::App& program, Action& action) {
       ->capture_default_str();
   command->add_option("--html", flags->html, "Write a self-contained page to FILE (so does -o FILE.html)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command remedy_command() {
+  return {
+      {"remedy",
+       change_group,
+       "Finds why a loop hunts, by taking one feature away at a time, and tries the known remedies: for each the value "
+       "nearest to the present at which no start hunts any more, confirmed by predictions on both sides, and what the "
+       "loop then costs in error, speed, margins and noise. --apply writes the case with one of them.",
+       {{"limcycle remedy cases/belt-squeal.toml --threads 2", "the cause, and all remedies"},
+        {"limcycle remedy cases/over-compensated.toml --apply gain-kp -o fixed.toml", "the case with one remedy"}}},
+      add_remedy};
 }
 
 }  // namespace limcycle

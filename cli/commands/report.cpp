@@ -97,8 +97,6 @@ int run(ReportFlags flags) {
   return exit_code(report);
 }
 
-}  // namespace
-
 void add_report(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<ReportFlags>();
   CLI::App* command = add_command(program, action, "report", "One self-contained page with the results for the loop",
@@ -114,6 +112,21 @@ void add_report(CLI::App& program, Action& action) {
   for (const auto& [name, into] : {std::pair("--x", &flags->wishes.x), std::pair("--y", &flags->wishes.y)})
     command->add_option(name, *into, "With a hunting map: a parameter and its values, as for limcycle map")
         ->type_name("PATH=FROM:TO:N[:log]");
+}
+
+}  // namespace
+
+Command report_command() {
+  return {
+      {"report",
+       hunt_group,
+       "Writes one page that needs no network: the answer, what would end the hunting, a block diagram of the loop, "
+       "all "
+       "figures, the verdict on every method, sensitivity, energy balance, provenance and the case file itself. The "
+       "page "
+       "alone suffices to reproduce the result.",
+       {{"limcycle report cases/relay-integrator.toml --quick -o relay.html", "without the slow parts"}}},
+      add_report};
 }
 
 }  // namespace limcycle

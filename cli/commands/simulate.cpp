@@ -51,14 +51,25 @@ int run(SimulateFlags flags) {
   return exit_no_answer;
 }
 
-}  // namespace
-
 void add_simulate(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<SimulateFlags>();
   CLI::App* command = add_command(program, action, "simulate", "Time-domain run from a given state, as CSV", true,
                                   flags, [flags] { return run(*flags); });
   command->add_flag("--no-check", flags->no_check, "Do not check the run by a second one at tighter tolerances");
   command->add_flag("--no-audit", flags->no_audit, "Do not compute the energy balance");
+}
+
+}  // namespace
+
+Command simulate_command() {
+  return {
+      {"simulate",
+       hunt_group,
+       "Integrates the loop in time from the state and with the signals of [simulate], checks the run by a second one "
+       "at other tolerances, and computes the energy balance. The samples go to the file of --csv (or -o), the summary "
+       "to stdout.",
+       {{"limcycle simulate cases/pid-lugre.toml -o run.csv", "time, state, input and force as columns"}}},
+      add_simulate};
 }
 
 }  // namespace limcycle

@@ -30,8 +30,6 @@ int show_status(const CommonFlags& flags, const std::string& file) {
   return exit_done;
 }
 
-}  // namespace
-
 void add_status(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<CommonFlags>();
   flags->has_tables = false;
@@ -40,6 +38,16 @@ void add_status(CLI::App& program, Action& action) {
       add_command(program, action, "status", "Progress and results so far of a sweep with a store, also while it runs",
                   false, flags, [flags, file] { return show_status(*flags, *file); });
   command->add_option("STORE", *file, "The store (--store of the sweep)")->required()->type_name("FILE");
+}
+
+}  // namespace
+
+Command status_command() {
+  return {{"status",
+           change_group,
+           "Prints the progress, the speed and the results so far of a sweep with --store, also while it runs.",
+           {{"limcycle status plane.db", "of the store that `map` or `sensitivity` wrote"}}},
+          add_status};
 }
 
 }  // namespace limcycle

@@ -138,8 +138,6 @@ int run(SynthesizeFlags flags) {
   return exit_done;
 }
 
-}  // namespace
-
 void add_synthesize(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<SynthesizeFlags>();
   flags->has_tables = false;
@@ -156,6 +154,20 @@ void add_synthesize(CLI::App& program, Action& action) {
   share("--quantum", flags->faults.quantum, "Encoder step, m; then no velocity is recorded", 1.0);
   command->add_flag("--free", flags->free, "Also the free motion of the case's plant: under a force, and let go");
   command->add_flag("--force", flags->force, "Replace the files in FOLDER that it writes");
+}
+
+}  // namespace
+
+Command synthesize_command() {
+  return {{"synthesize",
+           trust_group,
+           "Writes records that a rig with the friction law of the case would give, with noise and other faults of "
+           "measurement, and a case that `identify` fits to them. As the true numbers are known, it shows what such "
+           "records "
+           "can determine.",
+           {{"limcycle synthesize cases/pid-lugre.toml --noise 0.02 --seed 3 -o rig", "2 % noise of the force"},
+            {"limcycle synthesize cases/pid-lugre.toml --free -o free-rig", "free motions of the mass too"}}},
+          add_synthesize};
 }
 
 }  // namespace limcycle

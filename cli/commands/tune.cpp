@@ -109,8 +109,6 @@ int run(TuneFlags flags) {
   return report.best && report.status != Status::interrupted ? exit_done : exit_no_answer;
 }
 
-}  // namespace
-
 void add_tune(CLI::App& program, Action& action) {
   const auto flags = std::make_shared<TuneFlags>();
   CLI::App* command =
@@ -148,6 +146,26 @@ void add_tune(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command->add_option("--svg", flags->picture, "Write the map of the search to FILE (so does -o FILE.svg or FILE.pdf)")
       ->type_name("FILE");
+}
+
+}  // namespace
+
+Command tune_command() {
+  return {
+      {"tune",
+       change_group,
+       "Chooses numbers within bounds so that the loop does not hunt and a cost is least: the peak sensitivity Ms of "
+       "the "
+       "linear loop, or the settling time or the integral of the squared error of the loop with its friction after a "
+       "step. Points that fill the bounds are tried, then searches from the best ones that lie apart. States whether "
+       "these agree, and what lies next to the result. A name such as kp stands for the only number with that name. "
+       "--apply writes the case with the numbers that were found.",
+       {{"limcycle tune cases/pid-lugre.toml --vary kp=1:20,ki=0:5 --minimise ms --threads 2",
+         "gains that do not hunt"},
+        {"limcycle tune cases/over-compensated.toml --vary kp=1:100 --minimise settling --samples 8 --apply -o "
+         "tuned.toml",
+         "the fastest, as a case"}}},
+      add_tune};
 }
 
 }  // namespace limcycle

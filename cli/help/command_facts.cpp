@@ -8,6 +8,7 @@
 #include "limcycle/analysis/study/claims/run_claims.hpp"
 #include "limcycle/analysis/study/experiments/experiment.hpp"
 #include "limcycle/analysis/study/map/hunting_map.hpp"
+#include "limcycle/cli/command.hpp"
 #include "limcycle/reports/case_files/catalogue.hpp"
 
 namespace limcycle {
@@ -34,7 +35,7 @@ std::vector<std::string> words_for(const std::string& command, const OptionFacts
   if (key == "claims ID")
     for (const auto& claim : claims()) names.push_back(claim.id);
   if (key == "manual PAGE")
-    for (const auto& one : descriptions()) names.emplace_back(one.name);
+    for (const auto& one : commands()) names.emplace_back(one.description.name);
   if (key == "experiment NAME") names.emplace_back("all");
   if (key == "manual PAGE") names.emplace_back("case");
   return names;
@@ -79,17 +80,15 @@ OptionFacts option_facts(const CLI::Option& option, const std::string& command) 
 
 std::vector<CommandFacts> facts_of(const CLI::App& program) {
   std::vector<CommandFacts> all;
-  for (const auto* command : program.get_subcommands([](const CLI::App*) { return true; })) {
-    CommandFacts facts{command->get_name(), command->get_description(), description_of(command->get_name()), {}};
+  for (const auto& [description, add] : commands()) {
+    const auto* command = program.get_subcommand(std::string(description.name));
+    CommandFacts facts{command->get_name(), command->get_description(), description, {}};
     for (const auto* option : command->get_options()) facts.options.push_back(option_facts(*option, facts.name));
     std::ranges::stable_sort(facts.options, {}, [](const OptionFacts& one) {
       return one.argument ? 0 : one.common ? 2 : 1;
     });
     all.push_back(std::move(facts));
   }
-  std::ranges::stable_sort(all, {}, [](const CommandFacts& one) {
-    return std::ranges::find(descriptions(), one.name, &Description::name) - descriptions().begin();
-  });
   return all;
 }
 

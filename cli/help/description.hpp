@@ -10,6 +10,14 @@ struct Example {
   std::string_view line, what;
 };
 
+/// Groups of subcommands.
+inline constexpr std::string_view begin_group = "Getting started";
+inline constexpr std::string_view hunt_group = "Prediction and simulation";
+inline constexpr std::string_view change_group = "Parameter studies";
+inline constexpr std::string_view trust_group = "Choice of law and method";
+inline constexpr std::string_view evidence_group = "Verification";
+inline constexpr std::string_view install_group = "Installation";
+
 /// Text on a subcommand for help, manual page and documentation, in addition to its summary and its options.
 struct Description {
   std::string_view name;
@@ -17,11 +25,5 @@ struct Description {
   std::string_view text;   ///< paragraphs, one a line
   std::vector<Example> examples;
 };
-
-/// Descriptions of all subcommands, in the order in which a user needs them.
-const std::vector<Description>& descriptions();
-
-/// Description of one subcommand. Throws std::logic_error for an unknown name.
-const Description& description_of(std::string_view name);
 
 }  // namespace limcycle

@@ -39,7 +39,6 @@ class Output {
 
   bool wants_json() const { return !json_.empty() || !hdf5_.empty(); }
   bool wants_csv() const { return !csv_.empty(); }
-  bool wants_text() const { return !text_.empty(); }
 
   /// Write the whole document at once, into a new file that then replaces the old one, so that a full disk never costs
   /// an older result. An error is kept for finish(), so that the other documents are still written. On a terminal the

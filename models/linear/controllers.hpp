@@ -61,7 +61,10 @@ struct Sampling {
   template <class Owner>
   static void append_table(std::vector<Parameter<Owner, double>>& table) {
     append_clock(table);
-    table.push_back({"velocity_window", "1", "samples over which the velocity is differenced; 0: measured",
+    const bool measures = Owner::kind == std::string_view("cascade");
+    table.push_back({"velocity_window", "1",
+                     measures ? "samples over which the velocity is differenced; 0: measured"
+                              : "samples over which the velocity is differenced; 0: one",
                      &Owner::velocity_window, not_negative, false});
     table.push_back({"hold", "1", "the command between two readings", &Owner::hold, any_number, false, "", holds});
   }

@@ -102,9 +102,8 @@ PlantModel TwoMass::model() const {
 }
 
 PlantModel ServoDrive::model() const {
-  const double drive = efficiency * ratio, mass = load + drive * ratio * motor_inertia;
-  PlantModel plant = oscillator(mass, damping, 0.0);
-  plant.B_u *= drive * torque_constant;
+  PlantModel plant = oscillator(moved(), damping, 0.0);
+  plant.B_u *= efficiency * ratio * torque_constant;
   if (current_lag == 0.0) return plant;
   plant.A.conservativeResizeLike(Eigen::MatrixXd::Zero(3, 3));
   plant.A.block(0, 2, 2, 1) = plant.B_u;

@@ -4,6 +4,8 @@
 #include <variant>
 
 #include "limcycle/models/element/memoryless/gravity.hpp"
+#include "limcycle/models/linear/plant_energy.hpp"
+#include "limcycle/models/linear/plant_signals.hpp"
 #include "limcycle/models/linear/state_space.hpp"
 #include "limcycle/models/measured/measured_plant.hpp"
 #include "limcycle/models/parameter.hpp"
@@ -33,6 +35,7 @@ PlantModel input_output_plant(const StateSpace& g, double delay);
 struct Mass {
   double mass{}, damping{0.0}, stiffness{0.0};
   static constexpr std::string_view kind = "mass";
+  static constexpr PlantSignals signals = PlantSignals::lengths_and_forces;
   static constexpr std::string_view equation = "mass dv/dt = u - damping v - stiffness y - F(v), dy/dt = v";
   static std::vector<Parameter<Mass, double>> parameters() {
     return {{"mass", "kg", "mass", &Mass::mass, positive},
@@ -41,6 +44,7 @@ struct Mass {
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
   PlantModel model() const;
+  PlantEnergy energy() const;
 };
 
 /// Two masses joined by a spring and a damper; u acts on the motor, friction rubs at the motor or the load.
@@ -48,6 +52,7 @@ struct TwoMass {
   double motor_mass{}, load_mass{}, stiffness{}, damping{0.0};
   Choice friction_on{}, measured{1};
   static constexpr std::string_view kind = "two-mass";
+  static constexpr PlantSignals signals = PlantSignals::lengths_and_forces;
   static constexpr std::string_view equation =
       "motor_mass dv_m/dt = u - stiffness (y_m - y_l) - damping (v_m - v_l) [- F], "
       "load_mass dv_l/dt = stiffness (y_m - y_l) + damping (v_m - v_l) [- F]";
@@ -62,6 +67,7 @@ struct TwoMass {
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
   PlantModel model() const;
+  PlantEnergy energy() const;
 };
 
 /// Axis of a servo drive, with y the travel of the load: an angle, rad, or a length, m. The controller commands a
@@ -74,6 +80,8 @@ struct TwoMass {
 struct ServoDrive {
   double motor_inertia{}, load{}, ratio{1.0}, efficiency{1.0}, torque_constant{1.0}, damping{0.0}, current_lag{0.0};
   static constexpr std::string_view kind = "servo-drive";
+  static constexpr std::string_view input_unit = "A";  ///< of u, and of a load, which is added to it
+  static constexpr PlantSignals signals = PlantSignals::lengths_and_forces;
   static constexpr std::string_view equation =
       "(load + efficiency ratio^2 motor_inertia) dv/dt = efficiency ratio torque_constant i - damping v - F(v), "
       "current_lag di/dt = u - i, dy/dt = v";
@@ -90,12 +98,16 @@ struct ServoDrive {
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
   PlantModel model() const;
+  PlantEnergy energy() const;
+  /// Mass, or moment of inertia, that moves with the load.
+  double moved() const { return load + efficiency * ratio * ratio * motor_inertia; }
 };
 
 /// Mass on a belt that runs at `speed`: m dv/dt = u - k y - c v - F(v - speed).
 struct Belt {
   double mass{}, stiffness{}, damping{0.0}, speed{};
   static constexpr std::string_view kind = "belt";
+  static constexpr PlantSignals signals = PlantSignals::lengths_and_forces;
   static constexpr std::string_view equation = "mass dv/dt = u - stiffness y - damping v - F(v - speed), dy/dt = v";
   static std::vector<Parameter<Belt, double>> parameters() {
     return {{"mass", "kg", "mass", &Belt::mass, positive},
@@ -105,10 +117,12 @@ struct Belt {
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
   PlantModel model() const;
+  PlantEnergy energy() const;
+  static constexpr std::string_view surface_speed_key = "speed";
+  double& surface_speed() { return speed; }
 };
 
 /// Froude pendulum: a pendulum hung by a sleeve on a shaft that turns at `shaft_speed`. y is the angle from hanging,
-/// rad; u and a load are torques about the axis, N m. The friction law is the force F(v), N, at the surface of the
 /// rad; u and a load are torques about the axis, N m. The friction law is the force F(v), N, at the surface of the
 /// shaft for the velocity v = shaft_radius (dy/dt - shaft_speed) of the sleeve over it, and opposes v:
 ///   inertia d2y/dt2 = u - damping dy/dt - mass gravity arm sin y - shaft_radius F(v).
@@ -119,6 +133,7 @@ struct Belt {
 struct FroudePendulum {
   double mass{}, arm{}, inertia{}, damping{0.0}, shaft_radius{}, shaft_speed{}, gravity{9.81}, clearance{0.0};
   static constexpr std::string_view kind = "froude-pendulum";
+  static constexpr PlantSignals signals = PlantSignals::angles_and_torques;
   static constexpr std::string_view equation =
       "inertia d2y/dt2 = u - damping dy/dt - mass gravity arm sin(y) - shaft_radius F(v), "
       "v = shaft_radius (dy/dt - shaft_speed)";
@@ -135,6 +150,9 @@ struct FroudePendulum {
   }
   std::optional<BrokenRule> validate() const { return std::nullopt; }
   PlantModel model() const;
+  PlantEnergy energy() const;
+  static constexpr std::string_view surface_speed_key = "shaft_speed";
+  double& surface_speed() { return shaft_speed; }
 };
 
 /// A lag with dead time, the usual model of a process: y = gain/(time_constant s + 1) exp(-delay s) u. No friction: a
@@ -142,6 +160,7 @@ struct FroudePendulum {
 struct FirstOrder {
   double gain{}, time_constant{}, delay{0.0};
   static constexpr std::string_view kind = "first-order";
+  static constexpr PlantSignals signals = PlantSignals::unknown;
   static constexpr std::string_view equation = "time_constant dy/dt + y = gain u(t - delay)";
   static std::vector<Parameter<FirstOrder, double>> parameters() {
     return {{"gain", "1", "y at rest for u = 1", &FirstOrder::gain},
@@ -158,6 +177,7 @@ struct FirstOrder {
 struct SecondOrder {
   double gain{}, time_constant{}, damping_ratio{}, delay{0.0};
   static constexpr std::string_view kind = "second-order";
+  static constexpr PlantSignals signals = PlantSignals::unknown;
   static constexpr std::string_view equation =
       "time_constant^2 d2y/dt2 + 2 damping_ratio time_constant dy/dt + y = gain (u(t - delay) - F)";
   static std::vector<Parameter<SecondOrder, double>> parameters() {
@@ -175,6 +195,7 @@ struct TransferFunction {
   std::vector<double> numerator, denominator;
   double delay{0.0};
   static constexpr std::string_view kind = "transfer-function";
+  static constexpr PlantSignals signals = PlantSignals::unknown;
   static constexpr std::string_view equation =
       "y = numerator(s)/denominator(s) exp(-delay s) (u - F), highest power first";
   static std::vector<Parameter<TransferFunction, double>> parameters() {
@@ -191,6 +212,7 @@ struct ZeroPoleGain {
   std::vector<std::complex<double>> zeros, poles;
   double gain{}, delay{0.0};
   static constexpr std::string_view kind = "zpk";
+  static constexpr PlantSignals signals = PlantSignals::unknown;
   static constexpr std::string_view equation = "y = gain prod(s - zeros)/prod(s - poles) exp(-delay s) (u - F)";
   static std::vector<Parameter<ZeroPoleGain, double>> parameters() {
     return {{"zeros", "1/s", "numbers or [re, im] pairs", &ZeroPoleGain::zeros},
@@ -210,6 +232,7 @@ struct StateSpacePlant {
   Eigen::MatrixXd A, B, C, D{Eigen::MatrixXd(0, 0)}, B_friction{Eigen::MatrixXd(0, 0)},
       C_velocity{Eigen::MatrixXd(0, 0)}, C_friction{Eigen::MatrixXd(0, 0)};
   static constexpr std::string_view kind = "state-space";
+  static constexpr PlantSignals signals = PlantSignals::unknown;
   static constexpr std::string_view equation = "dx/dt = A x + B u - B_friction F, y = C x, v = C_velocity x";
   static std::vector<Parameter<StateSpacePlant, double>> parameters() {
     return {{"A", "1", "rows as lists", &StateSpacePlant::A},
@@ -228,6 +251,9 @@ struct StateSpacePlant {
 
 using Plant = std::variant<Mass, TwoMass, ServoDrive, Belt, FroudePendulum, FirstOrder, SecondOrder, TransferFunction,
                            ZeroPoleGain, StateSpacePlant, MeasuredPlant>;
+
+/// Empty for a plant known by its input and output only.
+std::optional<PlantEnergy> energy_of(const Plant& plant);
 
 /// Takes the dead time of a plant away; false if it has none.
 bool end_delay(Plant& plant);

@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "limcycle/models/linear/plant_signals.hpp"
 #include "limcycle/models/measured/measured_response.hpp"
 #include "limcycle/models/parameter.hpp"
 
@@ -21,6 +22,7 @@ struct MeasuredPlant {
   std::shared_ptr<const MeasuredResponse> response{};  ///< made for the parameters by measured()
 
   static constexpr std::string_view kind = "frf";
+  static constexpr PlantSignals signals = PlantSignals::unknown;
   static constexpr std::string_view equation = "y(jw) = gain data(jw) (u - F); in time a stable fit of the data";
   static constexpr std::string_view frequencies[] = {"rad/s", "Hz"};
   static constexpr std::string_view formats[] = {"re-im", "magnitude-degrees", "decibel-degrees"};

@@ -1,15 +1,15 @@
 #include <cmath>
 
 #include "limcycle/reports/adequacy/adequate.hpp"
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/format/number.hpp"
-#include "limcycle/reports/frame.hpp"
 
 namespace limcycle {
 namespace {
 
 /// null: not requested, or no answer; an infinite error means another verdict, which is stated itself.
-Json answer_json(const SceneAnswer& answer) {
+Json answer_json(const MethodAnswer& answer) {
   const bool cycle = answer.answered && answer.hunts();
   return {{"verdict", answer.answered ? Json(answer.verdict) : Json(nullptr)},
           {"period", cycle ? number(answer.period) : Json(nullptr)},

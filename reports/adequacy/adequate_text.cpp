@@ -85,12 +85,12 @@ std::string adequate_answer(const AdequateReport& report, const Units& units) {
 
 Table ladder_table(const AdequateReport& report) {
   Table table{{{"law", "", Align::left}}, {}};
-  for (const auto& method : scene_methods()) table.columns.push_back({short_name(method), ""});
+  for (const auto& method : answering_methods()) table.columns.push_back({short_name(method), ""});
   table.columns.push_back({"worst", ""});
   table.columns.push_back({"enough", "", Align::left});
   for (const auto& law : report.laws) {
     std::vector<std::string> row{law.name};
-    for (const auto& method : scene_methods()) {
+    for (const auto& method : answering_methods()) {
       const AdequatePoint* point = point_of(report, law.name, method);
       row.push_back(point ? verdict_cell(*point) : "-");
     }
@@ -143,11 +143,11 @@ Document adequate_document(const std::string& title, const AdequateReport& repor
         "adequate at the case's own values.",
         80, 2);
     Table costs{{{"law", "", Align::left}}, {}};
-    for (const auto& method : scene_methods()) costs.columns.push_back({short_name(method), ""});
+    for (const auto& method : answering_methods()) costs.columns.push_back({short_name(method), ""});
     for (const auto& law : report.laws) {
       if (!law.law) continue;
       costs.rows.push_back({law.name});
-      for (const auto& method : scene_methods()) {
+      for (const auto& method : answering_methods()) {
         const AdequatePoint* point = point_of(report, law.name, method);
         costs.rows.back().push_back(point ? as_duration(point->answer.seconds) : "-");
       }

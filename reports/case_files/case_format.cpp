@@ -12,7 +12,7 @@ CaseSection loop() {
           "The set-point and a load; its parts are in [loop.plant], [loop.controller], [loop.friction], [loop.element] "
           "and [loop.error].",
           {{"reference", "0.0", "set-point r, in the unit of y; or {kind = \"ramp\", rate = 0.01}: r = rate t", "0"},
-           {"load", "0.0", "constant force on the plant, N", "0"}}};
+           {"load", "0.0", "force added to u, N (servo-drive: A)", "0"}}};
 }
 
 CaseSection diagram() {

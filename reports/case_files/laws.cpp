@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/format/table.hpp"
-#include "limcycle/reports/frame.hpp"
 
 namespace limcycle {
 namespace {

@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "limcycle/reports/continuation/continue.hpp"
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/format/number.hpp"
-#include "limcycle/reports/frame.hpp"
 
 namespace limcycle {
 namespace {

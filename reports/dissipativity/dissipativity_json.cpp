@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "limcycle/reports/dissipativity/dissipativity.hpp"
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/format/number.hpp"
-#include "limcycle/reports/frame.hpp"
 
 namespace limcycle {
 namespace {

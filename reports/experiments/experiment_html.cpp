@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/experiments/experiment.hpp"
 #include "limcycle/reports/format/number.hpp"
-#include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
 
 namespace limcycle {

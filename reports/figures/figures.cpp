@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/reports/figures/drawing/thin.hpp"
+#include "limcycle/reports/figures/drawing/decimate.hpp"
 #include "limcycle/reports/figures/multipliers.hpp"
 #include "limcycle/reports/figures/nyquist_figure.hpp"
 #include "limcycle/reports/format/json_values.hpp"
@@ -80,8 +80,8 @@ Json labels(const Trace& trace, const Units& units) {
 /// its second copy would begin at the cut.
 Json curve(const Trace& trace, std::size_t most, double sticking, bool period, bool& whole) {
   const auto stuck = stuck_samples(trace, sticking);
-  Thinned kept = thin(trace, most, stuck);
-  if (period && !kept.whole) kept = thin(trace, 2 * most, stuck, INFINITY);
+  Decimated kept = decimate(trace, most, stuck);
+  if (period && !kept.whole) kept = decimate(trace, 2 * most, stuck, INFINITY);
   whole = kept.whole;
   Json marks = Json::array();
   for (const std::size_t i : kept.index) marks.push_back(i < stuck.size() && stuck[i] ? 1 : 0);

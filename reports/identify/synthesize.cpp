@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/format/table.hpp"
-#include "limcycle/reports/frame.hpp"
 
 namespace limcycle {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/map/map.hpp"
-#include "limcycle/reports/predict/answer.hpp"
+#include "limcycle/reports/predict/verdict_text.hpp"
 
 namespace limcycle {
 namespace {

@@ -15,8 +15,8 @@
 #include "limcycle/reports/page/html_parts.hpp"
 #include "limcycle/reports/page/page.hpp"
 #include "limcycle/reports/precision/precision.hpp"
-#include "limcycle/reports/predict/answer.hpp"
 #include "limcycle/reports/predict/predict_sections.hpp"
+#include "limcycle/reports/predict/verdict_text.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 #include "limcycle/reports/text.hpp"
@@ -160,7 +160,7 @@ std::string contents(const std::vector<ReportSection>& sections, bool notes) {
 
 std::string report_page(const LoopReport& report, const Provenance& provenance, const std::string& case_text,
                         const Units& units, const std::string& flags) {
-  CycleAnswer words = answer(report.predict, units);
+  VerdictText words = answer(report.predict, units);
   if (report.interrupted)
     words.worth.insert(words.worth.begin(),
                        "Interrupted: this page shows the results computed so far and marks what is missing.");

@@ -9,7 +9,7 @@ std::string_view page_script() {
   static const std::string joined = [] {
     std::string all = "\"use strict\";\n(() => {\n";  // script elements of a page share their names
     for (const auto part :
-         {script_ground(), script_figures(), script_nyquist(), script_tables(), script_saving(), script_page()})
+         {script_base(), script_figures(), script_nyquist(), script_tables(), script_saving(), script_page()})
       all += part;
     return all + "})();\n";
   }();

@@ -1,8 +1,8 @@
 #include <cmath>
 
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/format/number.hpp"
-#include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/precision/precision.hpp"
 
 namespace limcycle {

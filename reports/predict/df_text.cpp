@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "limcycle/analysis/frequency/describing_function/drive_dependence.hpp"
+#include "limcycle/analysis/frequency/describing_function/df_undefined.hpp"
 #include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/text.hpp"
 

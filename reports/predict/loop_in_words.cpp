@@ -29,7 +29,7 @@ std::string reference_words(const LoopParts& parts, const Units& units) {
 }
 
 std::string load_words(const LoopParts& parts, const Units& units) {
-  return "load = " + Units::attach(diagram_number(parts.load), units.force);
+  return "load = " + Units::attach(diagram_number(parts.load), units.command);
 }
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include "limcycle/reports/figures/multipliers.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
-#include "limcycle/reports/predict/answer.hpp"
+#include "limcycle/reports/predict/verdict_text.hpp"
 #include "limcycle/reports/text.hpp"
 
 namespace limcycle {

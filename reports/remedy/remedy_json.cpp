@@ -1,6 +1,6 @@
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/format/number.hpp"
-#include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/remedy/costs.hpp"
 #include "limcycle/reports/remedy/remedy.hpp"
 

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <complex>
 
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/format/number.hpp"
-#include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/sensitivity/sensitivity.hpp"
 
 namespace limcycle {
@@ -202,7 +202,7 @@ std::string sensitivity_json(const Provenance& provenance, const SensitivityRepo
     for (const auto& output : report.global->outputs) {
       add_output(report, output, morris, sobol, interactions, convergence);
       without[output.output] = number(output.share_without_answer);
-      if (output.output == HuntingAnswer::names[1]) share = output.share_without_answer;
+      if (output.output == EnsembleOutcome::names[1]) share = output.share_without_answer;
     }
   Json bands = Json::array(), correlations = Json::array();
   if (report.global)

@@ -1,5 +1,5 @@
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/json_values.hpp"
-#include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/store/status.hpp"
 
 namespace limcycle {

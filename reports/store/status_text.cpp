@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "limcycle/reports/document_header.hpp"
 #include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/format/table.hpp"
-#include "limcycle/reports/frame.hpp"
 #include "limcycle/reports/store/status.hpp"
 
 namespace limcycle {

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <bit>
 #include <limits>
 #include <utility>
 
+#include "limcycle/analysis/random_bits.hpp"
 #include "limcycle/reports/format/json_values.hpp"
 #include "limcycle/reports/memory.hpp"
 
@@ -196,11 +198,9 @@ std::vector<unsigned char> bytes_of(std::span<const double> numbers) {
 
 /// FNV-1a of 64 bits, over the point as eight bytes and the bytes of its row: detects changes by a failing disk.
 std::int64_t checksum(std::size_t point, std::span<const unsigned char> bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  const auto mix = [&](std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3U; };
-  for (unsigned shift = 0; shift < 64; shift += 8) mix(static_cast<std::uint64_t>(point) >> shift & 0xff);
-  for (const unsigned char byte : bytes) mix(byte);
-  return std::bit_cast<std::int64_t>(hash);
+  std::array<std::uint64_t, 8> number{};
+  for (unsigned k = 0; k < 8; ++k) number[k] = static_cast<std::uint64_t>(point) >> (8 * k) & 0xff;
+  return std::bit_cast<std::int64_t>(fnv1a(bytes, fnv1a(number)));
 }
 
 }  // namespace limcycle

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "limcycle/reports/figures/multipliers.hpp"
-#include "limcycle/reports/predict/answer.hpp"
+#include "limcycle/reports/predict/verdict_text.hpp"
 #include "limcycle/tests/reports/sample_report.hpp"
 
 using namespace limcycle;
@@ -43,7 +43,7 @@ TEST_CASE("predict: the answer stands first, in words") {
 }
 
 TEST_CASE("predict: predictions with their verdicts and deviations") {
-  const CycleAnswer words = answer(sample::relay(), {"", ""});
+  const VerdictText words = answer(sample::relay(), {"", ""});
   CHECK(words.what_happens ==
         "This loop oscillates: it settles into a limit cycle of period 6.283 s and amplitude 0.6583.");
   REQUIRE(words.worth.size() == 1);

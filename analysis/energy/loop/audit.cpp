@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "limcycle/analysis/energy/loop/plant_energy.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/models/diagram/assemble.hpp"
 #include "limcycle/models/element/element.hpp"
+#include "limcycle/models/linear/plants.hpp"
 
 namespace limcycle {
 namespace {
@@ -139,6 +139,7 @@ class EnergyAudit::Count {
     const double load = constant_load_ + field.external()(external_force);
     const double velocity = plant_.B_u.dot(energy_->kinetic * X);  // the velocity conjugate to the input
     if (commanded_) sum.command = (input - load) * velocity;       // else rounding
+    if (energy_->motor.size() > 0) sum.command += X.dot(energy_->motor * X);
     sum.load = load * velocity;
     if (friction_) sum.drive = field.output(*friction_) * plant_.v0;
     sum.viscous = X.dot(energy_->dampers * X);

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double on_axis = 1e-10;              ///< |Re s| below this share of the matrix: on the imaginary axis
-constexpr double accuracy = 1e-10;             ///< of the least value, relative to the size of Re H
+constexpr double value_accuracy = 1e-10;       ///< of the least value, relative to the size of Re H
 constexpr double evaluation_rounding = 1e-12;  ///< of an evaluated H, relative
 
 /// H(s) + H(-s) - 2 level.
@@ -161,12 +161,12 @@ void RealPart::find_least() {
     if (origin_.order >= 2 && !low_end) least_.value = std::numeric_limits<double>::quiet_NaN();
     return;
   }
-  least_ = {rest_.D(0, 0), infinity, accuracy * size_};
+  least_ = {rest_.D(0, 0), infinity, value_accuracy * size_};
   if (rest_.states() == 0) {
     least_.error = 1e-15 * size_;
     return;
   }
-  if (!low_end && limit_at_zero() < least_.value) least_ = {limit_at_zero(), 0.0, accuracy * size_};
+  if (!low_end && limit_at_zero() < least_.value) least_ = {limit_at_zero(), 0.0, value_accuracy * size_};
   descend();
 }
 
@@ -175,10 +175,10 @@ void RealPart::descend() {
   lower(samples(least_.value).value_or(moduli_));
   for (int i = 0; i < 30; ++i) {
     const double before = least_.value;
-    const auto points = samples(before - accuracy * size_);
+    const auto points = samples(before - value_accuracy * size_);
     if (!points) return;
     lower(*points);
-    if (!(least_.value < before - accuracy * size_)) return;
+    if (!(least_.value < before - value_accuracy * size_)) return;
   }
   least_.error = infinity;  // it keeps falling: the value is not reliable
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/energy/one_state/one_state_cycle.hpp"
-#include "limcycle/analysis/energy/passivity/resimulate.hpp"
+#include "limcycle/analysis/energy/passivity/reference_march.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
@@ -50,8 +50,8 @@ Counterexample as_input(const OneStateLaw& law, const TwoSpeedCycle& cycle) {
 
 /// Checks one period by the independent simulation: it must return to its state, and give the same energy.
 bool is_confirmed(const OneStateLaw& law, const TwoSpeedCycle& cycle, Counterexample& example,
-                  const ResimulationOptions& options) {
-  const Resimulation check = resimulate(law.law(), example.input, example.z0, example.mode0, 1, options);
+                  const ReferenceMarchOptions& options) {
+  const ReferenceMarch check = reference_march(law.law(), example.input, example.z0, example.mode0, 1, options);
   if (check.status != Status::converged) return false;
   example.confirmed = check.taken.front();
   return std::abs(check.z[0] - example.z0[0]) <= 1e-6 * (cycle.z2 - cycle.z1) &&
@@ -83,12 +83,12 @@ bool find_lead(const OneStateLaw& law, Counterexample& example) {
 
 /// Energy that the cycles take out of the law without history.
 std::vector<double> taken_from_virgin(const OneStateLaw& law, const Counterexample& example, int cycles,
-                                      const ResimulationOptions& options) {
-  if (example.lead_time == 0.0) return resimulate_virgin(law.law(), example.input, cycles, options).taken;
+                                      const ReferenceMarchOptions& options) {
+  if (example.lead_time == 0.0) return reference_march_virgin(law.law(), example.input, cycles, options).taken;
   const double v = example.lead_velocity;
-  const Resimulation lead = resimulate_virgin(law.law(), {{0.0, example.lead_time}, {v, v}}, 1, options);
+  const ReferenceMarch lead = reference_march_virgin(law.law(), {{0.0, example.lead_time}, {v, v}}, 1, options);
   if (lead.status != Status::converged) return {};
-  auto taken = resimulate(law.law(), example.input, lead.z, lead.mode, cycles, options).taken;
+  auto taken = reference_march(law.law(), example.input, lead.z, lead.mode, cycles, options).taken;
   for (double& energy : taken) energy -= lead.supplied;
   return taken;
 }
@@ -96,7 +96,7 @@ std::vector<double> taken_from_virgin(const OneStateLaw& law, const Counterexamp
 /// Growth from the law without history: at least ten cycles, as many as it takes that each gives the energy of the
 /// periodic motion and the total is positive, or a thousand if that takes longer.
 bool grows(const OneStateLaw& law, const TwoSpeedCycle& cycle, Counterexample& example,
-           const ResimulationOptions& options) {
+           const ReferenceMarchOptions& options) {
   if (!find_lead(law, example)) return false;
   for (const int cycles : {10, 100, 1000}) {
     example.taken = taken_from_virgin(law, example, cycles, options);
@@ -120,7 +120,7 @@ bool grows(const OneStateLaw& law, const TwoSpeedCycle& cycle, Counterexample& e
 
 std::optional<Counterexample> one_state_counterexample(const OneStateLaw& law, const SlopeSurvey& survey,
                                                        const PassivityOptions& options) {
-  ResimulationOptions run;
+  ReferenceMarchOptions run;
   run.stop = options.stop;
   run.max_steps = 2'000'000;
   for (int reach = 0; reach < reaches; ++reach)

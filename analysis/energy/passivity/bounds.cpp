@@ -9,7 +9,7 @@
 #include <string>
 
 #include "limcycle/analysis/energy/one_state/one_state_law.hpp"
-#include "limcycle/analysis/energy/passivity/resimulate.hpp"
+#include "limcycle/analysis/energy/passivity/reference_march.hpp"
 
 namespace limcycle {
 namespace {
@@ -131,7 +131,7 @@ WorstSeen worst_seen(const Element& law, const BoundsOptions& options) {
   WorstSeen seen;
   seen.low.assign(static_cast<std::size_t>(law.states()), infinite);
   seen.high.assign(static_cast<std::size_t>(law.states()), -infinite);
-  ResimulationOptions run;
+  ReferenceMarchOptions run;
   run.tolerance = 1e-9;
   run.max_steps = 20'000;
   run.stop = options.stop;
@@ -144,7 +144,7 @@ WorstSeen worst_seen(const Element& law, const BoundsOptions& options) {
   };
   Inputs inputs(law, options);
   for (; seen.inputs < options.inputs && !(options.stop && options.stop()); ++seen.inputs)
-    if (resimulate_virgin(law, inputs.next(seen.inputs), 2, run).status != Status::converged) ++seen.unfinished;
+    if (reference_march_virgin(law, inputs.next(seen.inputs), 2, run).status != Status::converged) ++seen.unfinished;
   return seen;
 }
 

@@ -9,7 +9,7 @@
 #include "limcycle/analysis/energy/passivity/adversary.hpp"
 #include "limcycle/analysis/energy/passivity/certificate.hpp"
 #include "limcycle/analysis/energy/passivity/held_input.hpp"
-#include "limcycle/analysis/energy/passivity/resimulate.hpp"
+#include "limcycle/analysis/energy/passivity/reference_march.hpp"
 #include "limcycle/analysis/energy/passivity/static_supply.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
@@ -24,9 +24,9 @@ bool confirm(const Element& element, const PassivityOptions& options, Counterexa
   if (port_of(element) == DrivenBy::input) {
     example.confirmed = -stepped_supply(element, example.input, example.z0, example.mode0);
   } else {
-    ResimulationOptions how;
+    ReferenceMarchOptions how;
     how.stop = options.stop;
-    const Resimulation run = resimulate(element, example.input, example.z0, example.mode0, 1, how);
+    const ReferenceMarch run = reference_march(element, example.input, example.z0, example.mode0, 1, how);
     if (run.status != Status::converged) return false;
     example.confirmed = -run.supplied;
   }

@@ -4,8 +4,8 @@
 #include <variant>
 
 #include "limcycle/analysis/frequency/composite/composite_period.hpp"
-#include "limcycle/analysis/frequency/describing_function/drive_dependence.hpp"
-#include "limcycle/analysis/frequency/describing_function/refuse.hpp"
+#include "limcycle/analysis/frequency/describing_function/argument_error.hpp"
+#include "limcycle/analysis/frequency/describing_function/df_undefined.hpp"
 #include "limcycle/models/element/element.hpp"
 
 namespace limcycle {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "limcycle/analysis/frequency/describing_function/argument_error.hpp"
 #include "limcycle/analysis/frequency/describing_function/df_table.hpp"
-#include "limcycle/analysis/frequency/describing_function/refuse.hpp"
 #include "limcycle/analysis/sweep.hpp"
 
 namespace limcycle {

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <numbers>
 
-#include "limcycle/analysis/frequency/describing_function/drive_dependence.hpp"
+#include "limcycle/analysis/frequency/describing_function/df_undefined.hpp"
 #include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
 #include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
 #include "limcycle/analysis/frequency/kernels/df_kernel.hpp"

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "limcycle/analysis/frequency/describing_function/refuse.hpp"
+#include "limcycle/analysis/frequency/describing_function/argument_error.hpp"
 #include "limcycle/analysis/frequency/harmonic_balance/balance_newton.hpp"
 #include "limcycle/analysis/frequency/harmonic_balance/balance_start.hpp"
 #include "limcycle/models/measured/plants_of_loop.hpp"

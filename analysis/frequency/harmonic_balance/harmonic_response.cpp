@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "limcycle/analysis/frequency/describing_function/drive_dependence.hpp"
+#include "limcycle/analysis/frequency/describing_function/argument_error.hpp"
+#include "limcycle/analysis/frequency/describing_function/df_undefined.hpp"
 #include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
-#include "limcycle/analysis/frequency/describing_function/refuse.hpp"
 #include "limcycle/analysis/frequency/march/response_derivative.hpp"
 
 namespace limcycle {

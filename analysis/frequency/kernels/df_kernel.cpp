@@ -197,7 +197,7 @@ std::optional<DfKernel> DfKernel::of(const Element& element, const DfOptions& op
     return lugre->odd() ? std::optional(DfKernel(*lugre, options)) : std::nullopt;
   if (const auto* dahl = element.as<Dahl<double>>(); dahl != nullptr && dahl->is_linear_in_state())
     return DfKernel(*dahl, options);
-  if (auto law = MarchedLaw::of(element); law && law->least < 0.5 * options.accuracy)
+  if (auto law = KernelLaw::of(element); law && law->least < 0.5 * options.accuracy)
     return DfKernel(std::move(*law), options);
   return std::nullopt;
 }

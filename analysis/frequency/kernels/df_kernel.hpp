@@ -15,7 +15,7 @@ namespace limcycle {
 
 /// Describing functions of laws without direction dependence, computed for many points at a time in lanes, from the
 /// half period of the periodic state. Laws linear in their state (LuGre, Dahl with exponent 1) take one pass
-/// (linear_kernel.hpp). Others with independent states (elasto-plastic, Dahl, Bouc-Wen, Xiong; see MarchedLaw) are
+/// (linear_kernel.hpp). Others with independent states (elasto-plastic, Dahl, Bouc-Wen, Xiong; see KernelLaw) are
 /// marched through their switches (march_kernel.hpp).
 ///
 /// Error for laws linear in their state: in units of Fs/sigma0 and vs the problem has four numbers: alpha = A
@@ -40,7 +40,7 @@ class DfKernel {
   using Law = std::variant<LuGre<double>, Dahl<double>>;
   class Batch;
   DfKernel(Law law, const DfOptions& options);
-  DfKernel(MarchedLaw law, const DfOptions& options)
+  DfKernel(KernelLaw law, const DfOptions& options)
       : options_(options), marched_(std::in_place, std::move(law), options) {}
   double bound(const HalfPeriodSettings& mesh) const;
 

@@ -130,7 +130,7 @@ class MarchedHalfPeriod::Batch {
   };
 
   Marching marching(std::size_t point, std::size_t s) const {
-    const MarchedState& state = law_.states[s];
+    const KernelState& state = law_.states[s];
     const double A = points_[point].amplitude, w = points_[point].frequency;
     Marching m{.point = point, .state = s};
     m.reach = A * state.reach;
@@ -146,7 +146,7 @@ class MarchedHalfPeriod::Batch {
   }
 
   /// Scales of tan(phi/2) at both ends.
-  void layers(const MarchedState& state, Marching& m) const {
+  void layers(const KernelState& state, Marching& m) const {
     double cap = mesh_->cap;
     if (law_.kink != 0.0 && law_.kink != 1.0) cap *= std::pow(mesh_->newton * mesh_->newton, 1.0 / (2.0 + law_.kink));
     const double way = std::sqrt(2.0 / m.reach), speed = m.speed > 0.0 ? 1.0 / m.speed : way;
@@ -165,7 +165,7 @@ class MarchedHalfPeriod::Batch {
     m.before = std::min(0.5 * cap * before, 0.5);
   }
 
-  void pass(const MarchedState& state) {
+  void pass(const KernelState& state) {
     const std::size_t n = pending_.size(), sums = static_cast<std::size_t>(MarchTask::sums_of(orders_));
     numbers_.resize(n * (13 + sums));
     panel_counts_.resize(n);
@@ -203,7 +203,7 @@ class MarchedHalfPeriod::Batch {
   }
 
   /// Newton on the half period; true if that has converged.
-  bool settle(const MarchedState& state, const MarchTask& task, std::size_t i) {
+  bool settle(const KernelState& state, const MarchTask& task, std::size_t i) {
     Marching& m = pending_[i];
     panels_[m.point] += std::abs(task.panels[i]);
     if (task.panels[i] == 0) {
@@ -236,7 +236,7 @@ class MarchedHalfPeriod::Batch {
     return true;
   }
 
-  const MarchedLaw& law_;
+  const KernelLaw& law_;
   Isa isa_;
   int wanted_orders_, orders_ = 1;
   std::span<const DfPoint> points_;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
-#include "limcycle/analysis/frequency/kernels/marched_law.hpp"
+#include "limcycle/analysis/frequency/kernels/kernel_law.hpp"
 
 namespace limcycle {
 
@@ -13,7 +13,7 @@ namespace limcycle {
 /// solved by Newton's method. Many points at a time; the result of a point does not depend on the others.
 class MarchedHalfPeriod {
  public:
-  MarchedHalfPeriod(MarchedLaw law, const DfOptions& options) : law_(std::move(law)), options_(options) {}
+  MarchedHalfPeriod(KernelLaw law, const DfOptions& options) : law_(std::move(law)), options_(options) {}
 
   /// Points are marched on two meshes or more, from coarse to fine. The error follows from the difference of the last
   /// two, see `trust`. If the wanted accuracy was not reached, `method` stays empty.
@@ -28,7 +28,7 @@ class MarchedHalfPeriod {
   void march(std::span<const DfPoint> points, std::vector<std::size_t> wanted,
              std::span<DescribingFunction> results) const;
   DescribingFunction collect(const Batch& batch, std::size_t i, const DfPoint& point) const;
-  MarchedLaw law_;
+  KernelLaw law_;
   DfOptions options_;
 };
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "limcycle/analysis/frequency/describing_function/refuse.hpp"
+#include "limcycle/analysis/frequency/describing_function/argument_error.hpp"
 
 namespace limcycle {
 

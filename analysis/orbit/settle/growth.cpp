@@ -1,7 +1,9 @@
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 
 #include <algorithm>
+#include <optional>
 
+#include "limcycle/analysis/golden_maximum.hpp"
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/settle/displaced.hpp"
@@ -9,22 +11,28 @@
 namespace limcycle {
 
 bool grows_like_a_power(const TurningPoints& turning) {
-  constexpr std::size_t few = 64, averaged = 4;
-  constexpr double least_growth = 1.2, least_part = 0.01, rise = 1.2;
+  constexpr std::size_t few = 128;
+  constexpr double least_growth = 1.2, most_growth = 9.0, rise = 1.2, going_on = 0.75;
+  constexpr double visible = 0.1, about_twice = 0.45, flatter_than_line = 1.9;
   const std::size_t count = turning.points().size();
   if (count < few) return false;
+  const std::size_t averaged = count / 16;  // a swing is known by the ends of steps only
   const auto size = [&](std::size_t swings) {
     double sum = 0.0;
     for (std::size_t k = 0; k < averaged; ++k) sum += turning.swing(count - 1 - swings + k);
     return sum;
   };
   // The growth in each doubling of the number of swings is 2^p times that before for n^p, and comes down to that for
-  // (a + n)^p, from afar. For a motion that is bounded it falls, for an exponential growth its ratio rises.
+  // (a + n)^p, from afar. For a motion that is bounded it falls, for an exponential growth its ratio rises from 2,
+  // which shows only once the size has grown to about twice: before, any growth that does not flatten is a line. An
+  // exponential growth that ends in a cycle looks like a power in between, of a high degree or already at its end.
   const std::size_t all = count - 1;
   const double last = size(all) - size(all / 2), before = size(all / 2) - size(all / 4),
                first = size(all / 4) - size(all / 8);
-  return first > 0.0 && last > least_part * size(all) && last > least_growth * before &&
-         before > least_growth * first && last * first < rise * before * before;
+  const bool shows = last < flatter_than_line * before ? last > visible * size(all) : last > about_twice * size(all);
+  const double later_half = size(all) - size(all - all / 4), earlier_half = size(all - all / 4) - size(all / 2);
+  return first > 0.0 && shows && later_half > going_on * earlier_half && last > least_growth * before &&
+         last < most_growth * before && before > least_growth * first && last * first < rise * before * before;
 }
 
 bool drifts(const TurningPoints& turning) {
@@ -41,11 +49,45 @@ bool drifts(const TurningPoints& turning) {
   return one_way(2) || one_way(4) || one_way(6);
 }
 
-bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long most_steps,
-                     const std::function<bool()>& stop) {
-  constexpr double farther = 30.0;
+namespace {
+
+/// Turning points of y over a march, within its steps and not at their ends: a few steps may make a swing.
+class FineSwings {
+ public:
+  explicit FineSwings(const LoopField& field) : field_(field) {}
+
+  void step(March& march, double rate_before, double rate_after) {
+    if (rate_before * rate_after < 0.0) {
+      const double sign = rate_before > 0.0 ? 1.0 : -1.0;
+      const double at = golden_maximum([&](double part) { return sign * y_within(march, part); }, 0.0, 0.5, 1.0, 40);
+      turning.feed(march.last().t0 + at * (march.last().t1 - march.last().t0), y_within(march, at));
+    }
+    turning.feed(march.t(), field_.y(march.x()));
+  }
+
+  TurningPoints turning;
+
+ private:
+  double y_within(March& march, double part) {
+    if (march.last().switched)
+      march.last().interpolate(part, x_);
+    else
+      march.within(part, x_);
+    return field_.y(x_);
+  }
+
+  const LoopField& field_;
+  State x_;
+};
+
+/// The last swing of a few, over the one before it in the same direction that is farthest back; and over `swing`.
+struct Growth {
+  double factor = 0.0, distance = 0.0;
+};
+
+std::optional<Growth> growth_from(const Loop& loop, const LoopState& far, double swing, double rtol, long most_steps,
+                                  const std::function<bool()>& stop) {
   constexpr std::size_t turns = 10, apart = 6;  // an even number, so that swings of one direction are compared
-  const LoopState far = scaled(loop, here, farther);
   LoopField field(loop);
   field.modes() = far.modes;
   // So far out, swings are so slow that fast poles limit the steps of an explicit method.
@@ -53,14 +95,28 @@ bool grows_from_afar(const Loop& loop, const LoopState& here, double rtol, long 
   const auto kind = usual ? StepperKind::automatic : StepperKind::rodas5p;
   March march(field, kind, loop_weights(loop, rtol));
   march.begin(far.x, 0.0);
-  TurningPoints turning;
+  FineSwings swings(field);
   constexpr double end = 1e15;  // s, of a motion that hardly moves
-  while (turning.points().size() < turns) {
-    if (march.steps() > most_steps || march.t() >= end || (stop && stop())) return false;
-    if (march.step(end) != Status::converged) return false;
-    turning.feed(march.t(), field.y(march.x()));
+  while (swings.turning.points().size() < turns) {
+    if (march.steps() > most_steps || march.t() >= end || (stop && stop())) return std::nullopt;
+    if (march.step(end) != Status::converged) return std::nullopt;
+    swings.step(march, field.y_rate(march.last().dx0), field.y_rate(march.last().dx1));
   }
-  return turning.swing(0) > (1.0 + 100.0 * rtol) * turning.swing(apart);
+  return Growth{swings.turning.swing(0) / swings.turning.swing(apart), swings.turning.swing(0) / swing};
+}
+
+}  // namespace
+
+bool grows_from_afar(const Loop& loop, const LoopState& here, double swing, double rtol, long most_steps,
+                     const std::function<bool()>& stop) {
+  constexpr double farther = 30.0, still_far = 0.2;
+  for (const double factor : {farther, farther * farther, farther * farther * farther}) {
+    const auto growth = growth_from(loop, scaled(loop, here, factor), swing, rtol, most_steps, stop);
+    // The farther out, the less the growth of a power is in a few swings; what bounds it is the stronger there.
+    const double least = factor == farther ? 1.0 + 100.0 * rtol : 1.0 - 100.0 * rtol;
+    if (!growth || growth->factor <= least || growth->distance < still_far * factor) return false;
+  }
+  return true;
 }
 
 }  // namespace limcycle

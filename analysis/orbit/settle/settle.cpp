@@ -9,12 +9,13 @@
 #include "limcycle/analysis/motion/parallel.hpp"
 #include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/orbit/settle/displaced.hpp"
 #include "limcycle/analysis/orbit/settle/drift.hpp"
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
 #include "limcycle/analysis/orbit/settle/to_cycle/cycle_tries.hpp"
+#include "limcycle/analysis/orbit/settle/to_cycle/locked_cycle.hpp"
+#include "limcycle/analysis/orbit/settle/watch/swings.hpp"
 #include "limcycle/analysis/orbit/settle/watch/switching_watch.hpp"
 #include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
 #include "limcycle/analysis/orbit/settle/watch/wind_up_watch.hpp"
@@ -43,7 +44,7 @@ class Settling {
         start_(std::move(start)),
         field_(loop),
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
-        stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol),
+        stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol, options.amplitude_floor),
         switching_(loop, loop_sizes(loop)),
         wind_up_(loop),
         rubs_elsewhere_(loop.ports.back().rubs && !loop.continuous && !parallel(loop.ports.back().C, loop.C_y)),
@@ -242,8 +243,8 @@ class Settling {
   }
 
   void look_for_growth() {
-    if (grows_like_a_power(turning_) &&
-        grows_from_afar(loop_, {march_.x(), field_.modes()}, options_.rtol, options_.max_steps, options_.stop))
+    if (grows_like_a_power(turning_) && grows_from_afar(loop_, {march_.x(), field_.modes()}, turning_.swing(0),
+                                                        options_.rtol, options_.max_steps, options_.stop))
       decide(Outcome::divergence, "y grows without bound, like a power of time");
   }
 
@@ -261,57 +262,16 @@ class Settling {
   }
 
   /// Decides for a cycle of a sampled loop whose swings repeat themselves after a whole number of samples, if the state
-  /// does: at once, and after many periods no less. Multipliers say little of it: within a quantum they are 0 or 1.
+  /// does.
   void look_for_lock() {
-    constexpr int many = 8;
     const std::size_t turns = turning_.points().size();
     if (!loop_.continuous || (turns < next_lock_ && turns != next_irregular_)) return;
     next_lock_ = std::max(next_lock_, turns + turns / 2);
     const double samples = std::round(repeat_time(recent(turning_, turns / 2)) / repetition_time(loop_));
-    const bool exact = march_.kind() == StepperKind::exact;
-    const double period = samples * repetition_time(loop_), allowed = exact ? 1e-9 : 10.0 * options_.rtol;
-    if (!(samples > 0.0) || samples * many > 1e6) return;
-    constexpr double between = 0.371;  // of two samples: at one of them a rounding would decide on which side it is
-    const auto here = moved({march_.x(), field_.modes()}, between * repetition_time(loop_));
-    const auto next = here ? moved(*here, period) : std::nullopt;
-    const double once = next ? distance(*next, *here) : infinite;
-    if (!(once <= allowed)) return;
-    const auto last = moved(*here, many * period);
-    if (!last || !(distance(*last, *here) <= std::max(2.0 * once, 1e-9))) return;
-    ShootingResult shot;
-    shot.cycle.period = period;
-    shot.cycle.start = *here;
-    shot.cycle.method = "simulation";
-    shot.cycle.stable = true;
-    shot.cycle.residual = once;
-    shot.cycle.error = std::max(once, exact ? 1e-9 : options_.rtol);
-    shot.status = record(loop_, *here, period, options_.rtol, 100, shot.cycle.trace);
-    if (shot.status != Status::converged) return;
-    measure(loop_, shot.cycle);
+    auto shot = locked_cycle(loop_, {march_.x(), field_.modes()}, samples, march_.kind(), options_, tried_);
+    if (!shot) return;
     result_.shot = std::move(shot);
     decide(Outcome::cycle, "repeats itself after " + std::to_string(std::lround(samples)) + " samples");
-  }
-
-  /// The state after that time; nothing if the run ends early.
-  std::optional<LoopState> moved(const LoopState& from, double time) {
-    LoopField field(loop_);
-    field.modes() = from.modes;
-    March march(field, march_.kind(), loop_weights(loop_, options_.rtol));
-    march.begin(from.x, 0.0);
-    bool ends = false;
-    while (march.t() < time && !ends)
-      ends = (options_.stop && options_.stop()) || march.step(time) != Status::converged;
-    tried_ += march.steps();
-    return ends ? std::nullopt : std::optional(LoopState{march.x(), field.modes()});
-  }
-
-  /// In typical sizes of the states; infinite between different modes.
-  double distance(const LoopState& one, const LoopState& other) const {
-    const State sizes = typical_sizes(loop_);
-    double largest = one.modes == other.modes ? 0.0 : infinite;
-    for (std::size_t i = 0; i < sizes.size(); ++i)
-      largest = std::max(largest, std::abs(one.x[i] - other.x[i]) / sizes[i]);
-    return largest;
   }
 
   void look_at_swings() {
@@ -341,12 +301,6 @@ class Settling {
     look_for_cycle(of_y_);
   }
 
-  /// Turning points of a signal, and the number of them at which a cycle is looked for next.
-  struct Swings {
-    TurningPoints turning;
-    std::size_t next_try = 5, leapt_at = 0;
-  };
-
   void look_for_cycle(Swings& swings) {
     if (swings.turning.points().size() < swings.next_try) return;
     // A period of more turning points is one only if the swings repeat better with it: those of a slow drift do not.
@@ -356,36 +310,12 @@ class Settling {
       const double change = largest_change(swings.turning, order);
       if (change > least) continue;
       if (shrinks_to_nothing(swings.turning, order)) {
-        swings.next_try = next_try_after(swings);
+        swings.try_later();
         return;
       }
       if (try_cycle(swings, order, change)) return;
       least = 0.5 * change;
     }
-  }
-
-  /// Largest relative change of the last swings from those one period (of `order` turning points) before.
-  static double largest_change(const TurningPoints& turning, std::size_t order) {
-    double largest = 0.0;
-    for (std::size_t k = 0; k < order; ++k)
-      largest = std::max(largest, std::abs(turning.swing(k) / turning.swing(k + order) - 1.0));
-    return largest;
-  }
-
-  /// True if swings that shrink have no cycle ahead: their limit, by Aitken's extrapolation from the last three of one
-  /// period each, is a small part of the present one.
-  static bool shrinks_to_nothing(const TurningPoints& turning, std::size_t order) {
-    constexpr double small = 0.3;
-    if (turning.points().size() <= 2 * order + 1) return false;
-    const double now = turning.swing(0), before = turning.swing(order), first = turning.swing(2 * order);
-    const double last_change = before - now, change = first - before;
-    if (!(last_change > 0.0) || !(change >= last_change)) return false;
-    return change == last_change || now - last_change * last_change / (change - last_change) < small * now;
-  }
-
-  static std::size_t next_try_after(const Swings& swings) {
-    const std::size_t turns = swings.turning.points().size();
-    return turns + (turns - swings.leapt_at) / 2 + 1;
   }
 
   /// Displacement of the body that rubs.
@@ -416,7 +346,7 @@ class Settling {
     const long most = loop_.continuous ? steps_of_sampled_tries + march_.steps() / sampled_steps_per_try
                                        : steps_of_tries + tries_per_step * march_.steps();
     if (tried_ + tries_.steps() > most) return false;
-    swings.next_try = next_try_after(swings);
+    swings.try_later();
     NearlyClosed motion =
         nearly_closed(loop_, {march_.x(), field_.modes()}, recent(swings.turning, order), order, change);
     motion.steps += samples_in(motion.period.t.back() - motion.period.t.front());

@@ -15,7 +15,7 @@ namespace {
 const std::string shooting = "shooting";
 
 /// "finds no cycle, although a cycle exists": text for an answer whose verdict differs from the reference.
-std::string disagreement(const std::string& verdict, const SceneAnswer& best) {
+std::string disagreement(const std::string& verdict, const MethodAnswer& best) {
   const std::string claim = verdict.find('/') != std::string::npos ? "inconsistent"
                             : verdict == "cycle" || verdict == "no cycle"
                                 ? "finds " + (verdict == "cycle" ? "a " + verdict : verdict)
@@ -28,7 +28,7 @@ class LadderClimb {
   LadderClimb(const LoopParts& parts, const AdequateOptions& options)
       : parts_(parts), options_(options), asked_(options.predict, options.patience) {
     report_.tolerance = options.tolerance;
-    report_.laws = law_ladder(*parts.friction);
+    report_.laws = simplified_laws(*parts.friction);
     choose_variations();
     for (const auto& one : variations_) report_.spread.push_back(one.name);
   }
@@ -70,11 +70,11 @@ class LadderClimb {
              part_of_work(options_.threads, options_.predict.stop, options_.progress, from, to, std::string(what)));
   }
 
-  const SceneAnswer& ask_at_own_values(const std::string& method, const Element& law) {
+  const MethodAnswer& ask_at_own_values(const std::string& method, const Element& law) {
     return asked_.ask(method, 0, parts_, law);
   }
 
-  const SceneAnswer& ask_at(std::size_t variation, const std::string& method, const Element& law) {
+  const MethodAnswer& ask_at(std::size_t variation, const std::string& method, const Element& law) {
     return asked_.ask(method, varies_law_only_ ? 0 : variation + 1, variations_[variation].parts, law);
   }
 
@@ -99,7 +99,7 @@ class LadderClimb {
     PredictOptions elsewhere = options_.predict;
     elsewhere.search = options_.predict.search.value_or(default_search_box(loop));
     elsewhere.search->amplitude_max *= 0.37;
-    const SceneAnswer second = ask_scene(shooting, loop, elsewhere);
+    const MethodAnswer second = ask_scene(shooting, loop, elsewhere);
     if (!second.answered || second.verdict != report_.best.verdict)
       return give_up("simulations from other states do not confirm that its own law gives " + report_.best.verdict);
     report_.verified = "by simulations from other states";
@@ -114,7 +114,7 @@ class LadderClimb {
 
   /// A law for which shooting exceeds the patience costs the methods of the frequency domain no less, and is not
   /// adequate in any case: they are not run.
-  static bool too_dear(const std::string& method, const SceneAnswer& by_shooting, double patience) {
+  static bool too_dear(const std::string& method, const MethodAnswer& by_shooting, double patience) {
     return by_shooting.seconds > patience && method != "simulation" && method != shooting;
   }
 
@@ -137,10 +137,10 @@ class LadderClimb {
     }
   }
 
-  void ask_methods(const LawRung& rung, std::vector<AdequatePoint>& points) {
-    const SceneAnswer by_shooting = ask_at_own_values(shooting, *rung.law);
+  void ask_methods(const SimplifiedLaw& rung, std::vector<AdequatePoint>& points) {
+    const MethodAnswer by_shooting = ask_at_own_values(shooting, *rung.law);
     bool predicted = false;  // by a first-harmonic method, so that harmonic balance has a start
-    for (const auto& method : scene_methods()) {
+    for (const auto& method : answering_methods()) {
       if (stopped()) return;
       AdequatePoint point{.law = rung.name, .method = method, .answer = {}, .worst_at = {}, .why = {}};
       if (!rung.own && too_dear(method, by_shooting, options_.patience))
@@ -158,7 +158,7 @@ class LadderClimb {
   }
 
   /// Sets `within`, or the reason why not.
-  void judge(AdequatePoint& point, double error, const SceneAnswer& answer, const SceneAnswer& best,
+  void judge(AdequatePoint& point, double error, const MethodAnswer& answer, const MethodAnswer& best,
              const std::string& where) const {
     point.within = error <= options_.tolerance;
     if (point.within) return;
@@ -189,7 +189,7 @@ class LadderClimb {
 
   /// The same rung made from a varied law.
   static std::optional<Element> varied(const Element& own, std::size_t rung) {
-    const auto ladder = law_ladder(own);
+    const auto ladder = simplified_laws(own);
     return rung < ladder.size() ? ladder[rung].law : std::nullopt;
   }
 
@@ -202,7 +202,7 @@ class LadderClimb {
       if (!best_[i].answered) continue;
       const auto law = varied(*variations_[i].parts.friction, rung);
       if (!law) continue;
-      const SceneAnswer& answer = ask_at(i, point.method, *law);
+      const MethodAnswer& answer = ask_at(i, point.method, *law);
       if (stopped()) return;
       const double error = scene_error(point.method, answer, best_[i]);
       if (error <= point.worst) continue;
@@ -230,7 +230,7 @@ class LadderClimb {
   AskedScenes asked_;
   std::vector<SceneVariation> variations_;
   bool varies_law_only_ = false;
-  std::vector<SceneAnswer> best_;  ///< of the own law, for each variation
+  std::vector<MethodAnswer> best_;  ///< of the own law, for each variation
   AdequateReport report_;
 };
 

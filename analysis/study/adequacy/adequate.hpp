@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "limcycle/analysis/study/adequacy/law_ladder.hpp"
-#include "limcycle/analysis/study/adequacy/scene_answer.hpp"
+#include "limcycle/analysis/study/adequacy/method_answers.hpp"
+#include "limcycle/analysis/study/adequacy/simplified_laws.hpp"
 #include "limcycle/analysis/study/precision/cycle_reference.hpp"
-#include "limcycle/analysis/study/precision/work_point.hpp"
+#include "limcycle/analysis/study/precision/work_precision.hpp"
 
 namespace limcycle {
 
@@ -33,7 +33,7 @@ struct AdequateOptions {
 /// One law with one method.
 struct AdequatePoint {
   std::string law, method;
-  SceneAnswer answer;        ///< at the case's own values
+  MethodAnswer answer;       ///< at the case's own values
   double error = not_known;  ///< there, relative to the best available; infinite: another verdict
   double worst = not_known;  ///< over the spread; NaN: not computed, since it fails before
   std::string worst_at;      ///< where in the spread
@@ -43,9 +43,9 @@ struct AdequatePoint {
 
 /// Results of adequate(): the simplest adequate law, the cheapest method, and everything that was tried.
 struct AdequateReport {
-  SceneAnswer best;      ///< of the case's own law by shooting
+  MethodAnswer best;     ///< of the case's own law by shooting
   std::string verified;  ///< how it is confirmed, as text; empty: it is not
-  std::vector<LawRung> laws;
+  std::vector<SimplifiedLaw> laws;
   std::vector<AdequatePoint> points;
   std::vector<std::string> spread;      ///< what was varied
   std::string spread_rule;              ///< by which rule, as text; empty: nothing was
@@ -59,9 +59,9 @@ struct AdequateReport {
 
 /// The simplest law and the cheapest method that give the same answer for this loop as its own law, solved by shooting:
 /// verdict, period, amplitude and stability of its (largest) stable cycle, at the case's own values and over a spread:
-/// the given variations, or else each parameter of the law increased and decreased. Laws are made by law_ladder; only
-/// the friction is exchanged. A law is adequate if shooting with it stays within the tolerance; then all methods are
-/// tested with that law.
+/// the given variations, or else each parameter of the law increased and decreased. Laws are made by simplified_laws;
+/// only the friction is exchanged. A law is adequate if shooting with it stays within the tolerance; then all methods
+/// are tested with that law.
 ///
 /// Throws std::invalid_argument if the loop has no friction. Status no_cycle never; undefined: the case's own law gives
 /// no confirmed answer to compare with; interrupted: what was computed until then is kept. Cost: some seconds per law

@@ -34,8 +34,8 @@ AskedScenes::Scene& AskedScenes::scene(std::size_t place, const LoopParts& parts
   return made;
 }
 
-const SceneAnswer& AskedScenes::ask(const std::string& method, std::size_t place, const LoopParts& parts,
-                                    const Element& law) {
+const MethodAnswer& AskedScenes::ask(const std::string& method, std::size_t place, const LoopParts& parts,
+                                     const Element& law) {
   Scene& asked = scene(place, parts, law);
   const std::lock_guard lock(asked.mutex);
   if (const auto known = asked.answers.find(method); known != asked.answers.end()) return known->second;
@@ -43,7 +43,7 @@ const SceneAnswer& AskedScenes::ask(const std::string& method, std::size_t place
 }
 
 void AskedScenes::keep(const std::string& method, std::size_t place, const LoopParts& parts, const Element& law,
-                       SceneAnswer answer) {
+                       MethodAnswer answer) {
   Scene& asked = scene(place, parts, law);
   const std::lock_guard lock(asked.mutex);
   asked.answers[method] = std::move(answer);

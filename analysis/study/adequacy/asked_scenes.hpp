@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "limcycle/analysis/study/adequacy/scene_answer.hpp"
+#include "limcycle/analysis/study/adequacy/method_answers.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {
@@ -27,19 +27,19 @@ class AskedScenes {
   AskedScenes(PredictOptions options, double patience);
 
   /// `place`: a number that identifies everything in `parts` except the friction.
-  const SceneAnswer& ask(const std::string& method, std::size_t place, const LoopParts& parts, const Element& law);
+  const MethodAnswer& ask(const std::string& method, std::size_t place, const LoopParts& parts, const Element& law);
   /// Stores an answer computed elsewhere.
   void keep(const std::string& method, std::size_t place, const LoopParts& parts, const Element& law,
-            SceneAnswer answer);
+            MethodAnswer answer);
 
  private:
   struct Scene {
     Scene(std::size_t place_, Element law_) : place(place_), law(std::move(law_)) {}
     std::size_t place;
     Element law;
-    std::optional<SceneQuestions> questions;  ///< empty: the plant does not take this law
-    std::string why;                          ///< the reason in that case
-    std::map<std::string, SceneAnswer> answers;
+    std::optional<MethodQuestions> questions;  ///< empty: the plant does not take this law
+    std::string why;                           ///< the reason in that case
+    std::map<std::string, MethodAnswer> answers;
     std::mutex mutex;  ///< of the questions and answers
   };
   Scene& scene(std::size_t place, const LoopParts& parts, const Element& law);

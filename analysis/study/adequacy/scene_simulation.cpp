@@ -22,7 +22,7 @@ class SimulationWatch {
     longest_ = 25.0 * horizon_;
   }
 
-  SceneAnswer operator()(double displacement) {
+  MethodAnswer operator()(double displacement) {
     const LoopState start = displaced(loop_, displacement);
     LoopField field(loop_);
     field.modes() = start.modes;
@@ -46,16 +46,16 @@ class SimulationWatch {
                        turning_.swing(0) > turning_.swing(1) && turning_.swing(1) > turning_.swing(2);
     if (grows) return ended(Status::not_finite);
     if (!calm) return unanswered("the simulation neither came to rest nor repeated itself");
-    SceneAnswer answer;
+    MethodAnswer answer;
     answer.answered = true;
     answer.verdict = std::string(no_cycle_verdict);
     return answer;
   }
 
  private:
-  static SceneAnswer ended(Status status) {
+  static MethodAnswer ended(Status status) {
     if (status != Status::not_finite) return unanswered("ended with status " + std::string(to_string(status)));
-    SceneAnswer answer;
+    MethodAnswer answer;
     answer.answered = true;
     answer.verdict = "divergence";
     return answer;
@@ -85,8 +85,8 @@ class SimulationWatch {
            std::abs(length(order, 0) / length(order, 2 * order) - 1.0) < agree;
   }
 
-  SceneAnswer cycle(std::size_t order) const {
-    SceneAnswer answer;
+  MethodAnswer cycle(std::size_t order) const {
+    MethodAnswer answer;
     answer.answered = true;
     answer.verdict = "cycle";
     answer.period = length(order, 0);
@@ -110,11 +110,11 @@ class SimulationWatch {
 
 }  // namespace
 
-SceneAnswer plain_simulation(const Loop& loop, const PredictOptions& options, const SearchBox& box) {
-  SceneAnswer all;
+MethodAnswer plain_simulation(const Loop& loop, const PredictOptions& options, const SearchBox& box) {
+  MethodAnswer all;
   std::vector<std::string> ends;
   for (const double displacement : start_displacements(output_per_input(loop), box, options.starts)) {
-    SceneAnswer one = SimulationWatch(loop, options, box)(displacement);
+    MethodAnswer one = SimulationWatch(loop, options, box)(displacement);
     if (!one.answered) return one;
     ends.push_back(one.verdict);
     if (one.amplitude >= all.amplitude) all = std::move(one);

@@ -57,7 +57,7 @@ class Search {
   }
 
  private:
-  LoopBalance balance_;
+  FirstHarmonicBalance balance_;
   SearchBox box_;
   const std::function<bool()>& stop_;
 };
@@ -66,7 +66,7 @@ class Search {
 
 std::optional<BalanceDistance> balance_distance(const Loop& loop, const SearchBox& box,
                                                 const std::function<bool()>& stop) {
-  if (LoopBalance::not_applicable(loop)) return std::nullopt;
+  if (FirstHarmonicBalance::not_applicable(loop)) return std::nullopt;
   const Search search(loop, box, stop);
   const double a0 = std::log(box.amplitude_min), w0 = std::log(box.frequency_min);
   const double da = (std::log(box.amplitude_max) - a0) / cells, dw = (std::log(box.frequency_max) - w0) / cells;

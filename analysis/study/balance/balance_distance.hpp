@@ -2,7 +2,7 @@
 #include <functional>
 #include <optional>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 
 namespace limcycle {
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/predict/cycle_hunt.hpp"
 
 namespace limcycle {
@@ -18,11 +18,11 @@ struct BalancePredictions {
 
 /// Starts and limits of a harmonic balance.
 struct BalanceQuestion {
-  const Loop& loop;                          ///< with its dead time
-  const Loop& in_time;                       ///< the same as simulations use it
-  const LoopBalance* first_harmonic;         ///< the describing function, if it applies
-  const std::vector<Prediction>& predicted;  ///< by the other methods
-  long max_evaluations;                      ///< of its equations, for all starts together
+  const Loop& loop;                            ///< with its dead time
+  const Loop& in_time;                         ///< the same as simulations use it
+  const FirstHarmonicBalance* first_harmonic;  ///< the describing function, if it applies
+  const std::vector<Prediction>& predicted;    ///< by the other methods
+  long max_evaluations;                        ///< of its equations, for all starts together
   std::function<bool()> stop;
 };
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/balance/quasi_linear.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
@@ -24,7 +24,7 @@ bool gives_way(const Element& element) { return element.pull(0.0, 0.0).has_value
 
 }  // namespace
 
-Complex LoopBalance::other_gain(double input_amplitude, double frequency, double accuracy) const {
+Complex FirstHarmonicBalance::other_gain(double input_amplitude, double frequency, double accuracy) const {
   DfOptions options;
   options.harmonics = 1;
   options.accuracy = std::clamp(accuracy, 1e-12, 1e-2);
@@ -34,8 +34,8 @@ Complex LoopBalance::other_gain(double input_amplitude, double frequency, double
 }
 
 /// The oscillations with this amplitude of the main element's input: one for each solution of the second.
-std::vector<LoopBalance::Oscillation> LoopBalance::oscillations(double amplitude, double frequency,
-                                                                double accuracy) const {
+std::vector<FirstHarmonicBalance::Oscillation> FirstHarmonicBalance::oscillations(double amplitude, double frequency,
+                                                                                  double accuracy) const {
   const Eigen::VectorXcd W = own_outputs(amplitude, frequency, accuracy);
   if (!W.allFinite()) return {};
   const Eigen::MatrixXcd H = loop_->element_response(frequency);
@@ -59,14 +59,15 @@ std::vector<LoopBalance::Oscillation> LoopBalance::oscillations(double amplitude
 }
 
 /// The one nearest to the loop condition: at a root the one that satisfies it.
-LoopBalance::Oscillation LoopBalance::oscillation(double amplitude, double frequency, double accuracy) const {
+FirstHarmonicBalance::Oscillation FirstHarmonicBalance::oscillation(double amplitude, double frequency,
+                                                                    double accuracy) const {
   auto all = oscillations(amplitude, frequency, accuracy);
   std::erase_if(all, [](const Oscillation& one) { return !std::isfinite(std::abs(one.left)); });
   if (all.empty()) return {0, Eigen::VectorXcd::Constant(std::ssize(loop_->elements), Complex(nan, nan)), {nan, nan}};
   return *std::ranges::min_element(all, {}, [](const Oscillation& one) { return std::abs(one.left); });
 }
 
-Complex LoopBalance::on_branch(int branch, double amplitude, double frequency, double accuracy) const {
+Complex FirstHarmonicBalance::on_branch(int branch, double amplitude, double frequency, double accuracy) const {
   for (const Oscillation& one : oscillations(amplitude, frequency, accuracy))
     if (one.branch == branch) return one.left;
   return {nan, nan};
@@ -75,7 +76,7 @@ Complex LoopBalance::on_branch(int branch, double amplitude, double frequency, d
 /// Loeb's rule for two amplitudes. Both parts of the motion grow alike, so with s = j w + sigma
 ///   D(A, a, s) = 1 - (returning input of the main element)/A = 0,  a = |X(A, a, s)|,
 /// with X the second element's input; differentiation gives d sigma / dA, which must be negative.
-std::optional<bool> LoopBalance::pair_returns(double amplitude, double frequency) const {
+std::optional<bool> FirstHarmonicBalance::pair_returns(double amplitude, double frequency) const {
   const auto all = oscillation(amplitude, frequency, 1e-9);
   if (!std::isfinite(std::abs(all.left))) return std::nullopt;
   const auto m = static_cast<Index>(main_), o = static_cast<Index>(*other_);
@@ -111,12 +112,12 @@ std::optional<bool> LoopBalance::pair_returns(double amplitude, double frequency
   return growth < 0.0;
 }
 
-std::pair<double, double> LoopBalance::second_range() const {
+std::pair<double, double> FirstHarmonicBalance::second_range() const {
   return {0.9 * second_->reach.bend(), most_wound_up * second_->reach.bend()};
 }
 
-LoopBalance::FromSecond LoopBalance::from_second(int branch, double amplitude, double frequency,
-                                                 double accuracy) const {
+FirstHarmonicBalance::FromSecond FirstHarmonicBalance::from_second(int branch, double amplitude, double frequency,
+                                                                   double accuracy) const {
   const Eigen::MatrixXcd H = loop_->element_response(frequency);
   const auto m = static_cast<Index>(main_), o = static_cast<Index>(*other_);
   const Complex N = other_gain(amplitude, frequency, accuracy);
@@ -132,7 +133,7 @@ LoopBalance::FromSecond LoopBalance::from_second(int branch, double amplitude, d
 }
 
 /// Amplitudes of the main element's input between which the size of the required drive can turn.
-std::pair<double, double> LoopBalance::main_range(double back) const {
+std::pair<double, double> FirstHarmonicBalance::main_range(double back) const {
   const Scales scales = loop_->elements[main_].scales();
   const double comes_back = back * scales.output;
   const double bend = scales.displacement < infinite ? scales.displacement : comes_back;
@@ -140,7 +141,7 @@ std::pair<double, double> LoopBalance::main_range(double back) const {
   return {std::max(0.1 * std::min(bend, comes_back), 1e-8 * high), high};
 }
 
-Complex LoopBalance::response(double amplitude, double frequency, int order) const {
+Complex FirstHarmonicBalance::response(double amplitude, double frequency, int order) const {
   const Eigen::MatrixXcd H = loop_->element_response(order * frequency);
   const auto m = static_cast<Index>(main_);
   if (loop_->elements.size() == 1) return H(m, m);

@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 
 namespace limcycle {
 namespace {
@@ -22,7 +22,7 @@ bool rubs(const Loop& loop, std::size_t i) { return loop.ports[i].rubs; }
 std::string percent(double share) { return short_number(100.0 * share, 2) + " %"; }
 
 /// Fills filter_ratio, worst_harmonic and harmonic_residual: sizes of the harmonics that return to the element's input.
-void measure_filter(const Loop& loop, const LoopBalance& balance, double A, double w, Trust& trust) {
+void measure_filter(const Loop& loop, const FirstHarmonicBalance& balance, double A, double w, Trust& trust) {
   DfOptions options;
   options.harmonics = highest_harmonic;
   const double bias = balance.bias(A, w, 1e-9);
@@ -44,7 +44,7 @@ void measure_filter(const Loop& loop, const LoopBalance& balance, double A, doub
 }
 
 /// Share of a period in which |V + A w cos| < vs/100.
-double sticking(const Loop& loop, const LoopBalance& balance, double A, double w) {
+double sticking(const Loop& loop, const FirstHarmonicBalance& balance, double A, double w) {
   const std::size_t main = balance.main_element();
   if (!rubs(loop, main)) return 0.0;
   const Scales scales = loop.elements[main].scales();
@@ -56,7 +56,7 @@ double sticking(const Loop& loop, const LoopBalance& balance, double A, double w
 
 /// Amplitude of y's first harmonic over that of the element's input. With one element this is a property of the linear
 /// part alone, even if N does not exist there.
-double output_ratio(const Loop& loop, const LoopBalance& balance, double A, double w) {
+double output_ratio(const Loop& loop, const FirstHarmonicBalance& balance, double A, double w) {
   if (loop.elements.size() == 1) return std::abs(loop.output_response(w)(0) / loop.element_response(w)(0, 0));
   const double input = std::abs(balance.gain(A, w, 1e-9) * A * balance.response(A, w, 1));
   return balance.output_amplitude(A, w) / input;
@@ -64,7 +64,7 @@ double output_ratio(const Loop& loop, const LoopBalance& balance, double A, doub
 
 /// Amplitude of y over the band: the ratio over the frequencies (samples, widened by the largest step between
 /// neighbours) times the amplitude of the input.
-Interval of_output(const Loop& loop, const LoopBalance& balance, double A, const Band& band, int samples) {
+Interval of_output(const Loop& loop, const FirstHarmonicBalance& balance, double A, const Band& band, int samples) {
   const Interval w = band.frequency;
   if (!std::isfinite(w.high) || !std::isfinite(band.input_amplitude.high)) return unbounded;
   double before = output_ratio(loop, balance, A, w.low), step = 0.0;
@@ -90,7 +90,7 @@ std::optional<ErrorDisc> disc_of_G(double frequency, Complex inverse, double sig
 struct Slopes {
   Complex amplitude, frequency;
 };
-Slopes slopes_at(const LoopBalance& balance, double A, double w) {
+Slopes slopes_at(const FirstHarmonicBalance& balance, double A, double w) {
   constexpr double step = 1e-3, accuracy = 1e-8;
   const auto slope = [&](double to_A, double to_w) {
     const auto f = [&](double s) { return balance(A * std::exp(s * to_A), w * std::exp(s * to_w), accuracy); };
@@ -108,7 +108,7 @@ Interval about(double value, double reach) {
   return {value * std::exp(-reach), value * std::exp(reach)};
 }
 
-Band heuristic_band(const Loop& loop, const LoopBalance& balance, double A, double w, double residual) {
+Band heuristic_band(const Loop& loop, const FirstHarmonicBalance& balance, double A, double w, double residual) {
   Band band{.frequency = unbounded, .amplitude = unbounded, .input_amplitude = unbounded, .discs = {}, .why = {}};
   const Slopes d = slopes_at(balance, A, w);
   const double det = std::abs((std::conj(d.amplitude) * d.frequency).imag());
@@ -130,8 +130,8 @@ Band heuristic_band(const Loop& loop, const LoopBalance& balance, double A, doub
   return band;
 }
 
-std::optional<Band> rigorous_band(const Loop& loop, const ErrorBand& discs, const LoopBalance& balance, double A,
-                                  double w, std::string& why_not) {
+std::optional<Band> rigorous_band(const Loop& loop, const ErrorBand& discs, const FirstHarmonicBalance& balance,
+                                  double A, double w, std::string& why_not) {
   const Existence found = discs.existence(w, A);
   if (found.verdict != BandVerdict::proved) {
     why_not = found.why;
@@ -152,7 +152,7 @@ double reach(Interval interval, double value) {
   return std::max(interval.high / value - 1.0, 1.0 - interval.low / value);
 }
 
-std::string in_words(const Trust& trust, const LoopBalance& balance, const Loop& loop, double A, double w) {
+std::string in_words(const Trust& trust, const FirstHarmonicBalance& balance, const Loop& loop, double A, double w) {
   static constexpr std::array<const char*, 6> names{"", "", "second", "third", "", "fifth"};
   const std::string name = names[static_cast<std::size_t>(trust.worst_harmonic)];
   const double ratio = trust.filter_ratio;
@@ -180,7 +180,7 @@ std::string in_words(const Trust& trust, const LoopBalance& balance, const Loop&
 
 std::string_view to_string(BandKind kind) { return kind == BandKind::rigorous ? "rigorous" : "heuristic"; }
 
-Trust trust(const Loop& loop, const LoopBalance& balance, double amplitude, double frequency) {
+Trust trust(const Loop& loop, const FirstHarmonicBalance& balance, double amplitude, double frequency) {
   Trust result;
   measure_filter(loop, balance, amplitude, frequency, result);
   result.sticking_fraction = sticking(loop, balance, amplitude, frequency);

@@ -10,7 +10,7 @@
 
 namespace limcycle {
 
-class LoopBalance;
+class FirstHarmonicBalance;
 
 /// Rigorous: a theorem with all its conditions checked. Heuristic: an estimate of the same form; true cycles may lie
 /// outside.
@@ -58,7 +58,7 @@ struct Trust {
 /// unbounded where harmonic_residual >= 0.9, the derivative is singular or the band is wider than a factor of 10. Bands
 /// are of first order: wide ones are rough. Cost: about ten evaluations of N and one of its harmonics, and for a proof
 /// 1e4 of G.
-Trust trust(const Loop& loop, const LoopBalance& balance, double amplitude, double frequency);
+Trust trust(const Loop& loop, const FirstHarmonicBalance& balance, double amplitude, double frequency);
 
 /// For a loop with a slope-bounded element: proof that no half-wave symmetric oscillation has its fundamental in the
 /// box (amplitude of the element's input). Empty if the theorem does not apply.

@@ -4,21 +4,15 @@
 #include <exception>
 #include <optional>
 
+#include "limcycle/analysis/random_bits.hpp"
 #include "limcycle/analysis/sweep.hpp"
 
 namespace limcycle {
 namespace {
 
-/// FNV-1a: the same on every machine, which std::hash need not be.
-std::uint64_t seed_of(std::uint64_t seed, std::string_view id) {
-  std::uint64_t hash = 14695981039346656037ULL ^ seed;
-  for (const char c : id) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash;
-}
-
 ClaimResult tested(const Claim& claim, const ClaimOptions& options) {
   ClaimOptions own = options;
-  own.seed = seed_of(options.seed, claim.id);
+  own.seed = fnv1a(claim.id, fnv_start ^ options.seed);
   try {
     return claim.run(own);
   } catch (const std::exception& error) {
@@ -51,13 +45,7 @@ std::vector<Claim> claims_named(const std::vector<Claim>& all, std::string_view 
   return exact.empty() ? beginning : exact;
 }
 
-double RandomShares::share() {
-  // SplitMix64 (Steele, Lea and Flood 2014).
-  std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-}
+double RandomShares::share() { return static_cast<double>(splitmix64(state_) >> 11U) * 0x1.0p-53; }
 
 double RandomShares::between(double low, double high) { return low + (high - low) * share(); }
 double RandomShares::log_between(double low, double high) { return low * std::exp(share() * std::log(high / low)); }

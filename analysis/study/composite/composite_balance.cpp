@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "limcycle/analysis/frequency/describing_function/drive_dependence.hpp"
+#include "limcycle/analysis/frequency/describing_function/df_undefined.hpp"
 #include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/study/balance/quasi_linear.hpp"

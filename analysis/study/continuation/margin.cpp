@@ -9,7 +9,7 @@
 #include "limcycle/analysis/derivative_notes.hpp"
 #include "limcycle/analysis/on_threads.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
-#include "limcycle/analysis/study/continuation/margin_side.hpp"
+#include "limcycle/analysis/study/continuation/one_sided_margin.hpp"
 #include "limcycle/analysis/study/continuation/outcome_side.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
 #include "limcycle/analysis/study/predict/loop_in_time.hpp"
@@ -74,7 +74,7 @@ class Margins {
   MarginSide side_of(const MarginParameter& parameter, bool up, const std::function<void(double)>& progress) const {
     if (by_outcome_)
       return OutcomeSide(parameter, up, options_, *by_outcome_, progress).where_it_changes(report_.hunts);
-    SideSearch side(parameter, up, options_, progress);
+    OneSidedMargin side(parameter, up, options_, progress);
     return report_.hunts ? side.where_hunting_ends(report_.cycles) : side.where_hunting_begins();
   }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/composite/composite_balance.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
@@ -18,7 +18,7 @@ constexpr std::size_t of_point = 5, of_method = 3;  // columns of a row
 
 bool applies(const std::string& method, const Loop& loop) {
   if (method == composite_name) return loop.delay == 0.0 && !CompositeBalance::not_applicable(loop);
-  if (method == df_name) return !LoopBalance::not_applicable(loop);
+  if (method == df_name) return !FirstHarmonicBalance::not_applicable(loop);
   return true;
 }
 

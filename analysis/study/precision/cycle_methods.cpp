@@ -18,7 +18,7 @@ namespace {
 
 constexpr double steady = 0.02;  ///< a larger spread of the periods means that they do not repeat
 
-Attempt attempt_of(const CycleRun& run, const CycleReference& reference, long max_steps) {
+Attempt attempt_of(const IntegratorCheck& run, const CycleReference& reference, long max_steps) {
   Attempt attempt;
   attempt.status = run.status;
   attempt.gave_up = run.gave_up;
@@ -144,7 +144,7 @@ WorkMethod describing_function_method(const Loop& loop, const CycleReference& re
           "roots",
           {"one harmonic"},
           [&loop, &reference, box, stop = options.predict.stop](std::size_t) {
-            const LoopBalance balance(loop);
+            const FirstHarmonicBalance balance(loop);
             const DfRoots found = find_df_roots(loop, balance, box, stop);
             std::vector<std::pair<double, double>> roots;
             for (const Root& root : found.roots)
@@ -195,10 +195,10 @@ std::vector<WorkMethod> stepper_methods(const Loop& loop, const CycleReference& 
     list.push_back({std::string(to_string(kind)), "steps",
                     exact ? std::vector<std::string>{"no tolerance"} : tolerance_settings(tolerances),
                     [&loop, &reference, kind, tolerances, options](std::size_t i) {
-                      return attempt_of(
-                          run_on_cycle(loop, reference.cycle, reference.sizes,
-                                       {kind, tolerances[i], options.periods, options.max_steps, options.predict.stop}),
-                          reference, options.max_steps);
+                      return attempt_of(check_integrator(loop, reference.cycle, reference.sizes,
+                                                         {kind, tolerances[i], options.periods, options.max_steps,
+                                                          options.predict.stop}),
+                                        reference, options.max_steps);
                     }});
   }
   return list;
@@ -241,7 +241,7 @@ WorkMethod balance_method(const Loop& loop, const CycleReference& reference, con
 std::vector<WorkMethod> first_harmonic_methods(const Loop& loop, const CycleReference& reference,
                                                const CycleMethodsOptions& options) {
   std::vector<WorkMethod> list;
-  if (!LoopBalance::not_applicable(loop)) list.push_back(describing_function_method(loop, reference, options));
+  if (!FirstHarmonicBalance::not_applicable(loop)) list.push_back(describing_function_method(loop, reference, options));
   if (loop.delay == 0.0 && !CompositeBalance::not_applicable(loop))
     list.push_back(composite_method(loop, reference, options));
   return list;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "limcycle/analysis/study/precision/cycle_reference.hpp"
-#include "limcycle/analysis/study/precision/work_point.hpp"
+#include "limcycle/analysis/study/precision/work_precision.hpp"
 
 namespace limcycle {
 

@@ -52,7 +52,7 @@ std::string outcomes_in_words(const PredictReport& report) {
 
 }  // namespace
 
-double relative_error(const CycleRun& run, const Cycle& cycle) {
+double relative_error(const IntegratorCheck& run, const Cycle& cycle) {
   return std::max(std::abs(run.period / cycle.period - 1.0), std::abs(run.amplitude / cycle.amplitude - 1.0));
 }
 
@@ -60,8 +60,8 @@ void verify(const Loop& loop, CycleReference& reference, long max_steps, const s
   const StepperKind own = choose_stepper(loop, 3e-12);
   reference.made_by = "shooting at rtol 3e-12 (" + std::string(to_string(own)) + ")";
   for (const Check& check : checks_of(own)) {
-    const CycleRun run =
-        run_on_cycle(loop, reference.cycle, reference.sizes, {check.stepper, check.rtol, 10, max_steps, stop});
+    const IntegratorCheck run =
+        check_integrator(loop, reference.cycle, reference.sizes, {check.stepper, check.rtol, 10, max_steps, stop});
     if (run.status != Status::converged || !run.periodic) continue;
     const double difference = relative_error(run, reference.cycle);
     if (!(difference < reference.agreement)) continue;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/precision/cycle_run.hpp"
+#include "limcycle/analysis/study/precision/integrator_check.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 
 namespace limcycle {
@@ -33,6 +33,6 @@ std::optional<CycleReference> cycle_reference(const Loop& loop, const PredictOpt
 void verify(const Loop& loop, CycleReference& reference, long max_steps, const std::function<bool()>& stop);
 
 /// Largest relative difference of period and amplitude.
-double relative_error(const CycleRun& run, const Cycle& cycle);
+double relative_error(const IntegratorCheck& run, const Cycle& cycle);
 
 }  // namespace limcycle

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
-#include "limcycle/analysis/study/precision/work_point.hpp"
+#include "limcycle/analysis/study/precision/work_precision.hpp"
 
 namespace limcycle {
 

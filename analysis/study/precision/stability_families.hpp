@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/precision/work_point.hpp"
+#include "limcycle/analysis/study/precision/work_precision.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {

@@ -24,8 +24,8 @@ struct Truth {
   const AtlasLoop* of = nullptr;
   AtlasReference reference;
   LoopState start;
-  WatchOptions watch;
-  WatchedRun motion;  ///< of the best run
+  InstrumentedRunOptions watch;
+  InstrumentedRun motion;  ///< of the best run
   std::size_t returns = 1;
 };
 
@@ -74,11 +74,11 @@ RunClass by_error(double error) {
   return error <= atlas_right ? RunClass::right : error <= atlas_rough ? RunClass::rough : RunClass::wrong_motion;
 }
 
-bool flips(const WatchedRun& run, const Truth& truth) {
+bool flips(const InstrumentedRun& run, const Truth& truth) {
   return static_cast<double>(run.reversals) > flips_allowed * static_cast<double>(truth.motion.reversals + 4);
 }
 
-void judge_hunting(AtlasPoint& point, const WatchedRun& run, const Truth& truth) {
+void judge_hunting(AtlasPoint& point, const InstrumentedRun& run, const Truth& truth) {
   const double T = truth.reference.period;
   const Period period = period_of(run.crossings, truth.returns);
   point.error = std::abs(period.mean / T - 1.0);
@@ -110,7 +110,7 @@ void judge_hunting(AtlasPoint& point, const WatchedRun& run, const Truth& truth)
   }
 }
 
-double motion_error(const WatchedRun& run, const WatchedRun& truth) {
+double motion_error(const InstrumentedRun& run, const InstrumentedRun& truth) {
   const auto [low, high] = std::ranges::minmax(truth.y);
   double error = run.y.size() == truth.y.size() ? 0.0 : infinite;
   for (std::size_t i = 0; i < std::min(run.y.size(), truth.y.size()); ++i)
@@ -118,7 +118,7 @@ double motion_error(const WatchedRun& run, const WatchedRun& truth) {
   return error;
 }
 
-void judge_rest(AtlasPoint& point, const WatchedRun& run, const Truth& truth) {
+void judge_rest(AtlasPoint& point, const InstrumentedRun& run, const Truth& truth) {
   point.error = motion_error(run, truth.motion);
   point.kind = by_error(point.error);
   if (point.kind == RunClass::right) return;
@@ -131,7 +131,7 @@ void judge_rest(AtlasPoint& point, const WatchedRun& run, const Truth& truth) {
     point.kind = RunClass::creeps;  // it also rests, elsewhere or later
 }
 
-AtlasPoint point_of(const Truth& truth, const MarchMethod& method, const WatchedRun& run) {
+AtlasPoint point_of(const Truth& truth, const MarchMethod& method, const InstrumentedRun& run) {
   AtlasPoint point{
       truth.of->law, truth.of->stiffness, method.name(), method.setting, method.fixed(), {}, not_known, run.steps, {}};
   if (run.gave_up) {
@@ -190,11 +190,11 @@ void watch_rest(Truth& truth, const AtlasOptions& options) {
     size = std::max(size, std::abs(loop.C_y(i)) * typical[static_cast<std::size_t>(i)]);
   truth.start = displaced(loop, size);
   truth.watch.section = {loop.C_y, infinite, 1};  // never crossed
-  WatchOptions patient = truth.watch;
+  InstrumentedRunOptions patient = truth.watch;
   patient.evaluations = 20.0 * static_cast<double>(options.check_steps);
-  truth.motion = watched_run(loop, truth.start, {StepperKind::rodas5p, 1e-11}, patient);
+  truth.motion = instrumented_run(loop, truth.start, {StepperKind::rodas5p, 1e-11}, patient);
   for (const auto& check : {MarchMethod{StepperKind::fehlberg78, 1e-11}, MarchMethod{StepperKind::rodas5p, 1e-9}}) {
-    const WatchedRun second = watched_run(loop, truth.start, check, patient);
+    const InstrumentedRun second = instrumented_run(loop, truth.start, check, patient);
     if (second.status != Status::converged || truth.motion.status != Status::converged) continue;
     truth.reference.agreement = motion_error(second, truth.motion);
     truth.reference.words = "comes to rest; the motion is confirmed to " + short_number(truth.reference.agreement, 2) +
@@ -211,10 +211,10 @@ Truth truth_of(const AtlasLoop& loop, const AtlasOptions& options) {
   truth.watch.evaluations = options.evaluations;
   truth.watch.stop = options.stop;
   if (find_cycle(truth, options)) {
-    WatchOptions patient = truth.watch;
+    InstrumentedRunOptions patient = truth.watch;
     patient.evaluations = 20.0 * static_cast<double>(options.check_steps);
     if (truth.reference.verified)
-      truth.motion = watched_run(loop.loop, truth.start, {choose_stepper(loop.loop, 1e-10), 1e-10}, patient);
+      truth.motion = instrumented_run(loop.loop, truth.start, {choose_stepper(loop.loop, 1e-10), 1e-10}, patient);
     truth.reference.verified = truth.reference.verified && truth.motion.status == Status::converged;
   } else if (!stopped(options)) {
     watch_rest(truth, options);
@@ -271,7 +271,7 @@ StepperAtlas stepper_atlas(const std::vector<AtlasLoop>& loops, const AtlasOptio
   std::vector<std::optional<AtlasPoint>> found(tasks.size());
   share(tasks.size(), options, 0.3, 1.0, "steppers", [&](std::size_t i) {
     const auto& [truth, method] = tasks[i];
-    const WatchedRun run = watched_run(truth->of->loop, truth->start, method, truth->watch);
+    const InstrumentedRun run = instrumented_run(truth->of->loop, truth->start, method, truth->watch);
     if (run.status != Status::interrupted) found[i] = point_of(*truth, method, run);
   });
   for (auto& point : found)

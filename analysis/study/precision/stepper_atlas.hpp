@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "limcycle/analysis/study/precision/instrumented_run.hpp"
 #include "limcycle/analysis/study/precision/stability_families.hpp"
-#include "limcycle/analysis/study/precision/watched_run.hpp"
-#include "limcycle/analysis/study/precision/work_point.hpp"
+#include "limcycle/analysis/study/precision/work_precision.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 
 namespace limcycle {

@@ -48,8 +48,9 @@ class PredictionStudy {
       return std::move(report_);
     }
     const WorkShare share = work_share(hunt_->steps());
+    const bool wider = widen_box();
     begin_composite(share);
-    if (exact_in_time(loop_)) predict_by_df(share);
+    if (exact_in_time(loop_) || wider) predict_by_df(share);
     end_composite();
     check_predictions(share);
     look_between_starts(share);
@@ -98,6 +99,15 @@ class PredictionStudy {
       starts_.push_back({displacement, hunt_->outcomes().size()});
       hunt_->settle_from(displaced(time_, displacement), start_name(displacement));
     }
+  }
+
+  /// A default box is widened to hold what was found from the starts, so that the methods search there too.
+  bool widen_box() {
+    if (options_.search) return false;
+    auto notes = compare_with_interest(hunt_->cycles(), false, box_);
+    std::ranges::move(notes, std::back_inserter(report_.notes));
+    report_.search = box_;
+    return !notes.empty();
   }
 
   bool all_diverge() const {
@@ -161,11 +171,13 @@ class PredictionStudy {
 
   void predict_by_df(const WorkShare& share) {
     if (!options_.methods.describing_function || stopped()) return;
-    if (const auto why = LoopBalance::not_applicable(loop_)) return note(*why);
+    if (const auto why = FirstHarmonicBalance::not_applicable(loop_)) return note(*why);
     tell(0.6, "roots of 1 + N G");
+    forget_df();
     balance_.emplace(loop_);
     DfPredictions found = df_predictions(loop_, *balance_, box_, options_, share.df_evaluations);
     report_.notes.insert(report_.notes.begin(), found.notes.begin(), found.notes.end());
+    df_notes_ = std::ssize(found.notes);
     if (found.status != Status::converged) report_.status = found.status;
     if (found.status == Status::incomplete || found.status == Status::not_finite)
       report_.incomplete.emplace_back(df_name);
@@ -174,6 +186,15 @@ class PredictionStudy {
     report_.describing_function = found.exists;
     report_.efforts.push_back({std::string(df_name), 0, {}});
     (found.status == Status::interrupted ? report_.unfinished : used_).emplace_back(df_name);
+  }
+
+  /// Of a search in a smaller box.
+  void forget_df() {
+    report_.notes.erase(report_.notes.begin(), report_.notes.begin() + std::exchange(df_notes_, 0));
+    std::erase(report_.incomplete, df_name);
+    std::erase(report_.unfinished, df_name);
+    std::erase(used_, df_name);
+    std::erase_if(report_.efforts, [](const auto& one) { return one.method == df_name; });
   }
 
   /// The search with mass and friction as one element runs in parallel to that for roots of 1 + N G: they are
@@ -203,9 +224,10 @@ class PredictionStudy {
   LoopState start_of(std::size_t index) {
     const Prediction& p = report_.predictions[index];
     if (time_.continuous)
-      return sampled_state(time_, LoopBalance(*time_.continuous).linear_state(p.input_amplitude, p.frequency, 0.0));
+      return sampled_state(time_,
+                           FirstHarmonicBalance(*time_.continuous).linear_state(p.input_amplitude, p.frequency, 0.0));
     if (p.method == composite_name) return composite_->state(composite_roots_[index - first_composite_]);
-    return LoopBalance(time_).state(p.input_amplitude, p.frequency);
+    return FirstHarmonicBalance(time_).state(p.input_amplitude, p.frequency);
   }
 
   /// Verdicts on the predictions: simulates from each predicted oscillation.
@@ -323,12 +345,13 @@ class PredictionStudy {
   std::optional<CycleHunt> hunt_;
   std::vector<BetweenStarts::Start> starts_;  ///< displacements of y
   std::optional<BetweenStarts> between_;
-  std::optional<LoopBalance> balance_;
+  std::optional<FirstHarmonicBalance> balance_;
   std::optional<CompositeBalance> composite_;
   std::future<CompositePredictions> composite_search_;
   std::size_t first_composite_ = 0;  ///< index of its first prediction
   std::vector<CompositeRoot> composite_roots_;
   std::vector<std::string> used_;
+  std::ptrdiff_t df_notes_ = 0;  ///< the first of the notes
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/balance/orbit_guess.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"
 #include "limcycle/analysis/study/predict/verdicts.hpp"
@@ -63,7 +63,7 @@ bool PredictionCheck::find_unstable(Prediction& p) {
 /// elsewhere, the border between the outcomes of larger and smaller oscillations.
 bool PredictionCheck::unstable_cycle_near(Prediction& p) {
   const bool odd = symmetry(loop_).has_value();
-  const LoopBalance balance(loop_);
+  const FirstHarmonicBalance balance(loop_);
   const auto linear = [&](double phase, double scale) {
     return balance.linear_state(p.input_amplitude, p.frequency, phase, scale);
   };

@@ -112,9 +112,10 @@ SearchBox default_search_box(const Loop& loop) {
   const double slow = moduli.empty() ? 1.0 : moduli.front(), fast = moduli.empty() ? 1.0 : moduli.back();
   SearchBox box{0.0, 0.0, 0.01 * slow, 100.0 * fast};
   // A delay gives infinitely many roots, one at every turn of its phase: only the first few turns can matter, and those
-  // up to a resonance.
+  // up to a resonance; the first turn does, however slow the poles are.
   if (loop.delay > 0.0)
-    box.frequency_max = std::min(box.frequency_max, std::max(3.0 * fastest_resonance(loop), 30.0 / loop.delay));
+    box.frequency_max = std::clamp(box.frequency_max, 2.0 * std::numbers::pi / loop.delay,
+                                   std::max(3.0 * fastest_resonance(loop), 30.0 / loop.delay));
   double largest = reach(loop, slow, fast);
   if (!(largest > 0.0)) largest = 1.0;
   box.amplitude_max = std::min({3.0 * largest, widest_swing(loop), where_steps_count(loop)});

@@ -22,9 +22,11 @@ std::string percent_off(double ratio) {
 std::size_t merge(std::vector<Cycle>& cycles, const Cycle& cycle) {
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     const double tolerance = 1e-6 + 10.0 * (cycles[i].error + cycle.error);
-    if (std::abs(cycles[i].period / cycle.period - 1.0) < tolerance &&
-        std::abs(cycles[i].amplitude / cycle.amplitude - 1.0) < tolerance &&
-        std::abs(cycles[i].offset - cycle.offset) < tolerance * cycle.amplitude + 1e-6 * cycle.amplitude)
+    const auto alike = [&](double Cycle::*size) { return std::abs(cycles[i].*size / cycle.*size - 1.0) < tolerance; };
+    const bool one_family = cycles[i].remembered > 0 && cycles[i].remembered == cycle.remembered;
+    if (alike(&Cycle::period) && alike(&Cycle::amplitude) && alike(&Cycle::first_harmonic) &&
+        (one_family ||
+         std::abs(cycles[i].offset - cycle.offset) < tolerance * cycle.amplitude + 1e-6 * cycle.amplitude))
       return i;
   }
   cycles.push_back(cycle);

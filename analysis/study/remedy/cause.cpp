@@ -76,16 +76,17 @@ class CauseStudy {
   Cause run() {
     if (ends("without friction compensation", without_compensation(parts_)))
       return decided(CauseKind::over_compensation,
-                     "The friction compensation is too strong: without it the loop does not hunt.");
+                     "The friction compensation is too strong: without it " + calm() + ".");
     if (only_quanta_bend(parts_))
       return decided(CauseKind::quantization,
                      "The controller reads, or commands, in steps, and everything else in the loop is linear: with "
-                     "exact numbers it does not hunt.");
+                     "exact numbers " +
+                         calm() + ".");
     if (ends("without dead time and sampling", without_delay(parts_))) {
       if (ends("without quanta", without_quanta(parts_)))  // which end with the sampling
         return decided(CauseKind::quantization,
-                       "The controller reads, or commands, in steps: with exact numbers the loop does not hunt.");
-      return decided(CauseKind::delay, "The loop reacts too late: without dead time and sampling it does not hunt.");
+                       "The controller reads, or commands, in steps: with exact numbers " + calm() + ".");
+      return decided(CauseKind::delay, "The loop reacts too late: without dead time and sampling " + calm() + ".");
     }
     const bool integral = ends(no_integral, without_integral_action(parts_));
     const std::string level = friction_is_measured(parts_) ? "with a friction curve that is level at its least force"
@@ -95,24 +96,24 @@ class CauseStudy {
       return decided(CauseKind::integral_action_and_stiction,
                      "The integral action pushes until the body breaks away from stiction, and it then slides too "
                      "far: without integral action, or " +
-                         level + ", the loop does not hunt.");
+                         level + ", " + calm() + ".");
     // Falling friction alone would be the cause only if the loop hunted without integral action too.
     if (falling && is_open(no_integral)) return decided(CauseKind::undecided, no_single_cause());
     if (falling)
       return decided(CauseKind::negative_slope, "Friction falls as the speed rises" + falling_range() +
-                                                    ", which feeds the oscillation: " + level +
-                                                    " the loop does not hunt.");
+                                                    ", which feeds the oscillation: " + level + " " + calm() + ".");
     if (ends("with a valve that does not stick", without_sticking_valve(parts_)) && integral)
       return decided(CauseKind::integral_action_and_stiction,
                      "The integral action drives the command through the band in which the valve sticks, and the valve "
-                     "then jumps too far: without integral action, or with a valve that does not stick, the loop does "
-                     "not hunt.");
+                     "then jumps too far: without integral action, or with a valve that does not stick, " +
+                         calm() + ".");
     if (ends("with a saturation in place of the relay", without_relay(parts_, relay_swing())))
       return decided(CauseKind::relay,
                      "The relay switches at full level however small the error: with a saturation that reaches this "
-                     "level at twice the amplitude of the cycle the loop does not hunt.");
+                     "level at twice the amplitude of the cycle " +
+                         calm() + ".");
     if (ends("without limits of the command", without_limits(parts_)))
-      return decided(CauseKind::saturation, "The command is limited: without the limit the loop does not hunt.");
+      return decided(CauseKind::saturation, "The command is limited: without the limit " + calm() + ".");
     return decided(CauseKind::undecided, no_single_cause());
   }
 
@@ -129,7 +130,14 @@ class CauseStudy {
     if (!parts || (judging_.predict.stop && judging_.predict.stop())) return false;
     const Hunts answer = hunts(build_loop(*parts), judging_).hunts;
     cause_.tests.push_back({without, answer});
+    neutral_ = neutral_ || answer == Hunts::neutral;
     return answer == Hunts::no || answer == Hunts::neutral;  // nothing feeds a centre
+  }
+
+  /// What the loop does without its cause.
+  std::string calm() const {
+    return neutral_ ? "the loop has no limit cycle, though its swings go on for ever as those of a frictionless one"
+                    : "the loop does not hunt";
   }
 
   bool is_open(const std::string& without) const {
@@ -177,6 +185,7 @@ class CauseStudy {
   Judging judging_;  ///< that ends with the first start that does not come to rest
   const std::vector<Cycle>& cycles_;
   Cause cause_;
+  bool neutral_ = false;  ///< in one of the tests nothing fed or damped the swings
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/short_number.hpp"
-#include "limcycle/analysis/study/continuation/margin_side.hpp"
+#include "limcycle/analysis/study/continuation/one_sided_margin.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
 
 namespace limcycle {
@@ -44,7 +44,7 @@ std::optional<Bracket> RemedySearch::followed_from(double value, const std::vect
   options.factor = widest_factor * std::abs(up ? size_ / value : value / size_);
   options.steps_a_branch = steps_a_branch;
   options.accuracy = accuracy_of_branch;
-  const MarginSide side = SideSearch(parameter, up, options, progress_).where_hunting_ends(cycles);
+  const MarginSide side = OneSidedMargin(parameter, up, options, progress_).where_hunting_ends(cycles);
   if (side.what == MarginSide::What::unknown) {
     seen_.push_back(side.why);
     if (auto found = scanned(up, side.value == 0.0 ? value : side.value, Until::rests)) return found;
@@ -172,7 +172,7 @@ void RemedySearch::locate_far_edge(Remedy& remedy, const Bracket& near) {
     options.scan_per_decade = a_decade;
     options.steps_a_branch = steps_a_branch;
     options.accuracy = accuracy_of_branch;
-    const MarginSide side = SideSearch(parameter, up, options, progress_).where_hunting_begins();
+    const MarginSide side = OneSidedMargin(parameter, up, options, progress_).where_hunting_begins();
     if (side.what == MarginSide::What::begins && side.value != near.rests) {
       far = around(side, up, false);
     } else if (side.diverges) {

@@ -10,7 +10,7 @@
 namespace limcycle {
 
 /// The search for the value of one remedy. The stable cycles of the loop are followed over its number until they end
-/// (see SideSearch); where they cannot be followed, values at three a decade are judged, the nearest first, and the
+/// (see OneSidedMargin); where they cannot be followed, values at three a decade are judged, the nearest first, and the
 /// first change is bisected. Either way predict() then judges both sides of the edge.
 class RemedySearch {
  public:

@@ -176,11 +176,11 @@ std::vector<PredictedOscillation> predicted_sensitivities(const Loop& loop, cons
                                                           const std::vector<LoopNumber>& numbers,
                                                           std::vector<std::string>& notes,
                                                           const std::function<bool()>& stop) {
-  if (const auto why = LoopBalance::not_applicable(loop)) {
+  if (const auto why = FirstHarmonicBalance::not_applicable(loop)) {
     notes.push_back("the describing function predicts nothing to differentiate: " + *why);
     return {};
   }
-  const auto roots = find_df_roots(loop, LoopBalance(loop), box, stop).roots;
+  const auto roots = find_df_roots(loop, FirstHarmonicBalance(loop), box, stop).roots;
   if (roots.empty()) notes.emplace_back("the describing function predicts no oscillation to differentiate");
   const Neighbourhood around(loop, numbers);
   DfDerivativeOptions options;

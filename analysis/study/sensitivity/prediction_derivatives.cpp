@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/orbit/cycle/return_map.hpp"
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 
 namespace limcycle {
 namespace {
@@ -50,7 +50,7 @@ std::optional<std::string> not_derivable(const Loop& loop) {
   return std::nullopt;
 }
 
-double mean_speed(const Loop& loop) { return LoopBalance(loop).mean_velocity(); }
+double mean_speed(const Loop& loop) { return FirstHarmonicBalance(loop).mean_velocity(); }
 
 Vector2d parts(Point z) { return {z.real(), z.imag()}; }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t morris_levels = 8;
 
-std::optional<double> number_of_answer(const std::optional<HuntingAnswer>& answer, std::size_t output) {
+std::optional<double> number_of_answer(const std::optional<EnsembleOutcome>& answer, std::size_t output) {
   if (!answer) return std::nullopt;
   const double numbers[] = {answer->hunts, answer->amplitude, answer->period};
   return std::isfinite(numbers[output]) ? std::optional(numbers[output]) : std::nullopt;
@@ -66,21 +66,21 @@ Probability look_at_fair_rows(const GlobalPlan& plan, const std::vector<std::opt
   }
   const Probability fair = probability(yes, no, plan.fair_rows() - yes - no);
   one.share_without_answer = static_cast<double>(fair.undecided) / static_cast<double>(plan.fair_rows());
-  if (one.output != HuntingAnswer::names[0]) one.band = band_of(std::move(answers));
+  if (one.output != EnsembleOutcome::names[0]) one.band = band_of(std::move(answers));
   return fair;
 }
 
 }  // namespace
 
-GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std::optional<HuntingAnswer>> answers,
+GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std::optional<EnsembleOutcome>> answers,
                                      double noise) {
   if (answers.size() != plan.size()) throw std::invalid_argument("as many answers as the plan has rows are needed");
   GlobalSensitivity result;
-  for (std::size_t output = 0; output < HuntingAnswer::numbers; ++output) {
+  for (std::size_t output = 0; output < EnsembleOutcome::numbers; ++output) {
     std::vector<std::optional<double>> numbers;
     for (const auto& answer : answers) numbers.push_back(number_of_answer(answer, output));
     OutputSensitivity one;
-    one.output = HuntingAnswer::names[output];
+    one.output = EnsembleOutcome::names[output];
     const Probability fair = look_at_fair_rows(plan, numbers, one);
     if (output == 0) result.hunting = fair;
     if (plan.correlated()) {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "limcycle/analysis/orbit/derivatives/threshold_derivatives.hpp"
-#include "limcycle/analysis/study/map/hunting_answers.hpp"
+#include "limcycle/analysis/study/map/ensemble_outcomes.hpp"
 #include "limcycle/analysis/study/map/hunting_map.hpp"
 #include "limcycle/analysis/study/sensitivity/global/morris.hpp"
-#include "limcycle/analysis/study/sensitivity/global/share_of.hpp"
+#include "limcycle/analysis/study/sensitivity/global/probability_estimate.hpp"
 #include "limcycle/analysis/study/sensitivity/global/sobol.hpp"
 #include "limcycle/analysis/study/sensitivity/parameter_spread.hpp"
 #include "limcycle/analysis/study/sensitivity/prediction_derivatives.hpp"
@@ -119,14 +119,14 @@ class GlobalPlan {
 
 /// Results of a study of the whole spread.
 struct GlobalSensitivity {
-  std::vector<OutputSensitivity> outputs;   ///< in the order of HuntingAnswer::names
+  std::vector<OutputSensitivity> outputs;   ///< in the order of EnsembleOutcome::names
   Probability hunting;                      ///< that the loop hunts, from Sobol's points A and B
   std::optional<std::size_t> matters_most;  ///< parameter with the largest total index for "hunts"
 };
 
 /// Indices from the answers to all rows of a plan, empty where not computed. `noise`: relative error of amplitudes and
 /// periods.
-GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std::optional<HuntingAnswer>> answers,
+GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std::optional<EnsembleOutcome>> answers,
                                      double noise);
 
 /// Results of `sensitivity`.

@@ -243,7 +243,7 @@ BlockWords words_of_block(const Block& block, const Units& units) {
 }
 
 BlockWords compensation_words(double level, const Units& units) {
-  const auto words = [&](const std::string& number) { return Units::attach(number, units.force) + " sgn(v)"; };
+  const auto words = [&](const std::string& number) { return Units::attach(number, units.command) + " sgn(v)"; };
   return {"friction compensation",
           {{words(diagram_number(level)), false, false}},
           "friction compensation " + words(shortest(level)),
@@ -251,7 +251,7 @@ BlockWords compensation_words(double level, const Units& units) {
 }
 
 BlockWords limit_words(double limit, const Units& units) {
-  const auto words = [&](const std::string& number) { return "\xC2\xB1" + Units::attach(number, units.force); };
+  const auto words = [&](const std::string& number) { return "\xC2\xB1" + Units::attach(number, units.command); };
   return {"saturation",
           {{words(diagram_number(limit)), false, false}},
           "saturation " + words(shortest(limit)),

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/reports/figures/drawing/decimate.hpp"
 #include "limcycle/reports/figures/drawing/svg_axes.hpp"
-#include "limcycle/reports/figures/drawing/thin.hpp"
 #include "limcycle/reports/format/number.hpp"
 #include "limcycle/reports/page/html_parts.hpp"
-#include "limcycle/reports/predict/answer.hpp"
+#include "limcycle/reports/predict/verdict_text.hpp"
 
 namespace limcycle {
 namespace {
@@ -86,8 +86,8 @@ std::optional<DrawnMotion> drawn_motion(const PredictReport& report) {
 
 std::string panels(const DrawnMotion& drawn, const Units& units) {
   // Fast oscillations are drawn coarsely rather than cut: a part of a period would be none.
-  Thinned kept = thin(drawn.trace, 500, drawn.stuck);
-  if (!kept.whole) kept = thin(drawn.trace, 1000, drawn.stuck, INFINITY);
+  Decimated kept = decimate(drawn.trace, 500, drawn.stuck);
+  if (!kept.whole) kept = decimate(drawn.trace, 1000, drawn.stuck, INFINITY);
   const auto& index = kept.index;
   const Trace once = picked(drawn.trace, index);
   std::vector<bool> marks;

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "limcycle/analysis/frequency/composite/composite_describing_function.hpp"
-#include "limcycle/analysis/frequency/describing_function/drive_dependence.hpp"
+#include "limcycle/analysis/frequency/describing_function/df_undefined.hpp"
 #include "limcycle/analysis/frequency/describing_function/fft_route.hpp"
 #include "limcycle/analysis/frequency/describing_function/quadrature_route.hpp"
 #include "limcycle/analysis/frequency/harmonic_balance/harmonic_response.hpp"

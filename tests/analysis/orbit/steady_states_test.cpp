@@ -8,6 +8,7 @@
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/orbit/settle/watch/standstill.hpp"
 #include "limcycle/analysis/orbit/simulate/ensemble.hpp"
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/gantry.hpp"
 #include "limcycle/tests/loops.hpp"
@@ -196,9 +197,16 @@ TEST_CASE("three states: the sliding mode of order two decides, and a relay that
 }
 
 TEST_CASE("a centre is a family of periodic motions") {
-  for (const double start : {1.0, 0.01}) {
+  for (const double start : {297.0, 1.0, 0.01}) {
     CHECK(from(forward(relay(1.0), {1.0}, {1.0, 0.0, 0.0}), start).outcome == Outcome::family);
     CHECK(from(forward(saturation(0.1), {1.0}, {1.0, 0.0, 1.0}), start).outcome == Outcome::family);
+    CHECK(from(forward(saturation(1.0), {1.0}, {1.0, 0.0, 0.0}), start).outcome == Outcome::family);
+  }
+  DeadZone<double> gap;
+  gap.half_width = 0.5;
+  for (const double start : {2.97e4, 297.0}) {
+    CHECK(from(forward(gap, {1.0}, {1.0, 0.0, 0.0}), start).outcome == Outcome::family);
+    CHECK(from(forward(relay(1.0, 0.0, 0.1), {3.0}, {2.0, 0.0, 0.0}), start).outcome == Outcome::family);
   }
 }
 
@@ -416,7 +424,7 @@ TEST_CASE("divergence: growth is tried from afar, where a damped spring that bou
     controller.saturation = 60.0;
     parts.controller = controller;
     const Loop loop = build_loop(parts);
-    return grows_from_afar(loop, displaced(loop, displacement), 1e-9, 20'000, {});
+    return grows_from_afar(loop, displaced(loop, displacement), 2.0 * displacement, 1e-9, 20'000, {});
   };
   CHECK(grows(0.0, 100.0));
   CHECK_FALSE(grows(1.0, 100.0));
@@ -442,15 +450,30 @@ TEST_CASE("divergence: growth at a speed that viscous friction limits, in swings
 }
 
 TEST_CASE("divergence: swings that grow like a power of time have no bound") {
-  TurningPoints power, fades, grows;
+  TurningPoints power, line, fades, grows, creeps;
   for (int n = 0; n < 400; ++n) {
     const double sign = n % 2 == 0 ? 1.0 : -1.0;
     const auto feed = [&](TurningPoints& turning, double size) { turning.feed(n, sign * size); };
     feed(power, 1.0 + std::pow(n, 0.6));
+    feed(line, 5.0 + 0.1 * n);
     feed(fades, 5.0 - 4.0 * std::exp(-0.01 * n));
     feed(grows, std::exp(0.01 * n));
+    feed(creeps, std::exp(0.001 * n));
   }
   CHECK(grows_like_a_power(power));
+  CHECK(grows_like_a_power(line));
   CHECK_FALSE(grows_like_a_power(fades));  // comes to 5
   CHECK_FALSE(grows_like_a_power(grows));  // leaves an unstable rest, for a cycle perhaps
+  CHECK_FALSE(grows_like_a_power(creeps));
+}
+
+TEST_CASE("divergence: slow growth out of a rest that is hardly unstable ends in the cycle around it") {
+  // Three lags with a gain of 8.01, limited at 1: stable beyond, and unstable by 4e-4 1/s within.
+  const Loop lags = forward(saturation(1.0), {8.01}, {1.0, 3.0, 3.0, 1.0});
+  const Settled near = settled(lags, displaced(lags, 0.02298));
+  CHECK(near.outcome == Outcome::cycle);
+  CHECK((!near.shot || near.shot->cycle.amplitude == Approx(1.0104).epsilon(1e-3)));
+  // Van der Pol with mu = 0.002: every motion comes to the swing of 2.
+  const Loop circle = van_der_pol(0.002);
+  CHECK(settled(circle, displaced(circle, 0.02)).outcome != Outcome::divergence);
 }

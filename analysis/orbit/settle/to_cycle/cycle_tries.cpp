@@ -30,9 +30,15 @@ void keep_one(Cycle& cycle) {
 
 std::optional<CycleFound> CycleTries::look_from(const NearlyClosed& motion) {
   if (const auto known = known_cycle(loop_, motion.here, motion.swing, options_, steps_))
-    return CycleFound{Outcome::cycle, "converges to cycle " + std::to_string(*known), known, {}};
+    return CycleFound{Outcome::cycle, converges_to(*known), known, {}};
   if (swings_like_known(motion) || leaves_known(motion)) return std::nullopt;
   return judge(motion, shoot_at(motion));
+}
+
+std::string CycleTries::converges_to(std::size_t known) const {
+  const std::string name = "cycle " + std::to_string(known);
+  return options_.known[known].remembered > 0 ? "converges to " + name + ", or to one of its family of the same size"
+                                              : "converges to " + name;
 }
 
 /// True if a sampled loop swings as widely as a motion of another start in which no period was found: shooting at it

@@ -34,6 +34,7 @@ class CycleTries {
 
  private:
   bool swings_like_known(const NearlyClosed& motion) const;
+  std::string converges_to(std::size_t known) const;
   bool leaves_known(const NearlyClosed& motion);
   bool lies_beside(const ShootingResult& symmetric, double change);
   ClosedMotion shoot_at(NearlyClosed motion);

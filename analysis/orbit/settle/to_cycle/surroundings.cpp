@@ -14,7 +14,10 @@ Surroundings::Surroundings(const Loop& loop, const Cycle& cycle, const Section& 
                            double rtol)
     : loop_(loop), cycle_(cycle), section_(section), options_(options), rtol_(rtol), sizes_(typical_sizes(loop)) {
   middle_ = opposite().x;
-  for (std::size_t i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * (middle_[i] + cycle.start.x[i]);
+  for (std::size_t i = 0; i < middle_.size(); ++i) {
+    middle_[i] = 0.5 * (middle_[i] + cycle.start.x[i]);
+    sizes_[i] = std::max(sizes_[i], std::abs(cycle.start.x[i] - middle_[i]));
+  }
 }
 
 /// The state half a period after the start; the start itself if the march does not get there.
@@ -81,14 +84,15 @@ bool Surroundings::has_twins(const Eigen::VectorXd& neutral) {
   // Where a sample is taken just before a switch the family ends close by.
   const bool exact = choose_stepper(loop_, rtol_) == StepperKind::exact;
   return std::ranges::any_of(std::array{1e-2, 1e-3, 1e-4, 1e-5}, [&](double aside) {
-    return (exact || aside > above_tolerance * rtol_) && has_twin(beside(aside)) && has_twin(beside(-aside));
+    return (exact || aside > above_tolerance * rtol_) && has_twin(beside(aside), aside) &&
+           has_twin(beside(-aside), aside);
   });
 }
 
-bool Surroundings::has_twin(const LoopState& beside) {
+bool Surroundings::has_twin(const LoopState& beside, double aside) {
   constexpr int periods = 100;
   constexpr double still = 1e-4;
-  const double equal = std::max(1e-6, 10.0 * rtol_), before = distance(beside.x, cycle_.start.x);
+  const double equal = 1e-3 * aside, before = distance(beside.x, cycle_.start.x);
   ReturnMap map = map_of_period();
   map.set_extremes(true);
   auto at = map.approach(beside);

@@ -18,15 +18,16 @@ class Surroundings {
   /// True if another periodic motion lies close: shooting from 2 % farther out, or nearer, finds it. `half`: by half
   /// periods.
   bool has_neighbour(bool half);
-  /// True if motions that begin aside along `neutral`, on either side, by 1 % or less of the typical sizes, are or come
-  /// to other periodic ones of the same period and size: the cycle keeps a number of what was before, as the integral
-  /// of a sampled controller of a relay does.
+  /// True if motions that begin aside along `neutral`, on either side, by 1 % or less of their swing, are or come to
+  /// other periodic ones whose period and size differ by less than a thousandth of that: the cycle keeps a number of
+  /// what was before, as the integral of a sampled controller of a relay does. Beside an orbit of a centre, whose size
+  /// depends on the start, both change as much as the start does.
   bool has_twins(const Eigen::VectorXd& neutral);
   /// Steps of all marches so far.
   long steps() const { return steps_; }
 
  private:
-  bool has_twin(const LoopState& beside);
+  bool has_twin(const LoopState& beside, double aside);
   ReturnMap map_of_period() const;
   double distance(const State& one, const State& other) const;
   LoopState farther_out(double factor) const;
@@ -37,7 +38,7 @@ class Surroundings {
   const Section& section_;
   const ShootingOptions& options_;
   double rtol_;
-  State sizes_, middle_;
+  State sizes_, middle_;  ///< typical sizes, or the swing of a state where that is larger; centre of the motion
   long steps_ = 0;
 };
 

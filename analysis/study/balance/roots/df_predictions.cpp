@@ -14,11 +14,11 @@ namespace {
 /// For a root of the describing function: 1 + N G, and the amplitude of y.
 RootOf root_of_df() {
   constexpr double accuracy = 1e-10;
-  return {[](const Loop& loop, double A, double w) { return LoopBalance(loop)(A, w, accuracy); },
-          [](const Loop& loop, double A, double w) { return LoopBalance(loop).output_amplitude(A, w); }};
+  return {[](const Loop& loop, double A, double w) { return FirstHarmonicBalance(loop)(A, w, accuracy); },
+          [](const Loop& loop, double A, double w) { return FirstHarmonicBalance(loop).output_amplitude(A, w); }};
 }
 
-void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+void predict_into(DfPredictions& result, const Loop& loop, const FirstHarmonicBalance& balance, const SearchBox& box,
                   const PredictOptions& options, long max_evaluations) {
   auto found = find_df_roots(loop, balance, box, options.stop, max_evaluations);
   result.notes = std::move(found.notes);
@@ -43,7 +43,7 @@ void predict_into(DfPredictions& result, const Loop& loop, const LoopBalance& ba
 
 }  // namespace
 
-DfPredictions df_predictions(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+DfPredictions df_predictions(const Loop& loop, const FirstHarmonicBalance& balance, const SearchBox& box,
                              const PredictOptions& options, long max_evaluations) {
   DfPredictions result;
   try {

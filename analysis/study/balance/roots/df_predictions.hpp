@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 
@@ -21,7 +21,7 @@ struct DfPredictions {
 
 /// All roots in the box as predictions, found with at most `max_evaluations` integrated describing functions. With
 /// options.stop it ends early, and keeps the roots found.
-DfPredictions df_predictions(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+DfPredictions df_predictions(const Loop& loop, const FirstHarmonicBalance& balance, const SearchBox& box,
                              const PredictOptions& options, long max_evaluations);
 
 }  // namespace limcycle

@@ -13,8 +13,8 @@ namespace {
 
 class RootStudy {
  public:
-  RootStudy(const Loop& loop, const LoopBalance& balance, const SearchBox& box, const std::function<bool()>& stop,
-            long max_evaluations)
+  RootStudy(const Loop& loop, const FirstHarmonicBalance& balance, const SearchBox& box,
+            const std::function<bool()>& stop, long max_evaluations)
       : loop_(loop),
         balance_(balance),
         box_(box),
@@ -175,7 +175,7 @@ class RootStudy {
   bool used_up() const { return balance_.evaluations() > last_evaluation_; }
 
   const Loop& loop_;
-  const LoopBalance& balance_;
+  const FirstHarmonicBalance& balance_;
   const SearchBox& box_;
   const std::function<bool()>& stop_;
   long last_evaluation_;
@@ -184,7 +184,7 @@ class RootStudy {
 
 }  // namespace
 
-DfRoots find_df_roots(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+DfRoots find_df_roots(const Loop& loop, const FirstHarmonicBalance& balance, const SearchBox& box,
                       const std::function<bool()>& stop, long max_evaluations) {
   return RootStudy(loop, balance, box, stop, max_evaluations).run();
 }

@@ -60,7 +60,7 @@ void sample_response(const Loop& loop, const std::vector<double>& grid, NyquistP
 
 }  // namespace
 
-NyquistPicture nyquist_picture(const Loop& loop, const LoopBalance& balance, const SearchBox& box,
+NyquistPicture nyquist_picture(const Loop& loop, const FirstHarmonicBalance& balance, const SearchBox& box,
                                const std::vector<SearchPoint>& roots, const std::function<bool()>& stop) {
   NyquistPicture picture;
   std::vector<double> amplitudes, frequencies;
@@ -99,7 +99,7 @@ NyquistPicture nyquist_picture(const Loop& loop, const PredictReport& report, co
     drawn.frequency_min = boxes.front().frequency_min;
     drawn.frequency_max = boxes.back().frequency_max;
   }
-  return nyquist_picture(loop, LoopBalance(loop), drawn, roots, stop);
+  return nyquist_picture(loop, FirstHarmonicBalance(loop), drawn, roots, stop);
 } catch (const std::invalid_argument&) {  // numbers beyond the range of the method: no curves, but the rest stands
   return {};
 }

@@ -3,6 +3,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "limcycle/analysis/random_bits.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
@@ -11,13 +12,6 @@
 
 namespace limcycle::cycle_claims {
 namespace {
-
-/// 64 bits that depend on every letter (FNV-1a).
-std::uint64_t hashed(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
-}
 
 template <class Law>
 Law with_levels(double Fs, double Fc) {
@@ -32,7 +26,7 @@ Law with_levels(double Fs, double Fc) {
 void at_random(ClaimChecks& checks, const ClaimOptions& options, std::string_view id, int most,
                const std::function<void(RandomPoints&)>& test) {
   checks.random(true);
-  RandomPoints draw(options.seed ^ hashed(id));
+  RandomPoints draw(options.seed ^ fnv1a(id));
   for (int i = 0; i < std::min(options.random_points, most); ++i) {
     if (options.stop && options.stop()) {
       checks.stop(Status::interrupted);

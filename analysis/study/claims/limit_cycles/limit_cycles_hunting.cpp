@@ -17,7 +17,7 @@ namespace {
 /// The roots of the describing function of the friction, all with Re N < 0: none if the law has no such gain.
 std::vector<Root> check_roots(const Loop& loop, const SearchBox& box, const std::string& where,
                               std::optional<std::size_t> expected, const ClaimOptions& options, ClaimChecks& checks) {
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   const auto found = find_df_roots(loop, balance, box, options.stop);
   if (found.status != Status::converged && found.status != Status::no_cycle) {
     checks.stop(found.status);

@@ -52,7 +52,7 @@ std::vector<RelayRow> relay_table() {
 
 void check_relay_describing_function(const Loop& loop, const RelayRow& row, const ClaimOptions& options,
                                      ClaimChecks& checks) {
-  const auto found = find_df_roots(loop, LoopBalance(loop), SearchBox{1e-3, 10.0, 0.01, 100.0}, options.stop);
+  const auto found = find_df_roots(loop, FirstHarmonicBalance(loop), SearchBox{1e-3, 10.0, 0.01, 100.0}, options.stop);
   checks.is_true(row.plant, "the describing function predicts one cycle", found.roots.size() == 1);
   if (found.roots.size() != 1) return;
   checks.equal(row.plant, "frequency by describing function", "rad/s", row.df_frequency, found.roots[0].frequency,
@@ -104,7 +104,7 @@ void check_integrator(double hysteresis, double level, const ClaimOptions& optio
   checks.is_true(where, "each switch forgets everything: no multiplier but zeros",
                  std::ranges::all_of(shot->cycle.multipliers, [](const auto& m) { return std::abs(m) < 1e-12; }));
   // sqrt(1 - (h/A)^2) leaves a residual of about sqrt(2 (A/h - 1)) just inside the range.
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   const double frequency = 4.0 * level / (pi * hysteresis);
   checks.equal(where, "residual of the describing function at its root", "", 0.0,
                std::abs(balance(hysteresis * (1.0 + 1e-12), frequency, 1e-12)), 2e-6, 1.0);

@@ -34,7 +34,7 @@ std::optional<Cycle> unstable_cycle(const Loop& loop, const Servo& servo, double
                                     const ClaimOptions& options, ClaimChecks& checks) {
   const double w = std::sqrt(servo.kp / servo.mass),
                A = 4.0 * Fc * w / (std::numbers::pi * (servo.ki - servo.kd * w * w));
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   const auto found = find_df_roots(loop, balance, SearchBox{A / 3.0, 3.0 * A, w / 3.0, 3.0 * w}, options.stop);
   checks.is_true(where, "the describing function gives a start for shooting", found.roots.size() == 1);
   if (found.roots.size() != 1) return std::nullopt;

@@ -3,7 +3,7 @@
 #include <functional>
 #include <numbers>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/balance/orbit_guess.hpp"
 #include "limcycle/analysis/study/claims/limit_cycles/limit_cycles.hpp"
 #include "limcycle/models/element/with_memory/relay.hpp"
@@ -48,7 +48,7 @@ double loeb(const RelayLoop& relay, double A, double w) {
 /// The true cycle near a root, within a factor of exp(0.4), stable or not; otherwise a status. A root just beyond the
 /// dead zone is a poor start for Newton's method: larger amplitudes are tried after it.
 ShootingResult cycle_near(const Loop& loop, double A, double w, const ClaimOptions& options) {
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   ShootingOptions shooting;
   shooting.stop = options.stop;
   ShootingResult shot;

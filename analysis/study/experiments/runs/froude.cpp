@@ -40,30 +40,19 @@ std::vector<double> since(const FroudeTrace& trace, const std::vector<double>& c
   return {column.begin() + first, column.end()};
 }
 
-struct Fast {
-  double rms = 0.0, frequency = 0.0;
-};
-/// The part of evenly sampled values above w rad/s, through a Hann window (whose mean square is 3/8): leakage from the
-/// swing falls with the cube of the distance.
-Fast fast_part(std::vector<double> values, double sample, double w) {
+/// Rms of the part of evenly sampled values above w rad/s, through a Hann window (whose mean square is 3/8): leakage
+/// from the swing falls with the cube of the distance.
+double fast_part(std::vector<double> values, double sample, double w) {
   values = without_mean(std::move(values));
   const auto n = static_cast<double>(values.size());
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] *= 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / n));
   const auto lines = harmonics_by_fft(values, 0.0, (static_cast<int>(values.size()) - 1) / 2);
   const double spacing = 2.0 * std::numbers::pi / (n * sample);
-  Fast result;
-  double power = 0.0, strongest = 0.0;
-  for (std::size_t k = 1; k < lines.size(); ++k) {
-    if (static_cast<double>(k) * spacing < w) continue;
-    power += 0.5 * std::norm(lines[k]) / 0.375;
-    if (std::norm(lines[k]) > strongest) {
-      strongest = std::norm(lines[k]);
-      result.frequency = static_cast<double>(k) * spacing;
-    }
-  }
-  result.rms = std::sqrt(power);
-  return result;
+  double power = 0.0;
+  for (std::size_t k = 1; k < lines.size(); ++k)
+    if (static_cast<double>(k) * spacing >= w) power += 0.5 * std::norm(lines[k]) / 0.375;
+  return std::sqrt(power);
 }
 
 double peak(const std::vector<double>& values) {
@@ -84,19 +73,14 @@ void compare(FroudeComparison& with, const FroudeComparison& without, const Frou
   };
   const auto angle = part(with, &FroudeTrace::angle), rubbing = part(with, &FroudeTrace::rubbing);
   const auto angle_0 = part(without, &FroudeTrace::angle), rubbing_0 = part(without, &FroudeTrace::rubbing);
-  const auto normal = part(with, &FroudeTrace::normal);
   with.swing = half_swing(angle);
   with.swing_change = with.swing / half_swing(angle_0) - 1.0;
   with.angle_change = rms(difference(angle, angle_0)) / rms(without_mean(angle_0));
   with.rubbing_peak = peak(rubbing);
-  with.rubbing_peak_change = with.rubbing_peak / peak(rubbing_0) - 1.0;
   with.rubbing_change = rms(difference(rubbing, rubbing_0)) / rms(rubbing_0);
-  with.normal_peak = peak(normal);
-  with.fast_angle = fast_part(angle, sample, fast_from * w0).rms;
-  with.fast_normal = fast_part(normal, sample, fast_from * w0).rms;
-  const Fast fast = fast_part(rubbing, sample, fast_from * w0);
-  with.fast_rubbing = fast.rms;
-  with.fast_frequency = fast.frequency;
+  with.fast_angle = fast_part(angle, sample, fast_from * w0);
+  with.fast_normal = fast_part(part(with, &FroudeTrace::normal), sample, fast_from * w0);
+  with.fast_rubbing = fast_part(rubbing, sample, fast_from * w0);
 }
 
 FroudeOptions options_for(double seconds, const std::function<bool()>& stop) {

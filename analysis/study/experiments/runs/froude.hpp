@@ -29,16 +29,13 @@ struct FroudeSetting {
 struct FroudeComparison {
   double clearance = 0.0;  ///< m; 0: the motion without play itself
   FroudeRun run;
-  double swing = 0.0;                ///< half peak-to-peak of the angle, rad
-  double swing_change = 0.0;         ///< relative
-  double angle_change = 0.0;         ///< rms of the difference over rms of the oscillating part without play
-  double rubbing_peak = 0.0;         ///< largest |v|, m/s
-  double rubbing_peak_change = 0.0;  ///< relative
-  double rubbing_change = 0.0;       ///< rms of the difference over rms of v without play
-  double normal_peak = 0.0;          ///< largest contact force, N
+  double swing = 0.0;           ///< half peak-to-peak of the angle, rad
+  double swing_change = 0.0;    ///< relative
+  double angle_change = 0.0;    ///< rms of the difference over rms of the oscillating part without play
+  double rubbing_peak = 0.0;    ///< largest |v|, m/s
+  double rubbing_change = 0.0;  ///< rms of the difference over rms of v without play
   /// rms of the part above 20 times the frequency of small swings: of the angle (rad), v (m/s), N (N)
   double fast_angle = 0.0, fast_rubbing = 0.0, fast_normal = 0.0;
-  double fast_frequency = 0.0;  ///< rad/s, where that part of v is strongest
 };
 
 /// All clearances with one friction curve.

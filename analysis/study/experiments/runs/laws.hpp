@@ -20,7 +20,6 @@ struct LawSetting {
   std::vector<std::pair<std::string, Value>> values;
   std::string note{};            ///< origin of the values, and misprints
   double break_away = 1e-3;      ///< displacement by which the law has broken away, m: determines "gross" displacements
-  bool from_documents = false;   ///< one of the five laws that the thesis compares
   std::function<bool()> stop{};  ///< called by the runs of this law; an experiment sets it
 
   const Value* find(const std::string& key) const;

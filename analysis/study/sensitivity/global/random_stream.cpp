@@ -4,20 +4,10 @@
 
 namespace limcycle {
 
-std::uint64_t splitmix64(std::uint64_t& state) {
-  state += 0x9E3779B97F4A7C15U;
-  std::uint64_t z = state;
-  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-  return z ^ (z >> 31U);
-}
-
 RandomStream::RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t number) {
-  std::uint64_t name = 0xCBF29CE484222325U;  // FNV-1a, 64 bits
-  for (const char letter : purpose) name = (name ^ static_cast<unsigned char>(letter)) * 0x100000001B3U;
   // Each of the three is mixed before the next one is added, so that no two of them can cancel each other.
   state_ = seed;
-  state_ = splitmix64(state_) ^ name;
+  state_ = splitmix64(state_) ^ fnv1a(purpose);
   state_ = splitmix64(state_) ^ number;
   state_ = splitmix64(state_);
 }

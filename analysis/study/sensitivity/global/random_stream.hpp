@@ -3,11 +3,9 @@
 #include <cstdint>
 #include <string_view>
 
-namespace limcycle {
+#include "limcycle/analysis/random_bits.hpp"
 
-/// One step of SplitMix64: advances the state and gives 64 bits. G. L. Steele, D. Lea, C. H. Flood, Fast splittable
-/// pseudorandom number generators, OOPSLA 2014; constants of S. Vigna's public-domain version.
-std::uint64_t splitmix64(std::uint64_t& state);
+namespace limcycle {
 
 /// Random numbers that are the same on every machine: a seed of the user, a purpose, and a number (such as that of a
 /// trajectory) give a stream of their own. Draws for one purpose do not affect those for another. (The distributions of

@@ -78,6 +78,23 @@ LoopParts on_belt(Element law) {
   return parts;
 }
 
+LoopParts servo_drive(double current_lag) {
+  LoopParts parts;
+  ServoDrive plant;
+  plant.motor_inertia = 2e-5;
+  plant.load = 1.0;
+  plant.ratio = 300.0;
+  plant.efficiency = 0.9;
+  plant.torque_constant = 0.02;
+  plant.damping = 0.7;
+  plant.current_lag = current_lag;
+  parts.plant = plant;
+  parts.controller = pid(3.0, 1.0, 2.0);
+  parts.load = 0.1;
+  parts.friction = coulomb(1.5, 1.0);
+  return parts;
+}
+
 Karnopp<double> karnopp() {
   auto law = with_levels<Karnopp<double>>(1.5, 1.0);
   law.vs = 0.1;
@@ -149,6 +166,8 @@ TEST_CASE("audit: every mechanical plant balances, whatever drives it") {
                {"servo, dry", servo_parts(coulomb(1.5, 1.0, 0.4)), {{"y", 0.1}}},
                {"two masses", two_mass(false), {{"y_motor", 0.1}, {"y_load", 0.1}}},
                {"two masses, load", two_mass(true), {{"y_motor", 0.1}, {"y_load", 0.1}}},
+               {"servo drive", servo_drive(0.0), {{"y", 1.0}}},
+               {"servo drive, lag of the current", servo_drive(0.05), {{"y", 1.0}}},
                {"belt", on_belt(lugre()), {{"y", 0.5}}},
                {"belt, stick-slip", on_belt(stribeck(1.5, 1.0, 0.1)), {{"y", 0.5}}},
                {"pendulum", parts_of(froude_pendulum(5.0)), {{"y", 0.5}}}};

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "limcycle/analysis/energy/one_state/one_state_law.hpp"
-#include "limcycle/analysis/energy/passivity/resimulate.hpp"
+#include "limcycle/analysis/energy/passivity/reference_march.hpp"
 #include "limcycle/analysis/energy/passivity/storage_slopes.hpp"
 #include "limcycle/models/friction/bristle/bouc_wen.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
@@ -54,7 +54,7 @@ void check_refuted(const Element& law, const Passivity& answer) {
   if (example.taken.size() < 1000) CHECK(example.taken.back() > 0.0);
   for (std::size_t i = example.taken.size() - 5; i < example.taken.size(); ++i)
     CHECK(example.taken[i] - example.taken[i - 1] == Approx(example.energy).epsilon(0.02));
-  const Resimulation again = resimulate(law, example.input, example.z0, example.mode0, 1);
+  const ReferenceMarch again = reference_march(law, example.input, example.z0, example.mode0, 1);
   REQUIRE(again.status == Status::converged);
   CHECK(again.taken.at(0) == example.confirmed);
 }

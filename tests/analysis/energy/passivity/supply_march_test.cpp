@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "limcycle/analysis/energy/passivity/resimulate.hpp"
+#include "limcycle/analysis/energy/passivity/reference_march.hpp"
 #include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
 
@@ -70,7 +70,7 @@ TEST_CASE("supply: the independent simulation agrees, through jumps, ramps and s
         REQUIRE(march.settle(piece, at));
         REQUIRE(march.cross(piece, at) == Status::converged);
       }
-    const auto other = resimulate(law, cycle_of(pieces), begin.z, begin.mode, 2);
+    const auto other = reference_march(law, cycle_of(pieces), begin.z, begin.mode, 2);
     INFO(std::string(law.kind()));
     REQUIRE(other.status == Status::converged);
     // Both lose digits at a branch that begins with an infinite slope.

@@ -8,7 +8,7 @@
 #include "limcycle/analysis/frequency/harmonic_balance/harmonic_response.hpp"
 #include "limcycle/analysis/orbit/cycle/shooting.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -272,14 +272,14 @@ TEST_CASE("one harmonic is the root of the describing function", "[hb][df]") {
   const struct {
     Loop loop;
     SearchBox box;
-    bool half;  // half-wave symmetric, as in LoopBalance
+    bool half;  // half-wave symmetric, as in FirstHarmonicBalance
   } rows[] = {{third_order_relay(), {1e-3, 1e2, 0.1, 10.0}, true},
               {forward(saturation(1.0), {20.0}, {1.0, 3.0, 3.0, 1.0}), {1e-1, 1e2, 0.1, 10.0}, true},
               {van_der_pol(1.0), {1e-1, 1e2, 0.1, 10.0}, true},
               {belt(friction), {0.06, 0.08, 1.45, 1.5}, false}};
   int compared = 0;
   for (const auto& row : rows) {
-    const LoopBalance equation(row.loop);
+    const FirstHarmonicBalance equation(row.loop);
     const auto found =
         find_roots([&](double A, double w, double accuracy) { return equation(A, w, accuracy); }, row.box);
     REQUIRE_FALSE(found.roots.empty());

@@ -238,7 +238,7 @@ TEST_CASE("march: what never slips is a spring", "[df][kernel][march]") {
 
 TEST_CASE("march: a finer mesh is as much better as its order says", "[df][kernel][march][order]") {
   // Five stages, from panels of 0.8 to 0.55: (0.8/0.55)^9 = 29 for a smooth integrand.
-  const MarchedHalfPeriod half(*MarchedLaw::of(elasto_plastic()), asking(1e-6));
+  const MarchedHalfPeriod half(*KernelLaw::of(elasto_plastic()), asking(1e-6));
   double coarse = 0.0, fine = 0.0, finest = 0.0;
   for (const DfPoint& point : grid(7, 5)) {
     CAPTURE(point.amplitude, point.frequency);

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/balance/orbit_guess.hpp"
 #include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/tests/loops.hpp"
@@ -19,7 +19,7 @@ const std::vector<double> three_lags{1.0, 3.0, 3.0, 1.0};
 
 /// A sinusoidal guess of the given amplitude of the element's input and frequency.
 OrbitGuess sinusoid(const Loop& loop, double amplitude, double frequency) {
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   return guess_orbit(
       loop, [&](double phase) { return balance.linear_state(amplitude, frequency, phase); }, frequency,
       symmetry(loop).has_value());

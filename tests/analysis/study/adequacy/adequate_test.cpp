@@ -18,8 +18,8 @@ using namespace limcycle::test;
 
 namespace {
 
-const LawRung& rung(const std::vector<LawRung>& ladder, std::string_view name) {
-  const auto found = std::ranges::find(ladder, name, &LawRung::name);
+const SimplifiedLaw& rung(const std::vector<SimplifiedLaw>& ladder, std::string_view name) {
+  const auto found = std::ranges::find(ladder, name, &SimplifiedLaw::name);
   REQUIRE(found != ladder.end());
   return *found;
 }
@@ -44,7 +44,7 @@ AdequateOptions quick() {
 
 TEST_CASE("adequate: each law of the ladder takes over what it can carry, and is valid") {
   const auto own = lugre();
-  const auto ladder = law_ladder(own);
+  const auto ladder = simplified_laws(own);
   CHECK(ladder.size() == 8);
   for (const auto& one : ladder) {
     INFO(one.name);
@@ -71,7 +71,7 @@ TEST_CASE("adequate: each law of the ladder takes over what it can carry, and is
 }
 
 TEST_CASE("adequate: a law that the case's own cannot give is not possible, and says why") {
-  const auto from_coulomb = law_ladder(coulomb(1.5, 1.0, 0.4));
+  const auto from_coulomb = simplified_laws(coulomb(1.5, 1.0, 0.4));
   CHECK(rung(from_coulomb, "coulomb + stiction").own);
   CHECK_FALSE(rung(from_coulomb, "coulomb").own);
   CHECK_FALSE(rung(from_coulomb, "stribeck").law);
@@ -80,14 +80,14 @@ TEST_CASE("adequate: a law that the case's own cannot give is not possible, and 
   Dahl<double> dahl;
   dahl.Fc = 1.0;
   dahl.sigma0 = 1e4;
-  const auto from_dahl = law_ladder(dahl);
+  const auto from_dahl = simplified_laws(dahl);
   CHECK(rung(from_dahl, "multi-state").law->kind() == "maxwell-slip");
   Kikuuwe<double> kikuuwe = with_levels<Kikuuwe<double>>(1.5, 1.0);
   kikuuwe.vs = 1e-3;
   kikuuwe.K = 1e4;
   kikuuwe.B = 10.0;
-  CHECK(law_ladder(kikuuwe).back().name == "kikuuwe");
-  CHECK(law_ladder(kikuuwe).back().own);
+  CHECK(simplified_laws(kikuuwe).back().name == "kikuuwe");
+  CHECK(simplified_laws(kikuuwe).back().own);
 }
 
 TEST_CASE("adequate: variations move one number and those that follow it") {
@@ -177,7 +177,7 @@ TEST_CASE("adequate: a loop that rests needs the least law there is") {
 }
 
 TEST_CASE("adequate: answers are compared by kind first, then by their numbers") {
-  SceneAnswer best, answer;
+  MethodAnswer best, answer;
   best.answered = answer.answered = true;
   best.verdict = "cycle/rest";
   best.period = 2.0;
@@ -215,7 +215,7 @@ TEST_CASE("adequate: a plain simulation sees what every start comes to, not only
   CHECK(simulated.verdict == "cycle/divergence");
   CHECK(best.verdict == "cycle/divergence");
   CHECK(scene_error("simulation", simulated, best) < 0.02);
-  SceneAnswer runaway;
+  MethodAnswer runaway;
   runaway.answered = true;
   runaway.verdict = "divergence/no cycle";
   CHECK_FALSE(runaway.hunts());

@@ -35,10 +35,10 @@ TEST_CASE("asked scenes: a law is asked once at each place") {
   LoopParts heavier = parts;
   heavier.plant = Mass{1.2, 0.0, 0.0};
   AskedScenes asked(quick_predict(), infinite);
-  const SceneAnswer& first = asked.ask("simulation", 0, parts, coulomb(1.5, 1.0, 0.4));
+  const MethodAnswer& first = asked.ask("simulation", 0, parts, coulomb(1.5, 1.0, 0.4));
   REQUIRE(first.verdict == "cycle");
   CHECK(&asked.ask("simulation", 0, parts, coulomb(1.5, 1.0, 0.4)) == &first);
-  const SceneAnswer& elsewhere = asked.ask("simulation", 1, heavier, coulomb(1.5, 1.0, 0.4));
+  const MethodAnswer& elsewhere = asked.ask("simulation", 1, heavier, coulomb(1.5, 1.0, 0.4));
   CHECK(&elsewhere != &first);
   CHECK(elsewhere.period != first.period);
   CHECK(asked.ask("simulation", 0, parts, coulomb(1.4, 1.0, 0.4)).period != first.period);
@@ -46,11 +46,12 @@ TEST_CASE("asked scenes: a law is asked once at each place") {
 
 TEST_CASE("asked scenes: harmonic balance takes over roots, and their cost") {
   const Loop loop = build_loop(servo_parts(coulomb(1.5, 1.0, 0.4)));
-  SceneQuestions together(loop, quick_predict());
-  const SceneAnswer df = together.ask("describing-function"), composite = together.ask("composite-describing-function");
+  MethodQuestions together(loop, quick_predict());
+  const MethodAnswer df = together.ask("describing-function"),
+                     composite = together.ask("composite-describing-function");
   REQUIRE(composite.verdict == "cycle");
-  const SceneAnswer balance = together.ask("harmonic-balance"),
-                    alone = ask_scene("harmonic-balance", loop, quick_predict());
+  const MethodAnswer balance = together.ask("harmonic-balance"),
+                     alone = ask_scene("harmonic-balance", loop, quick_predict());
   CHECK(balance.seconds >= df.seconds + composite.seconds);
   CHECK(balance.answered == alone.answered);
   CHECK(balance.verdict == alone.verdict);
@@ -59,8 +60,8 @@ TEST_CASE("asked scenes: harmonic balance takes over roots, and their cost") {
 }
 
 TEST_CASE("asked scenes: who runs out of patience has no answer") {
-  SceneQuestions questions(build_loop(servo_parts(lugre())), quick_predict());
-  const SceneAnswer answer = questions.ask("shooting", 1e-3);
+  MethodQuestions questions(build_loop(servo_parts(lugre())), quick_predict());
+  const MethodAnswer answer = questions.ask("shooting", 1e-3);
   CHECK_FALSE(answer.answered);
   CHECK(answer.why == "stopped after 0.001 s of CPU time");
   CHECK(questions.ask("shooting").answered);

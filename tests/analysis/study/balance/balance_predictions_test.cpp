@@ -19,7 +19,7 @@ TEST_CASE("harmonic balance of a loaded servo with a limited command begins wher
   parts.friction = coulomb(11.9796, 7.16664);
   parts.load = 1.04564;
   const Loop loop = build_loop(parts);
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   Prediction root;
   root.amplitude = root.input_amplitude = 66.9548;
   root.frequency = 0.334771;

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/tests/analysis/predictions.hpp"
@@ -54,7 +54,7 @@ TEST_CASE("a weak motor beside friction: the oscillation at which it loses the s
   for (const double Fc : {1.0, 0.1, 1e-3, 1e-6}) {
     INFO("Fc " << Fc);
     const Loop loop = weak_servo(Fc, Fc);
-    const LoopBalance balance(loop);
+    const FirstHarmonicBalance balance(loop);
     const auto [A, w] = by_hand(Fc);
     const auto found = find_df_roots(loop, balance, wide, {});
     REQUIRE(found.roots.size() == 1);
@@ -70,7 +70,7 @@ TEST_CASE("a weak motor beside friction: the oscillation at which it loses the s
 
 TEST_CASE("the roots of two elements are the same from either side") {
   const Loop loop = weak_servo(1.0, 1.0);
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   const auto [A, w] = by_hand(1.0);
   const double second = std::hypot(3.0, 4.0 / w - 6.0 * w) * A;
   bool seen = false;
@@ -110,7 +110,7 @@ TEST_CASE("a limited integrator holds a load: the body has no mean velocity, and
     return build_loop(parts);
   };
   const Loop with = loaded(-7.7), without = loaded(0.0);
-  const LoopBalance balance(with), free(without);
+  const FirstHarmonicBalance balance(with), free(without);
   CHECK(balance.mean_velocity() == 0.0);
   for (const double A : {1e-3, 0.1, 10.0})
     for (const double w : {0.1, 1.0, 10.0})
@@ -149,7 +149,7 @@ TEST_CASE("loop balance: a belt that runs the other way starts from the mirrored
     return build_loop(parts);
   };
   const Loop one = at_speed(0.2), other = at_speed(-0.2);
-  const LoopState a = LoopBalance(one).state(0.3, 1.4), b = LoopBalance(other).state(0.3, 1.4);
+  const LoopState a = FirstHarmonicBalance(one).state(0.3, 1.4), b = FirstHarmonicBalance(other).state(0.3, 1.4);
   REQUIRE(a.x.size() == b.x.size());
   for (std::size_t i = 0; i < a.x.size(); ++i) CHECK(b.x[i] == Approx(-a.x[i]).epsilon(1e-9).margin(1e-12));
 }

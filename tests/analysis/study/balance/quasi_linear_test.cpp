@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;
@@ -59,7 +59,7 @@ TEST_CASE("quasi-linear response: without gains that of the elements, with them 
 
 TEST_CASE("balance of two elements: a command that is not limited changes nothing, however slow the oscillation") {
   const Loop free = fast_servo(infinite);
-  const LoopBalance alone(free);
+  const FirstHarmonicBalance alone(free);
   for (const double w : {1e-2, 0.1, 1.0, 100.0, 1e4})
     for (const double A : {1e-6, 1e-4, 1e-2}) {
       INFO("A " << A << ", w " << w);
@@ -69,7 +69,7 @@ TEST_CASE("balance of two elements: a command that is not limited changes nothin
       const double command = 4.0 / std::numbers::pi * 4.3 * std::abs(returned / (1.0 + returned));
       const Loop limited = fast_servo(3.0 * command);
       REQUIRE(limited.elements.size() == free.elements.size() + 1);
-      const std::complex<double> want = alone(A, w, 1e-9), got = LoopBalance(limited)(A, w, 1e-9);
+      const std::complex<double> want = alone(A, w, 1e-9), got = FirstHarmonicBalance(limited)(A, w, 1e-9);
       CHECK(std::abs(got - want) < 1e-7 * (1.0 + std::abs(want)));
     }
 }

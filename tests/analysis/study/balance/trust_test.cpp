@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/element/memoryless/cubic.hpp"
 #include "limcycle/tests/analysis/predictions.hpp"
@@ -21,7 +21,7 @@ const std::vector<double> three_lags{1.0, 3.0, 3.0, 1.0};
 bool holds(const Interval& range, double value) { return range.low <= value && value <= range.high; }
 
 Trust trust_of(const Loop& loop, double amplitude, double frequency) {
-  return trust(loop, LoopBalance(loop), amplitude, frequency);
+  return trust(loop, FirstHarmonicBalance(loop), amplitude, frequency);
 }
 
 /// Every prediction with a cycle has it in its band, which is not excessively wide.

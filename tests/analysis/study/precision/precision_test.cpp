@@ -256,14 +256,14 @@ TEST_CASE("precision: a run that will not fit into its budget is given up after 
   std::string why;
   const auto reference = cycle_reference(loop, predict, 1000, why);
   REQUIRE(reference);
-  CycleRunOptions run{StepperKind::dopri5, 1e-6, 10, 10'000'000, {}};
-  const CycleRun whole = run_on_cycle(loop, reference->cycle, reference->sizes, run);
+  IntegratorCheckOptions run{StepperKind::dopri5, 1e-6, 10, 10'000'000, {}};
+  const IntegratorCheck whole = check_integrator(loop, reference->cycle, reference->sizes, run);
   REQUIRE(whole.status == Status::converged);
   REQUIRE(whole.steps > 60'000);
   run.max_steps = whole.steps + 1;  // just enough
-  CHECK_FALSE(run_on_cycle(loop, reference->cycle, reference->sizes, run).gave_up);
+  CHECK_FALSE(check_integrator(loop, reference->cycle, reference->sizes, run).gave_up);
   run.max_steps = whole.steps / 3;
-  const CycleRun cut = run_on_cycle(loop, reference->cycle, reference->sizes, run);
+  const IntegratorCheck cut = check_integrator(loop, reference->cycle, reference->sizes, run);
   CHECK(cut.gave_up);
   CHECK(cut.steps < whole.steps / 4);
 }

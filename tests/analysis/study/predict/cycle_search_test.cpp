@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
-#include "limcycle/analysis/study/map/hunting_answers.hpp"
+#include "limcycle/analysis/study/map/ensemble_outcomes.hpp"
 #include "limcycle/analysis/study/predict/cycle_hunt.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
 #include "limcycle/tests/loops.hpp"
@@ -42,5 +42,5 @@ TEST_CASE("cycle search: stiff bristles are simulated as accurately by every com
   const double rtol = cycle_search(loop, box, 1e-8).rtol;
   CHECK(rtol < SettleOptions{}.rtol);
   CHECK(CycleHunt(loop, {}, box).rtol() == rtol);
-  CHECK(hunting_question(loop).rtol <= rtol);
+  CHECK(ensemble_question(loop).rtol <= rtol);
 }

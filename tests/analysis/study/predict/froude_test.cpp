@@ -5,7 +5,7 @@
 
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/orbit/simulate/simulate.hpp"
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/experiments/runs/froude.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/element/memoryless/gravity.hpp"
@@ -102,7 +102,7 @@ TEST_CASE("Froude pendulum: self-excitation begins where the dynamic damping van
 
 TEST_CASE("Froude pendulum: every start leads to the one swing, which the describing function confirms") {
   const Loop loop = build_loop(parts_of(froude_pendulum(4.0), friction(1e5, 100.0)));
-  CHECK_FALSE(LoopBalance::not_applicable(loop));
+  CHECK_FALSE(FirstHarmonicBalance::not_applicable(loop));
   PredictOptions options;
   options.search = SearchBox{5e-3, 0.03, 5.0, 8.0};
   const PredictReport report = predict(loop, options);
@@ -123,7 +123,7 @@ TEST_CASE("Froude pendulum: every start leads to the one swing, which the descri
 TEST_CASE("Froude pendulum: the balance of gravity and friction is solved by its own oscillation") {
   // N of both and the mean angle substituted: J (jw)^2 + c jw + N_gravity + radius^2 N_friction = 0.
   const Loop loop = build_loop(parts_of(froude_pendulum(4.0), friction(1e5, 100.0)));
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   const double A = 0.0125, w = 6.1, angle = A / 0.02;
   const Complex N = balance.gain(A, w, 1e-9), s(0.0, w);
   const auto& gravity = law_of<Gravity<double>>(loop.elements[0]);

@@ -59,7 +59,7 @@ double standard_deviation(const std::vector<double>& values) {
 }
 
 Root only_root(const Loop& loop) {
-  const auto found = find_df_roots(loop, LoopBalance(loop), box, {});
+  const auto found = find_df_roots(loop, FirstHarmonicBalance(loop), box, {});
   REQUIRE(found.roots.size() == 1);
   return found.roots.front();
 }
@@ -93,7 +93,7 @@ TEST_CASE("measured plant: a rough fit leaves the roots of describing functions 
   CHECK(root.frequency == Approx(std::sqrt(3.0)).epsilon(1e-4));
   CHECK(root.amplitude == Approx(0.5 / 3.14159265358979).epsilon(1e-4));
   // The fit alone has none: two poles never turn by half a turn.
-  CHECK(find_df_roots(with_fits(loop), LoopBalance(with_fits(loop)), box, {}).roots.empty());
+  CHECK(find_df_roots(with_fits(loop), FirstHarmonicBalance(with_fits(loop)), box, {}).roots.empty());
 }
 
 TEST_CASE("measured plant: a servo hunts as on the known mass, by the composite root and in time") {
@@ -139,7 +139,7 @@ TEST_CASE("measured plant: a composite root has the deviation that roots of many
 TEST_CASE("measured plant: roots beyond the data, or in their gaps, are not reported, and the search says so") {
   const auto roots_between = [](double from, double to) {
     const Loop loop = build_loop(relay_on(measured_plant(sampled_response(three_lags, from, to, 60))));
-    return find_df_roots(loop, LoopBalance(loop), box, {}).roots.size();
+    return find_df_roots(loop, FirstHarmonicBalance(loop), box, {}).roots.size();
   };
   CHECK(roots_between(0.01, 100.0) == 1);
   CHECK(roots_between(0.01, 1.7) == 0);
@@ -150,7 +150,7 @@ TEST_CASE("measured plant: roots beyond the data, or in their gaps, are not repo
   data.response.erase(data.response.begin() + first, data.response.begin() + first + 10);
   const Loop loop = build_loop(relay_on(measured_plant(data)));
   CHECK(within_data(loop, box).size() == 2);
-  CHECK(find_df_roots(loop, LoopBalance(loop), box, {}).roots.empty());
+  CHECK(find_df_roots(loop, FirstHarmonicBalance(loop), box, {}).roots.empty());
   REQUIRE(data_limits(loop, box).size() == 1);
   CHECK_THAT(data_limits(loop, box)[0], Contains("was not measured") && Contains("predict nothing there"));
   CHECK(data_limits(build_loop(relay_on(FirstOrder{1.0, 1.0})), box).empty());
@@ -170,10 +170,11 @@ TEST_CASE("measured plant: the deviation of a root is that of roots of many nois
     amplitude.push_back(std::log(root.amplitude));
     frequency.push_back(std::log(root.frequency));
     if (stated) continue;
-    stated = root_spread(loop,
-                         {[](const Loop& of, double A, double w) { return LoopBalance(of)(A, w, 1e-10); },
-                          [](const Loop& of, double A, double w) { return LoopBalance(of).output_amplitude(A, w); }},
-                         root.amplitude, root.frequency);
+    stated = root_spread(
+        loop,
+        {[](const Loop& of, double A, double w) { return FirstHarmonicBalance(of)(A, w, 1e-10); },
+         [](const Loop& of, double A, double w) { return FirstHarmonicBalance(of).output_amplitude(A, w); }},
+        root.amplitude, root.frequency);
     REQUIRE(stated);
   }
   // Between two points of equal deviation the interpolated one has 0.7 to 1 of it.

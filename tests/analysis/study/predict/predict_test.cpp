@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/models/element/with_memory/backlash.hpp"
 #include "limcycle/models/friction/bristle/lugre.hpp"
@@ -124,7 +124,7 @@ TEST_CASE("relay loops are confirmed, with the numbers of claim B1, and roots so
   CHECK(p.amplitude == Approx(0.5 / std::numbers::pi).epsilon(1e-9));
   CHECK(p.stable == true);
   CHECK(p.verdict == Verdict::confirmed);
-  CHECK(std::abs(LoopBalance(loop)(p.input_amplitude, p.frequency, 1e-12)) < 1e-9);
+  CHECK(std::abs(FirstHarmonicBalance(loop)(p.input_amplitude, p.frequency, 1e-12)) < 1e-9);
   // With more harmonics the bias of 1.4 % of the frequency is gone.
   const auto more = predictions_of(report, harmonic);
   REQUIRE(more.size() == 1);
@@ -203,6 +203,25 @@ TEST_CASE("a relay experiment on a first-order process with dead time: its exact
   CHECK(slowest->stable == true);
 }
 
+TEST_CASE("a relay on a process a hundred times slower than its dead time: the default search reaches that cycle") {
+  // Roots of pi - 0.1 w = atan(10 w), and of w = pi/2L at an integrator: far above a hundred times the pole.
+  for (const auto& [denominator, L, gain, w, A] :
+       {std::tuple(std::vector{10.0, 1.0}, 0.1, 1.0, 15.771, 0.008073),
+        std::tuple(std::vector{1.0, 0.0}, 0.002, 500.0, 785.398, 0.810569)}) {
+    LoopParts parts;
+    parts.plant = TransferFunction{{gain}, denominator, L};
+    parts.element = relay(1.0);
+    const auto report = predict(build_loop(parts), {});
+    const auto own = predictions_of(report, df);
+    const auto first = std::ranges::min_element(own, {}, &Prediction::frequency);
+    REQUIRE(first != own.end());
+    CHECK(first->frequency == Approx(w).epsilon(1e-4));
+    CHECK(first->amplitude == Approx(A).epsilon(1e-3));
+    CHECK(first->verdict != Verdict::wrong);
+    CHECK(std::ranges::none_of(report.missed, [](const auto& one) { return one.method == df; }));
+  }
+}
+
 TEST_CASE("search box: of a dead time the first turns and those up to a resonance, however fast the actuator") {
   const auto fastest = [](std::vector<double> denominator) {
     LoopParts parts;
@@ -213,6 +232,7 @@ TEST_CASE("search box: of a dead time the first turns and those up to a resonanc
   CHECK(fastest({1.0, 1.0}) == Approx(60.0));
   CHECK(fastest({0.005, 1.005, 1.0}) == Approx(60.0));
   CHECK(fastest({1e-4, 1e-3, 1.0}) == Approx(300.0));
+  CHECK(fastest({100.0, 1.0}) == Approx(4.0 * std::numbers::pi));  // one turn of the dead time
 }
 
 TEST_CASE("a saturation with dead time: the Pade approximation is owned up to, and the cycle is the true one") {
@@ -322,7 +342,7 @@ TEST_CASE("a saturated command beside the friction is eliminated by its own desc
   limited.saturation = 1e6;  // never reached, hence without effect
   parts.controller = limited;
   const Loop with = build_loop(parts), without = servo(coulomb(1.5, 1.0));
-  const LoopBalance a(with), b(without);
+  const FirstHarmonicBalance a(with), b(without);
   for (const double A : {1e-3, 0.1})
     for (const double w : {0.1, 2.0}) CHECK(std::abs(a(A, w, 1e-9) - b(A, w, 1e-9)) < 1e-9 * std::abs(b(A, w, 1e-9)));
 }

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/predict/method_names.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -25,7 +25,7 @@ TEST_CASE(
   p.cycle.reset();
   CycleHunt hunt(loop, options, found.search);
   PredictionCheck check(loop, hunt, 1'000'000, options.stop);
-  check.check(p, LoopBalance(loop).state(p.input_amplitude, p.frequency), "prediction 0");
+  check.check(p, FirstHarmonicBalance(loop).state(p.input_amplitude, p.frequency), "prediction 0");
   CHECK(p.verdict == Verdict::biased);
   CHECK(p.cycle == 0U);
   CHECK_THAT(p.why, Catch::Matchers::Contains("its stability is wrong"));

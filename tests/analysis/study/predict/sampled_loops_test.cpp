@@ -496,3 +496,27 @@ TEST_CASE("a sampled body that winds up on its bristles for longer than can be f
   CHECK(found.why.find("winds up") != std::string::npos);
   CHECK(found.steps < options.max_readings / 4);
 }
+
+TEST_CASE("sampled relay on an integrator: where it swings is decided by the start, and all such cycles are one family") {
+  // y moves by 0.1 a sample: what is left of y(0) over that is kept for ever, and the relay turns at each sample.
+  Relay<double> relay;
+  relay.level = 1.0;
+  LoopParts parts;
+  parts.plant = TransferFunction{{1.0}, {1.0, 0.0}, 0.0};
+  Pid controller = pid(1.0, 0.0, 0.0);
+  controller.sample_time = 0.1;
+  parts.controller = controller;
+  parts.element = relay;
+  const auto report = predict(build_loop(parts), {});
+  REQUIRE(report.cycles.size() == 1);
+  CHECK(report.cycles[0].period == Approx(0.2).epsilon(1e-9));
+  CHECK(report.cycles[0].amplitude == Approx(0.05).epsilon(1e-9));
+  CHECK(report.cycles[0].remembered == 1);
+  CHECK(report.cycles[0].stable == true);
+  std::set<std::string> why;
+  for (const auto& one : report.outcomes) {
+    CHECK(one.cycle == 0U);
+    why.insert(one.why);
+  }
+  CHECK(why.contains("converges to cycle 0, or to one of its family of the same size"));
+}

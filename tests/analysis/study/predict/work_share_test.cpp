@@ -41,7 +41,7 @@ TEST_CASE("work share: a composite search ends when its steps are used up, break
 
 TEST_CASE("work share: a root search ends when its describing functions are used up, and says so") {
   const Loop loop = servo(lugre());
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   const SearchBox box{1e-6, 1.0, 0.01, 1000.0};
   const DfRoots found = find_df_roots(loop, balance, box, {}, 20'000);
   CHECK(found.status == Status::incomplete);

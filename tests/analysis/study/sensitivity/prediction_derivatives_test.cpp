@@ -19,7 +19,7 @@ struct Place {
 
 /// A root near a place, by Newton on the balance with slopes by differences (independent of limcycle's derivatives).
 Place root_near(const Loop& loop, Place at) {
-  const LoopBalance balance(loop);
+  const FirstHarmonicBalance balance(loop);
   for (int i = 0; i < 12; ++i) {
     const auto f = [&](double a, double w) { return balance(at.amplitude * a, at.frequency * w, 1e-12); };
     const std::complex<double> here = f(1.0, 1.0), by_a = (f(1.0 + 1e-6, 1.0) - f(1.0 - 1e-6, 1.0)) / 2e-6,
@@ -41,7 +41,8 @@ void check_roots(const LoopParts& parts, const std::vector<Knob>& knobs, Place g
   INFO(found.why);
   REQUIRE(found.status == Status::converged);
   REQUIRE(found.by.size() == knobs.size());
-  CHECK(found.amplitude == Approx(LoopBalance(loop).output_amplitude(root.amplitude, root.frequency)).epsilon(1e-8));
+  CHECK(found.amplitude ==
+        Approx(FirstHarmonicBalance(loop).output_amplitude(root.amplitude, root.frequency)).epsilon(1e-8));
   for (std::size_t k = 0; k < knobs.size(); ++k) {
     const double at = value(parts, knobs[k]), h = apart * at;
     double amplitude = 0.0, frequency = 0.0;
@@ -50,7 +51,7 @@ void check_roots(const LoopParts& parts, const std::vector<Knob>& knobs, Place g
         const Loop there = with(parts, knobs[k], at + side * steps * h);
         const Place moved = root_near(there, root);
         const double share = side * weight / (60.0 * h);
-        amplitude += share * LoopBalance(there).output_amplitude(moved.amplitude, moved.frequency);
+        amplitude += share * FirstHarmonicBalance(there).output_amplitude(moved.amplitude, moved.frequency);
         frequency += share * moved.frequency;
       }
     CAPTURE(knobs[k].name);
@@ -97,7 +98,8 @@ TEST_CASE("derivatives of predicted oscillations against differences of roots") 
 
   // The belt: a friction law with a mean velocity, at A w near it.
   const auto belt = belt_parts(lugre(1.5, 1.0, 0.0));
-  const auto on_belt = find_df_roots(build_loop(belt), LoopBalance(build_loop(belt)), {0.02, 0.5, 0.3, 5.0}, {});
+  const auto on_belt =
+      find_df_roots(build_loop(belt), FirstHarmonicBalance(build_loop(belt)), {0.02, 0.5, 0.3, 5.0}, {});
   REQUIRE(on_belt.roots.size() == 1);
   check_roots(belt, belt_knobs(), {on_belt.roots[0].amplitude, on_belt.roots[0].frequency}, 3e-5);
 }

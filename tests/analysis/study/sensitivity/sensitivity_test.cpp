@@ -43,8 +43,8 @@ TEST_CASE(
     "many loops are asked at once: as predict says, whatever stands beside, and values that are no case are missing") {
   const std::vector<std::optional<Loop>> loops{test::servo(test::lugre()), std::nullopt,
                                                test::servo(test::lugre(1.0, 1.0)), test::servo(test::lugre(2.0, 1.0))};
-  const HuntingQuestion question = hunting_question(*loops[0]);
-  const auto answers = hunting_answers(loops, question);
+  const EnsembleQuestion question = ensemble_question(*loops[0]);
+  const auto answers = ensemble_outcomes(loops, question);
   REQUIRE(answers.size() == 4);
   CHECK(answers[0].hunts == 1.0);
   CHECK(answers[0].period == Approx(24.4368).epsilon(3e-4));
@@ -53,23 +53,23 @@ TEST_CASE(
   CHECK(answers[2].hunts == 0.0);
   CHECK(std::isnan(answers[2].amplitude));
   CHECK(answers[3].hunts == 1.0);
-  const auto alone = hunting_answers(std::span(loops).subspan(3, 1), question);
+  const auto alone = ensemble_outcomes(std::span(loops).subspan(3, 1), question);
   CHECK(alone[0].period == answers[3].period);  // to the last bit
 
-  HuntingQuestion stopped = question;
+  EnsembleQuestion stopped = question;
   stopped.stop = [] { return true; };
-  CHECK(hunting_answers(loops, stopped).size() < 4);
+  CHECK(ensemble_outcomes(loops, stopped).size() < 4);
 }
 
 TEST_CASE("global sensitivity: where a loop hunts is shared out as it should be") {
   // Hunts if a > 1/2, whatever b: amplitude 1 + 2 a + 0 b there, none elsewhere.
   const GlobalPlan plan(spread_of({evenly("a", 0.0, 1.0), evenly("b", 10.0, 20.0)}), 20, 512, false);
-  std::vector<std::optional<HuntingAnswer>> answers;
+  std::vector<std::optional<EnsembleOutcome>> answers;
   for (std::size_t k = 0; k < plan.size(); ++k) {
     const auto at = plan.values(k);
     REQUIRE((at[1] > 10.0 && at[1] < 20.0));
     const bool hunts = at[0] > 0.5;
-    answers.push_back(HuntingAnswer{hunts ? 1.0 : 0.0, hunts ? 1.0 + 2.0 * at[0] : NAN, hunts ? at[0] : NAN});
+    answers.push_back(EnsembleOutcome{hunts ? 1.0 : 0.0, hunts ? 1.0 + 2.0 * at[0] : NAN, hunts ? at[0] : NAN});
   }
   const GlobalSensitivity found = global_sensitivity(plan, answers, 0.0);
   REQUIRE(found.outputs.size() == 3);
@@ -84,7 +84,8 @@ TEST_CASE("global sensitivity: where a loop hunts is shared out as it should be"
   CHECK_THROWS_AS(global_sensitivity(plan, std::span(answers).first(3), 0.0), std::invalid_argument);
 
   // Nothing computed yet: everything is unknown, and nothing is NaN.
-  const GlobalSensitivity none = global_sensitivity(plan, std::vector<std::optional<HuntingAnswer>>(plan.size()), 0.0);
+  const GlobalSensitivity none =
+      global_sensitivity(plan, std::vector<std::optional<EnsembleOutcome>>(plan.size()), 0.0);
   CHECK(!none.hunting.among_decided.known);
   CHECK(none.outputs[1].share_without_answer == 1.0);
   CHECK(!none.outputs[1].sobol.parameters[0].total.known);
@@ -232,10 +233,10 @@ TEST_CASE("a plan of correlated numbers: a fair sample alone, its bands, and no 
     CHECK(plan.correlated() == (correlation != 0.0));
     if (plan.correlated()) CHECK(plan.size() == 2048);
     CHECK(plan.fair_rows() == 2048);
-    std::vector<std::optional<HuntingAnswer>> answers;
+    std::vector<std::optional<EnsembleOutcome>> answers;
     for (std::size_t k = 0; k < plan.size(); ++k) {
       const auto x = plan.values(k);
-      answers.push_back(HuntingAnswer{x[0] > 1.0 ? 0.0 : 1.0, 10.0 + x[0] + x[1], x[0] > 1.0 ? NAN : 5.0});
+      answers.push_back(EnsembleOutcome{x[0] > 1.0 ? 0.0 : 1.0, 10.0 + x[0] + x[1], x[0] > 1.0 ? NAN : 5.0});
     }
     return global_sensitivity(plan, answers, 1e-6);
   };
@@ -261,8 +262,8 @@ TEST_CASE("a plan of correlated numbers: a fair sample alone, its bands, and no 
 
 TEST_CASE("a band needs enough loops that hunt") {
   const GlobalPlan plan(spread_of({evenly("a", 0.0, 1.0)}), 4, 64, false);
-  std::vector<std::optional<HuntingAnswer>> answers(plan.size());
-  for (std::size_t k = 0; k < answers_of_a_band; ++k) answers[plan.fair_row(k)] = HuntingAnswer{1.0, 2.0, 3.0};
+  std::vector<std::optional<EnsembleOutcome>> answers(plan.size());
+  for (std::size_t k = 0; k < answers_of_a_band; ++k) answers[plan.fair_row(k)] = EnsembleOutcome{1.0, 2.0, 3.0};
   CHECK(global_sensitivity(plan, answers, 0.0).outputs[1].band);
   answers[plan.fair_row(0)].reset();
   CHECK_FALSE(global_sensitivity(plan, answers, 0.0).outputs[1].band);

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "limcycle/analysis/frequency/describing_function/describing_function.hpp"
-#include "limcycle/analysis/study/balance/loop_balance.hpp"
+#include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"
@@ -48,7 +48,7 @@ TEST_CASE("rootless parts: too weak, or without energy, at every point, for ever
       if (!limit) return;
       CHECK((Element(law).force_bound(1.0) || Element(law).is_passive()));
       ++laws;
-      const LoopBalance balance(loop);
+      const FirstHarmonicBalance balance(loop);
       for (int k = 0; k < samples(30); ++k) {
         ++parts;
         const SearchBox part = random_part(box);
