@@ -42,6 +42,8 @@ export const forms = {
     force = 4
     scale = {time = 1.0, position = 1e-3, velocity = -1.0, force = 2.0}
     skip = 0.5
+    weight = "w"
+    loss = "huber"
     force_limit = 10.0`),
   'identify: alone': () => '[identify]\nlaw = "lugre"\n[[identify.record]]\nkind = "lag"\nfile = "a.csv"\n',
   'identify: a driven rig': also('[identify]\n[[identify.record]]\nkind = "free"\nfile = "a.csv"\nhold = "zero-order"'),

@@ -217,6 +217,8 @@ const record = table('A file of measured friction', {
   skip: number('from the first row, without comparison, s', { minimum: 0, default: 0 }),
   force_limit: number('of the force sensor: rows at it or beyond are not compared, N', positive),
   hold: choice(['linear', 'zero-order'], 'how the applied force of kind free goes on from row to row', { default: 'linear' }),
+  weight: column('of weights, each 1 over the variance of its row; default: all alike'),
+  loss: choice(['squares', 'huber'], 'how rows count that are far off', { default: 'squares' }),
 }, ['kind', 'file']);
 
 export const sections = {

@@ -50,6 +50,8 @@ struct RecordFile {
   double skip = 0.0;                                  ///< s
   double force_limit = infinite;                      ///< N
   bool holds_force = false;                           ///< the applied force keeps its value from row to row
+  std::optional<CsvColumn> weight{};                  ///< of the rows
+  bool huber = false;                                 ///< see FrictionRecord
 };
 
 /// [identify]: laws to be fitted to records.

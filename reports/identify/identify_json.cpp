@@ -95,6 +95,7 @@ std::string identify_json(const Provenance& provenance, const IdentifyReport& re
                               {"rows", record.compared.size()},
                               {"break_aways", record.break_aways.size()},
                               {"quantity", to_string(record.quantity)},
+                              {"loss", record.huber ? "huber" : "squares"},
                               {"size", number(record.size)},
                               {"largest_force", record.motion ? Json(nullptr) : number(record.largest_force)},
                               {"notes", record.notes}});

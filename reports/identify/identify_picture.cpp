@@ -16,6 +16,7 @@ constexpr std::string_view identify_style =
     ".zero{stroke:#8b949e;stroke-opacity:.4;stroke-dasharray:3 3}.right{text-anchor:end}"
     ".title{font-size:14px;font-weight:600}";
 constexpr double record_width = 350.0, record_height = 190.0, gap = 20.0, head_height = 60.0, foot_height = 56.0;
+constexpr double strip_height = 48.0, strip_gap = 20.0;  ///< of the residuals, below the curve
 constexpr std::size_t most_points = 700;
 
 /// What a panel shows: the force over something.
@@ -81,6 +82,26 @@ RecordFrame frame_of(const PanelCurve& curve, double left, double up) {
   return {left, up, x_low - x_margin, x_high + x_margin, y_low - y_margin, y_high + y_margin};
 }
 
+/// The differences that the law leaves, on the axis of the panel above: what they show beyond noise, it misses.
+std::string residual_strip(const PanelCurve& curve, const RecordFrame& frame, std::string_view unit) {
+  const double up = frame.up + record_height + strip_gap;
+  double most = 0.0;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) most = std::max(most, std::abs(curve.measured[i] - curve.fitted[i]));
+  const auto height_of = [&](double left) { return up + strip_height - place(left, 0.0, strip_height, -most, most); };
+  std::string out =
+      fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", frame.left,
+                  up, record_width, strip_height);
+  out += words_at(frame.left, up - 5.0, "",
+                  fmt::format("measured less fitted: at most {} {}", with_digits(most, 2), unit));
+  if (!(most > 0.0)) return out;
+  out += line_of(frame.left, height_of(0.0), frame.left + record_width, height_of(0.0), "zero");
+  const std::size_t every = curve.x.size() / most_points + 1;
+  for (std::size_t i = 0; i < curve.x.size(); i += every)
+    out += fmt::format("<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.5\"/>\n", frame.px(curve.x[i]),
+                       height_of(curve.measured[i] - curve.fitted[i]));
+  return out;
+}
+
 std::string panel(const PreparedRecord& record, const RecordFit& fit, double left, double up) {
   const PanelCurve curve = curve_of(record, fit);
   const RecordFrame frame = frame_of(curve, left, up);
@@ -109,9 +130,11 @@ std::string panel(const PreparedRecord& record, const RecordFit& fit, double lef
                              : fmt::format("{}: error {} N; largest force {} N", record_label(record), error, largest));
   const auto edge = [&](double x) { return with_digits(curve.by_size ? std::pow(10.0, x) : x, 2); };
   const auto [low, high] = std::ranges::minmax(curve.x);
-  out += words_at(left, up + record_height + 15.0, "", edge(low));
-  out += words_at(left + record_width, up + record_height + 15.0, "right", edge(high));
-  out += words_at(left, up + record_height + 31.0, "", curve.over);
+  const double foot = up + record_height + strip_gap + strip_height;
+  out += residual_strip(curve, frame, unit);
+  out += words_at(left, foot + 15.0, "", edge(low));
+  out += words_at(left + record_width, foot + 15.0, "right", edge(high));
+  out += words_at(left, foot + 31.0, "", curve.over);
   return out;
 }
 
@@ -126,16 +149,16 @@ std::string identify_picture(const IdentifyReport& report) {
                report.shooting ? "dots: measured; line: the fitted law, driven by the measured motion or moving freely"
                                : "dots: measured friction force; line: the fitted law, driven by the measured motion");
   const std::size_t rows = (law->records.size() + 1) / 2;
+  constexpr double whole_height = record_height + strip_gap + strip_height + foot_height;
   for (std::size_t r = 0; r < law->records.size(); ++r) {
     const std::size_t row = r / 2, column = r % 2;
     body += panel(report.records[r], law->records[r], 10.0 + static_cast<double>(column) * (record_width + gap),
-                  head_height + static_cast<double>(row) * (record_height + foot_height));
+                  head_height + static_cast<double>(row) * whole_height);
   }
   const std::string title = fmt::format("{}: error on rows that it was not fitted to, {} of {}", law->law.kind(),
                                         as_percent(law->held_out), largest_measured(report));
-  return svg_picture(20.0 + 2.0 * record_width + gap,
-                     head_height + static_cast<double>(rows) * (record_height + foot_height), title, identify_style,
-                     title, body);
+  return svg_picture(20.0 + 2.0 * record_width + gap, head_height + static_cast<double>(rows) * whole_height, title,
+                     identify_style, title, body);
 }
 
 }  // namespace limcycle

@@ -9,7 +9,8 @@ namespace limcycle {
 
 /// True if the swings grow like a power of time, as a limited command allows an unstable loop, and not towards a cycle:
 /// each doubling of their number increases them by more than the one before, by at least a quarter. On the way to a
-/// cycle it increases them by less and less. Needs 128 swings.
+/// cycle it increases them by less and less. Needs 64 swings.
+/// Any slow growth begins like a line, and one into a cycle may look like a power on its way: see grows_from_afar().
 bool grows_like_a_power(const TurningPoints& turning);
 
 /// True if the turning points move one way from each period to the next, in the whole second half of the run: the

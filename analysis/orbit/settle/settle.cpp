@@ -44,7 +44,7 @@ class Settling {
         start_(std::move(start)),
         field_(loop),
         march_(field_, StepperKind::automatic, loop_weights(loop, options.rtol)),
-        stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol, options.amplitude_floor),
+        stillness_(loop, typical_sizes(loop), slow_time(loop), options.rtol),
         switching_(loop, loop_sizes(loop)),
         wind_up_(loop),
         rubs_elsewhere_(loop.ports.back().rubs && !loop.continuous && !parallel(loop.ports.back().C, loop.C_y)),

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <new>
 
+#include "limcycle/analysis/study/identify/huber_loss.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -48,9 +49,35 @@ bool Misfit::add_forces(const Element& law, std::size_t record, Eigen::VectorXd&
   if (!response_->run(law, records_[record], forces_, by_values != nullptr ? &by_numbers_ : nullptr, fineness))
     return false;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    entries(first_[record] + static_cast<Eigen::Index>(i)) = (forces_[i] - compared[i].measured) / noise_[record];
+    entries(first_[record] + static_cast<Eigen::Index>(i)) =
+        (forces_[i] - compared[i].measured) * compared[i].weight / noise_[record];
   if (by_values != nullptr) by_values->middleRows(first_[record], std::ssize(compared)) = by_numbers_ / noise_[record];
+  for (std::size_t i = 0; i < compared.size(); ++i) {
+    const Eigen::Index row = first_[record] + static_cast<Eigen::Index>(i);
+    const HuberEntry by_loss = records_[record].huber ? huber_entry(entries(row)) : HuberEntry{entries(row), 1.0};
+    entries(row) = by_loss.entry;
+    const double factor = compared[i].weight * by_loss.slope;
+    if (by_values != nullptr && factor != 1.0) by_values->row(row) *= factor;
+  }
   return true;
+}
+
+Eigen::VectorXd Misfit::differences(std::size_t record, const Eigen::VectorXd& entries) const {
+  const auto own = entries.segment(first_[record], std::ssize(records_[record].compared));
+  return records_[record].huber ? Eigen::VectorXd(own.unaryExpr(&huber_difference)) : Eigen::VectorXd(own);
+}
+
+double Misfit::spread(const Eigen::VectorXd& entries) const {
+  double sum = entries.squaredNorm();
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    if (!records_[r].huber) continue;
+    const Eigen::VectorXd left = differences(r, entries);
+    const auto pulling = static_cast<double>((left.array().abs() <= huber_limit).count());
+    const double pulls = left.cwiseAbs().cwiseMin(huber_limit).squaredNorm();
+    sum += pulls * static_cast<double>(left.size()) / std::max(pulling, 1.0) -
+           entries.segment(first_[r], left.size()).squaredNorm();
+  }
+  return sum;
 }
 
 /// `first`: of the records of one motion.

@@ -11,8 +11,9 @@
 namespace limcycle {
 
 /// Weighted differences between what a law gives and the records, as a function of the coordinates of a ParameterSpace:
-/// compared rows over the noise of their record, then, for laws that stick, break-aways, |F| = Fs. The states at which
-/// free motions begin are fitted to them for any coordinates, and are none: see FreeResponse.
+/// compared rows over the noise of their record (or the entries of Huber's loss of these), then, for laws that stick,
+/// break-aways, |F| = Fs. The states at which free motions begin are fitted to them for any coordinates, and are none:
+/// see FreeResponse.
 class Misfit {
  public:
   /// Keeps references to the space and the records. `noise`: standard deviation of the measured quantity in each
@@ -26,6 +27,12 @@ class Misfit {
   const std::vector<double>& noise() const { return noise_; }
   /// First entry of a record, and of the break-aways behind all records.
   Eigen::Index first_of(std::size_t record) const { return first_[record]; }
+  /// The weighted differences of a record, over its noise, of which these are the entries: the same but for Huber's
+  /// loss.
+  Eigen::VectorXd differences(std::size_t record, const Eigen::VectorXd& entries) const;
+  /// What the sum of squares is for least squares, where intervals are taken from it: for Huber's loss the sum of the
+  /// squared pulls over the share of rows that still pull the harder, the farther off they are (Huber 1964).
+  double spread(const Eigen::VectorXd& entries) const;
 
   /// Only these records, or (empty) all; the entries of the others are 0.
   void use(std::vector<bool> records) {

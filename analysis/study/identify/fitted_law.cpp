@@ -6,16 +6,31 @@
 
 #include "limcycle/analysis/study/identify/bounded_fit.hpp"
 #include "limcycle/analysis/study/identify/held_out.hpp"
+#include "limcycle/analysis/study/identify/huber_loss.hpp"
 #include "limcycle/analysis/study/identify/intervals.hpp"
 #include "limcycle/analysis/study/identify/starts.hpp"
 
 namespace limcycle {
 namespace {
 
-/// Root mean square of the entries of each record, in the unit of what was measured.
+/// Standard deviation by the median, which half of the rows may leave as it is.
+double deviation_by_median(const Eigen::VectorXd& left) {
+  constexpr double of_normal = 0.6744897501960817;
+  std::vector<double> sizes(static_cast<std::size_t>(left.size()));
+  std::ranges::transform(left, sizes.begin(), [](double one) { return std::abs(one); });
+  const auto middle = sizes.begin() + std::ssize(sizes) / 2;
+  std::ranges::nth_element(sizes, middle);
+  return *middle / of_normal;
+}
+
+/// Root mean square of the entries of each record, in the unit of what was measured; by the median for Huber's loss.
 std::vector<double> errors_of(const Misfit& misfit, const Eigen::VectorXd& entries) {
   std::vector<double> errors;
   for (std::size_t r = 0; r < misfit.records().size(); ++r) {
+    if (misfit.records()[r].huber) {
+      errors.push_back(misfit.noise()[r] * deviation_by_median(misfit.differences(r, entries)));
+      continue;
+    }
     const auto rows = std::ssize(misfit.records()[r].compared);
     errors.push_back(misfit.noise()[r] * entries.segment(misfit.first_of(r), rows).norm() /
                      std::sqrt(static_cast<double>(rows)));
@@ -67,6 +82,15 @@ Eigen::VectorXd in_order_of_yield(const ParameterSpace& space, const Eigen::Vect
   return sorted;
 }
 
+void note_outliers(const PreparedRecord& record, const Eigen::VectorXd& differences, IdentifiedLaw& into) {
+  constexpr double surely = 4.0;
+  const auto count = (differences.array().abs() > surely).count();
+  if (count > 0)
+    into.notes.push_back(std::to_string(count) + " of " + std::to_string(differences.size()) + " rows of " +
+                         record.name + (count == 1 ? " lies" : " lie") +
+                         " more than four deviations off: outliers, which Huber's loss hardly counts");
+}
+
 void add_records(const Misfit& misfit, const Eigen::VectorXd& u, IdentifiedLaw& into) {
   Eigen::VectorXd entries, finer;
   if (!misfit.at(u, entries, nullptr)) return;
@@ -85,15 +109,19 @@ void add_records(const Misfit& misfit, const Eigen::VectorXd& u, IdentifiedLaw& 
       std::ranges::stable_sort(order, {}, [&](std::size_t i) { return record.compared[i].v; });
     std::vector<double> left;
     left.reserve(order.size());
-    for (std::size_t i = 0; i < record.compared.size(); ++i) {
-      const double entry = misfit.noise()[r] * entries(misfit.first_of(r) + static_cast<Eigen::Index>(i));
-      result.fitted.push_back(record.compared[i].measured + entry);
-    }
-    for (const auto i : order) left.push_back(result.fitted[i] - record.compared[i].measured);
+    const Eigen::VectorXd differences = misfit.noise()[r] * misfit.differences(r, entries);
+    for (std::size_t i = 0; i < record.compared.size(); ++i)
+      result.fitted.push_back(record.compared[i].measured +
+                              differences(static_cast<Eigen::Index>(i)) / record.compared[i].weight);
+    const double most = record.huber ? huber_limit * misfit.noise()[r] : infinite;  // else outliers are all that shows
+    for (const auto i : order) left.push_back(std::clamp(differences(static_cast<Eigen::Index>(i)), -most, most));
+    if (record.huber) note_outliers(record, differences / misfit.noise()[r], into);
     // Below the error of the simulation nothing is noise.
     if (!record.motion || errors[r] > 0.5 * misfit.noise()[r]) result.whiteness = whiteness(left);
     const double n = static_cast<double>(record.compared.size()), noise = misfit.noise()[r];
-    into.bic += n * (2.0 * std::log(noise) + std::pow(errors[r] / noise, 2) - 1.0);
+    const double squares = record.huber ? entries.segment(misfit.first_of(r), std::ssize(record.compared)).squaredNorm()
+                                        : n * std::pow(errors[r] / noise, 2);
+    into.bic += n * (2.0 * std::log(noise) - 1.0) + squares;
     rows += n;
     into.records.push_back(std::move(result));
   }

@@ -59,6 +59,8 @@ IdentifyReport identify(const IdentifyRequest& request, const IdentifyOptions& o
       report.records.push_back(prepare(record, rest_tells_nothing));
       continue;
     }
+    if (record.huber)
+      throw std::invalid_argument(record.name + ": Huber's loss is for a friction force that was measured");
     if (!request.rig) throw std::invalid_argument(record.name + ": a free motion needs the plant that moves");
     for (auto& series : prepare_free(record, *request.rig)) report.records.push_back(std::move(series));
     report.shooting = Shooting::single;

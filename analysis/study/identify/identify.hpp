@@ -39,7 +39,9 @@ struct IdentifiedNumber {
 
 /// How a law fits one record.
 struct RecordFit {
-  double error = 0.0;  ///< root of the mean square of what is left over, in the unit of what was measured
+  /// Root of the weighted mean square of what is left over, in the unit of what was measured; with Huber's loss 1.48
+  /// times the median.
+  double error = 0.0;
   Whiteness whiteness;
   std::vector<double> fitted;  ///< by the law, at the compared rows
 };
@@ -84,6 +86,10 @@ struct IdentifyReport {
 /// over records of n (ln s^2 + m/s^2 - 1), with the mean square m and the deviation s of the n errors, plus
 /// fitted ln(rows), with the states at starts among the fitted ones. Laws that need as many numbers as there are rows
 /// are not fitted, with a note.
+///
+/// Rows may have weights, each 1 over its variance as far as that differs within a record. With Huber's loss
+/// (huber_loss.hpp) rows far off pull no harder than those 1.345 deviations off; the intervals are then those of that
+/// estimate.
 ///
 /// Free motions are simulated under each law, and the errors are those of position and velocity. Each is first fitted
 /// in several runs, then in one; all laws keep to several if no law leaves less than 1.3 times the error in one. Throws

@@ -318,14 +318,15 @@ std::optional<FitWithSlopes> with_slopes(const Misfit& misfit, const Fit& fit) {
   Eigen::MatrixXd slopes;
   if (fit.u.size() == 0 || !misfit.at(fit.u, entries, &slopes)) return std::nullopt;
   const Eigen::Index starts = misfit.start_states();
+  const bool by_squares = std::ranges::none_of(misfit.records(), &PreparedRecord::huber);
   // A number that may be 0 is determined if its deviation is small for itself, however large for its typical size.
   Eigen::VectorXd units = Eigen::VectorXd::Ones(fit.u.size());
   for (Eigen::Index k = 0; k < units.size(); ++k)
     if (misfit.space().numbers()[misfit.space().number_of(k)].coordinate == Coordinate::linear)
       units(k) = std::max(1.0, std::abs(fit.u(k)));
-  return FitWithSlopes{
-      misfit, fit, linear_covariance(slopes, units),
-      interval_rise(fit.sum_of_squares, misfit.size(), misfit.space().size() + starts, starts > 0 ? 1.0 : 1e-6)};
+  return FitWithSlopes{misfit, fit, linear_covariance(slopes, units),
+                       interval_rise(by_squares ? fit.sum_of_squares : misfit.spread(entries), misfit.size(),
+                                     misfit.space().size() + starts, starts > 0 ? 1.0 : 1e-6)};
 }
 
 NumberInterval profile_interval(const FitWithSlopes& at, std::size_t index, std::optional<Fit>& better,

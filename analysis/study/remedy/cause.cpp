@@ -7,10 +7,13 @@
 
 #include "limcycle/analysis/energy/passivity/steady_slide.hpp"
 #include "limcycle/analysis/golden_maximum.hpp"
+#include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/remedy/without.hpp"
 #include "limcycle/models/diagram/quanta.hpp"
 #include "limcycle/models/element/memoryless/quantizer.hpp"
+#include "limcycle/models/element/memoryless/saturation.hpp"
+#include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
 namespace {
@@ -59,6 +62,21 @@ bool only_quanta_bend(const LoopParts& parts) {
   return loop.sampled && std::ranges::all_of(loop.elements, [](const Element& element) {
            return element.as<Quantizer<double>>() != nullptr;
          });
+}
+
+/// What a loop does that is linear as far as its limits are never reached, by its poles; empty for any other. (A
+/// simulation would take a swing for rest that is small beside the limits.)
+std::optional<Hunts> linear_answer(const Loop& loop) {
+  constexpr double rounding = 1e-9;
+  const auto limits = [](const Element& element) { return element.as<Saturation<double>>() != nullptr; };
+  if (loop.delay > 0.0 || loop.sampled || !std::ranges::all_of(loop.elements, limits)) return std::nullopt;
+  double largest = -infinite, size = 0.0;
+  for (const auto& pole : eigenvalues(working_loop(loop))) {
+    largest = std::max(largest, pole.real());
+    size = std::max(size, std::abs(pole));
+  }
+  if (std::abs(largest) <= rounding * size) return Hunts::neutral;
+  return largest > 0.0 ? Hunts::diverges : Hunts::no;
 }
 
 class CauseStudy {
@@ -112,7 +130,7 @@ class CauseStudy {
                      "The relay switches at full level however small the error: with a saturation that reaches this "
                      "level at twice the amplitude of the cycle " +
                          calm() + ".");
-    if (ends("without limits of the command", without_limits(parts_)))
+    if (ends("without limits of the command", without_limits(parts_), true))
       return decided(CauseKind::saturation, "The command is limited: without the limit " + calm() + ".");
     return decided(CauseKind::undecided, no_single_cause());
   }
@@ -126,9 +144,11 @@ class CauseStudy {
     return std::move(cause_);
   }
 
-  bool ends(const std::string& without, const std::optional<LoopParts>& parts) {
+  bool ends(const std::string& without, const std::optional<LoopParts>& parts, bool limits_are_far = false) {
     if (!parts || (judging_.predict.stop && judging_.predict.stop())) return false;
-    const Hunts answer = hunts(build_loop(*parts), judging_).hunts;
+    const Loop loop = build_loop(*parts);
+    const auto linear = limits_are_far ? linear_answer(loop) : std::nullopt;
+    const Hunts answer = linear ? *linear : hunts(loop, judging_).hunts;
     cause_.tests.push_back({without, answer});
     neutral_ = neutral_ || answer == Hunts::neutral;
     return answer == Hunts::no || answer == Hunts::neutral;  // nothing feeds a centre

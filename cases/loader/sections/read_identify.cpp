@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t most_records = 100;
 constexpr std::string_view quantities[] = {"time", "position", "velocity", "force"};
 constexpr std::string_view force_holds[] = {"linear", "zero-order"};
+constexpr std::string_view losses[] = {"squares", "huber"};
 
 Element read_law(const Place& place) {
   const std::string name = read_string(place);
@@ -48,7 +49,8 @@ std::vector<Element> read_laws(const std::optional<Place>& place) {
 std::vector<std::string> kind_names() { return {std::begin(record_kinds), std::end(record_kinds)}; }
 
 RecordFile read_record(const Section& section) {
-  section.allow({"kind", "file", "time", "position", "velocity", "force", "scale", "skip", "force_limit", "hold"});
+  section.allow({"kind", "file", "time", "position", "velocity", "force", "weight", "scale", "skip", "force_limit",
+                 "hold", "loss"});
   RecordFile record;
   const Place kind = section.at("kind", "which experiment: " + joined(kind_names()));
   record.kind = static_cast<RecordKind>(read_choice(kind, record_kinds));
@@ -71,6 +73,12 @@ RecordFile read_record(const Section& section) {
   if (const auto hold = section.find("hold")) {
     if (record.kind != RecordKind::free) throw hold->error("says how the applied force of a free record goes on");
     record.holds_force = read_choice(*hold, force_holds) == 1;
+  }
+  if (const auto weight = section.find("weight")) record.weight = read_column(*weight);
+  if (const auto loss = section.find("loss")) {
+    record.huber = read_choice(*loss, losses) == 1;
+    if (record.huber && is_free(record.kind))
+      throw loss->error("is for a friction force that was measured; a free motion is fitted by squares");
   }
   return record;
 }
@@ -190,16 +198,21 @@ FrictionRecord read_record_file(const RecordFile& from, std::size_t before) {
     chosen.push_back(column);
     quantity.push_back(k);
   }
+  constexpr std::size_t weight = 4;
+  if (from.weight) {
+    chosen.push_back(*from.weight);
+    quantity.push_back(weight);
+  }
   csv.choose(chosen);
-  for (std::size_t i = 0; i < quantity.size(); ++i)
+  for (std::size_t i = 0; i < quantity.size() && quantity[i] != weight; ++i)
     check_unit(csv, csv.chosen()[i], case_file::quantities[quantity[i]], from.scale[quantity[i]]);
-  std::array<std::vector<double>, 4> columns;
+  std::array<std::vector<double>, 5> columns;
   const auto& counted = columns[quantity.back()];
   for (std::vector<double> row; csv.next(row);) {
     if (before + counted.size() == most_rows)
       throw csv.error("is beyond the 2 million rows that all records may have: keep every n-th");
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const double value = row[i] * from.scale[quantity[i]];
+      const double value = row[i] * (quantity[i] == weight ? 1.0 : from.scale[quantity[i]]);
       if (!std::isfinite(value)) throw csv.error("has a number that is too large with this scale");
       columns[quantity[i]].push_back(value);
     }
@@ -213,7 +226,9 @@ FrictionRecord read_record_file(const RecordFile& from, std::size_t before) {
           std::move(columns[3]),
           from.skip,
           from.force_limit,
-          from.holds_force};
+          from.holds_force,
+          std::move(columns[weight]),
+          from.huber};
 }
 
 }  // namespace

@@ -126,5 +126,6 @@ TEST_CASE("identify report: a stop is said, and not that records determine too l
 TEST_CASE("identify report: the picture has a panel for each record, and finite places only") {
   const std::string picture = identify_picture(table_report());
   CHECK_THAT(picture, Contains("steady-velocity") && Contains("class=\"law\""));
+  CHECK_THAT(picture, Contains("measured less fitted: at most "));
   CHECK_THAT(picture, !Contains("nan") && !Contains("inf"));
 }

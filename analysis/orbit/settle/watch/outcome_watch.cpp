@@ -64,10 +64,7 @@ double OutputStep::crossing(double level) const {
 }
 
 OutcomeWatch::OutcomeWatch(const Loop& loop, const OutcomeOptions& options, const State& sizes, double slow)
-    : loop_(loop),
-      options_(options),
-      stillness_(loop, sizes, slow, options.rtol, options.amplitude_floor),
-      switching_(loop, {sizes, slow}) {}
+    : loop_(loop), options_(options), stillness_(loop, sizes, slow, options.rtol), switching_(loop, {sizes, slow}) {}
 
 void OutcomeWatch::look(double t, const State& x, const State& dx, const std::vector<Mode>& modes) {
   if (const auto still = stillness_.look(t, x, dx, modes)) decide(still->outcome);

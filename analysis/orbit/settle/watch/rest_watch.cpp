@@ -33,7 +33,7 @@ double RestWatch::rate(const State& dx) const {
 
 bool RestWatch::rates_fade(double t, const State& dx) {
   const double largest = rate(dx), drift = largest * (t + slow_) / slow_;
-  const bool fades = largest <= noise() || (drift < 0.6 * last_ && drift < fading);
+  const bool fades = largest <= noise() || (drift < 0.6 * last_ && drift < 1e-6);
   last_ = drift;
   return fades;
 }

@@ -39,7 +39,6 @@ class RestWatch {
   double rate(const State& dx) const;
   double rtol() const { return rtol_; }          ///< of the simulation
   double noise() const { return 0.01 * rtol_; }  ///< rates as small as that count as none
-  static constexpr double fading = 1e-6;         ///< the displacement, in sizes, below which it may fade into rest
 
  private:
   State sizes_;

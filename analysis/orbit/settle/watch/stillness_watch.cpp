@@ -14,22 +14,10 @@ constexpr int patience = 12;
 constexpr double drift = 1e-6;  ///< rates below this are rounding, in sizes per slowest time constant
 constexpr double fades = 1e-6;  ///< largest rate of a state of rest that no algebra confirms, likewise
 
-/// The sizes, smaller where rates that fade unseen would hide a motion of y above `floor`: an element whose limit is
-/// far away makes them large.
-State resolving(const Loop& loop, State sizes, double floor) {
-  double of_y = 0.0;
-  for (Eigen::Index i = 0; i < loop.C_y.size(); ++i) of_y += std::abs(loop.C_y(i)) * sizes[static_cast<std::size_t>(i)];
-  constexpr double far = 30.0;  // the two are no more alike than that in an ordinary loop
-  const double hidden = RestWatch::fading * of_y;
-  if (hidden > far * floor && floor > 0.0)
-    for (double& size : sizes) size *= floor / hidden;
-  return sizes;
-}
-
 }  // namespace
 
-StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, double rtol, double floor)
-    : loop_(loop), scale_{sizes, slow}, rest_(resolving(loop, std::move(sizes), floor), slow, rtol) {}
+StillnessWatch::StillnessWatch(const Loop& loop, State sizes, double slow, double rtol)
+    : loop_(loop), scale_{sizes, slow}, rest_(std::move(sizes), slow, rtol) {}
 
 std::optional<Stillness> StillnessWatch::look(double t, const State& x, const State& dx,
                                               const std::vector<Mode>& modes) {

@@ -25,8 +25,8 @@ struct Stillness {
 /// stuck for a million of the loop's slowest time constants, and its rates are within that error.
 class StillnessWatch {
  public:
-  /// `floor`: swings of y below this have died out. The loop must outlive the watch.
-  StillnessWatch(const Loop& loop, State sizes, double slow, double rtol, double floor);
+  /// The loop must outlive the watch.
+  StillnessWatch(const Loop& loop, State sizes, double slow, double rtol);
 
   double next() const { return rest_.next(); }
   /// The state, its rates and the modes at a time not before next(), or after every step.

@@ -152,7 +152,7 @@ std::shared_ptr<const FreeMotion> motion_of(const FrictionRecord& record, const 
   Eigen::Vector2d low = Eigen::Vector2d::Constant(infinite), high = -low;
   for (std::size_t i = 0; i < record.t.size(); ++i) {
     FreeStop stop{record.t[i] - record.t.front(), rig.load + (record.F.empty() ? 0.0 : record.F[i]), -1};
-    if (stop.t >= record.skip && usable++ % every == 0) stop.sample = sample++;
+    if (stop.t >= record.skip && !is_weightless(record, i) && usable++ % every == 0) stop.sample = sample++;
     const bool bends = !record.F.empty() || i == 0;
     if (stop.sample < 0 && !bends) continue;
     motion->stops.push_back(stop);
@@ -194,6 +194,7 @@ PreparedRecord series_of(const FrictionRecord& record, MeasuredQuantity quantity
     result.fastest = std::max(result.fastest, std::abs(v));
   }
   result.duration = record.t.back() - record.t.front();
+  weigh_rows(record, result.compared);
   return result;
 }
 

@@ -25,9 +25,10 @@ struct FreeResponse::WindowFit {
   const VectorXd* known;
   Eigen::Vector2d state_sizes;  ///< ranges of the motion
   FreeRun run = {};
-  VectorXd entries = {};  ///< the samples of each series in turn
-  MatrixXd slopes = {};   ///< by numbers, then by the state at the start
-  VectorXd weights = {};  ///< 1 for known entries
+  VectorXd entries = {};      ///< the samples of each series in turn
+  MatrixXd slopes = {};       ///< by numbers, then by the state at the start
+  VectorXd row_weights = {};  ///< of the measured rows
+  VectorXd weights = {};      ///< 1 for known entries
   bool by_own_rows = false;
 
   Index samples() const { return std::ssize(run.samples); }
@@ -40,6 +41,7 @@ struct FreeResponse::WindowFit {
     const Index n = samples(), all = n * std::ssize(series);
     entries.resize(all);
     slopes.resize(all, run.y_slopes.rows());
+    row_weights.resize(all);
     for (std::size_t s = 0; s < series.size(); ++s) {
       const auto& record = *series[s].record;
       const bool position = record.quantity == MeasuredQuantity::position;
@@ -48,10 +50,13 @@ struct FreeResponse::WindowFit {
       for (Index i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const auto row = static_cast<std::size_t>(run.samples[k]);
-        entries(first + i) = (values[k] - record.compared[row].measured) / series[s].noise;
+        entries(first + i) =
+            (values[k] - record.compared[row].measured) * record.compared[row].weight / series[s].noise;
+        row_weights(first + i) = record.compared[row].weight;
       }
       slopes.middleRows(first, n) =
           (position ? run.y_slopes : run.rate_slopes).leftCols(n).transpose() / series[s].noise;
+      slopes.middleRows(first, n).array().colwise() *= row_weights.segment(first, n).array();
     }
     return entries.allFinite() && slopes.allFinite();
   }

@@ -24,14 +24,21 @@ void check_count(const FrictionRecord& record, std::size_t rows, std::size_t few
 }
 
 void check_lengths(const FrictionRecord& record, std::size_t rows) {
-  for (const auto* column : {&record.t, &record.x, &record.v, &record.F})
+  for (const auto* column : {&record.t, &record.x, &record.v, &record.F, &record.weight})
     if (!column->empty() && column->size() != rows) refuse_record(record, "has columns of different length");
+}
+
+void check_weights(const FrictionRecord& record) {
+  for (std::size_t i = 0; i < record.weight.size(); ++i)
+    if (!(record.weight[i] >= 0.0 && std::isfinite(record.weight[i])))
+      refuse_record(record, "has a weight that is no finite number >= 0 in " + row_name(i));
 }
 
 void check_steady(const FrictionRecord& record) {
   check_count(record, record.F.size(), 3);
   if (record.v.empty()) refuse_record(record, "needs a velocity column");
   check_lengths(record, record.F.size());
+  check_weights(record);
 }
 
 /// Slope at a row of the parabola through it and its neighbours.
@@ -225,11 +232,13 @@ std::string rows_left_out(std::size_t count, const std::string& why) {
 /// Chooses the rows to be compared. `rest`: see speed_at_rest().
 void choose_rows(const FrictionRecord& record, const std::vector<double>& v, bool rest_tells_nothing, double rest,
                  PreparedRecord& into) {
-  std::size_t at_limit = 0, at_rest = 0, skipped = 0;
+  std::size_t at_limit = 0, at_rest = 0, skipped = 0, weightless = 0;
   std::vector<ComparedRow> rows;
   for (std::size_t i = 0; i < record.F.size(); ++i) {
     if (is_skipped(record, i)) {
       ++skipped;
+    } else if (is_weightless(record, i)) {
+      ++weightless;
     } else if (is_saturated(record, i)) {
       ++at_limit;
     } else if ((rest_tells_nothing || record.kind == RecordKind::steady_velocity) && std::abs(v[i]) <= rest) {
@@ -241,6 +250,7 @@ void choose_rows(const FrictionRecord& record, const std::vector<double>& v, boo
   if (at_limit > 0) into.notes.push_back(rows_left_out(at_limit, "the force is at force_limit or beyond"));
   if (at_rest > 0) into.notes.push_back(rows_left_out(at_rest, "at rest, where a set-valued law states no force"));
   if (skipped > 0) into.notes.push_back(rows_left_out(skipped, "within skip"));
+  if (weightless > 0) into.notes.push_back(rows_left_out(weightless, "their weight is 0"));
   constexpr std::size_t shortest_run = 5;
   if (const auto run = longest_run_at_extreme(record.F); at_limit == 0 && run >= shortest_run)
     into.notes.push_back("the force keeps its extreme value over " + std::to_string(run) +
@@ -278,11 +288,20 @@ void measure(const FrictionRecord& record, PreparedRecord& into) {
 
 }  // namespace
 
+void weigh_rows(const FrictionRecord& record, std::vector<ComparedRow>& rows) {
+  if (record.weight.empty()) return;
+  double sum = 0.0;
+  for (const auto& row : rows) sum += record.weight[row.row];
+  const double mean = sum / static_cast<double>(rows.size());
+  for (auto& row : rows) row.weight = std::sqrt(record.weight[row.row] / mean);
+}
+
 void check_in_time(const FrictionRecord& record, std::size_t rows) {
   check_count(record, rows, 10);
   if (record.t.empty()) refuse_record(record, "needs a time column");
   if (record.v.empty() && record.x.empty()) refuse_record(record, "needs a position or velocity column");
   check_lengths(record, rows);
+  check_weights(record);
   for (std::size_t i = 1; i < rows; ++i)
     if (!(record.t[i] > record.t[i - 1])) refuse_record(record, "time does not rise at " + row_name(i));
   check_units(record);
@@ -309,6 +328,8 @@ PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing) {
                            " m/s counts as at rest: five deviations of the noise of the velocity");
   choose_rows(record, v, rest_tells_nothing, rest, result);
   if (result.compared.empty()) refuse_record(record, "no row can be compared with a law");
+  weigh_rows(record, result.compared);
+  result.huber = record.huber;
   std::vector<std::ptrdiff_t> compared_at(record.F.size(), -1);
   for (std::size_t k = 0; k < result.compared.size(); ++k)
     compared_at[result.compared[k].row] = static_cast<std::ptrdiff_t>(k);

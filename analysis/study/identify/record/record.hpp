@@ -39,6 +39,8 @@ struct FrictionRecord {
   double skip = 0.0;              ///< s from the first row, during which the force is not compared
   double force_limit = INFINITY;  ///< N; rows with |F| at it or beyond are not compared (a saturated sensor)
   bool holds_force = false;       ///< free: the applied force keeps its value until the next row, else it is linear
+  std::vector<double> weight{};   ///< of the rows, each for itself: one over the variance; empty: all are alike
+  bool huber = false;             ///< by huber_entry(), else by squares; not for free motions
 };
 
 /// Rows of a record that a law is compared with, at most.
@@ -72,6 +74,7 @@ struct ComparedRow {
   double measured = 0.0;  ///< the quantity that is compared
   double t = 0.0;         ///< s from the first row
   double x = 0.0;         ///< m from the first row
+  double weight = 1.0;    ///< factor on the difference: root of the weight over the mean of the compared rows
 };
 
 /// Instant at which a resting body begins to slide: the force there, on the line through the rows before it.
@@ -96,6 +99,7 @@ struct PreparedRecord {
   std::vector<MotionPiece> pieces;           ///< empty for steady velocities
   std::vector<ComparedRow> compared;         ///< in the order of the rows
   std::vector<BreakAwayEvent> break_aways;
+  bool huber = false;                   ///< rows count by huber_entry(), else by squares
   double largest_force = 0.0;           ///< |F| of the compared rows, N; of a free motion an estimate
   double displacement = 0.0;            ///< largest |x - x(0)|, m; 0 for steady velocities
   double duration = 0.0;                ///< s; 0 for steady velocities
@@ -116,6 +120,12 @@ PreparedRecord prepare(const FrictionRecord& record, bool rest_tells_nothing);
 /// What all kinds in time need: std::invalid_argument with a sentence for fewer than ten of `rows` rows, columns of
 /// another length, time that does not rise, or a velocity that contradicts the position.
 void check_in_time(const FrictionRecord& record, std::size_t rows);
+/// Gives the compared rows the weights of the record.
+void weigh_rows(const FrictionRecord& record, std::vector<ComparedRow>& rows);
+/// True for a row whose weight is 0, which is not compared.
+inline bool is_weightless(const FrictionRecord& record, std::size_t row) {
+  return !record.weight.empty() && record.weight[row] == 0.0;
+}
 [[noreturn]] void refuse_record(const FrictionRecord& record, const std::string& why);
 
 }  // namespace limcycle

@@ -497,7 +497,8 @@ TEST_CASE("a sampled body that winds up on its bristles for longer than can be f
   CHECK(found.steps < options.max_readings / 4);
 }
 
-TEST_CASE("sampled relay on an integrator: where it swings is decided by the start, and all such cycles are one family") {
+TEST_CASE(
+    "sampled relay on an integrator: where it swings is decided by the start, and all such cycles are one family") {
   // y moves by 0.1 a sample: what is left of y(0) over that is kept for ever, and the relay turns at each sample.
   Relay<double> relay;
   relay.level = 1.0;

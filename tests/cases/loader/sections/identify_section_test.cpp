@@ -32,7 +32,7 @@ TEST_CASE("identify section: columns, scales and choices are read") {
   const Case from = read_case(
       "[identify]\nlaw = [\"lugre\", \"gms\"]\nfree = [\"delta\"]\nfixed = {sigma2 = 0.0}\nelements = 3\n"
       "[[identify.record]]\nkind = \"pre-sliding\"\nfile = \"a.csv\"\ntime = 1\nposition = \"x\"\nforce = 4\n"
-      "scale = {position = 1e-3}\nskip = 0.5\nforce_limit = 9\n",
+      "scale = {position = 1e-3}\nskip = 0.5\nforce_limit = 9\nweight = \"w\"\nloss = \"huber\"\n",
       "a.toml");
   const auto& section = *from.identify;
   CHECK(section.laws.size() == 2);
@@ -46,6 +46,8 @@ TEST_CASE("identify section: columns, scales and choices are read") {
   CHECK(record.scale[1] == 1e-3);
   CHECK(record.skip == 0.5);
   CHECK(record.force_limit == 9.0);
+  CHECK(std::get<std::string>(*record.weight) == "w");
+  CHECK(record.huber);
   // A key of one law only.
   CHECK(
       read_case("[identify]\nfree = [\"vd\"]\nfixed = {sigma1 = 3.0}\n" + one_record, "a.toml").identify->laws.size() ==
@@ -91,6 +93,10 @@ TEST_CASE("identify section: what is wrong is said") {
   CHECK_THAT(with_record("kind = \"free\"\nfile = \"a.csv\"\nforce_limit = 2.0\n"),
              Contains("record[0].force_limit") && Contains("does not measure"));
   CHECK_THAT(with_record("kind = \"free\"\nfile = \"a.csv\"\nhold = \"first-order\"\n"), Contains("zero-order"));
+  CHECK_THAT(with_record("kind = \"free\"\nfile = \"a.csv\"\nloss = \"huber\"\n"),
+             Contains("record[0].loss") && Contains("fitted by squares"));
+  CHECK_THAT(with_record("kind = \"lag\"\nfile = \"a.csv\"\nloss = \"hubert\"\n"), Contains("did you mean \"huber\"?"));
+  CHECK_THAT(with_record("kind = \"lag\"\nfile = \"a.csv\"\nweight = 0\n"), Contains("weight"));
   CHECK_THAT(with_record("kind = \"lag\"\nfile = \"a.csv\"\nhold = \"linear\"\n"), Contains("record[0].hold"));
   CHECK_THAT(with_record("kind = \"leg\"\nfile = \"a.csv\"\n"), Contains("did you mean"));
   CHECK_THAT(with_record("kind = \"lag\"\n"), Contains("file"));
