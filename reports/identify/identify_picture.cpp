@@ -85,9 +85,12 @@ RecordFrame frame_of(const PanelCurve& curve, double left, double up) {
 /// The differences that the law leaves, on the axis of the panel above: what they show beyond noise, it misses.
 std::string residual_strip(const PanelCurve& curve, const RecordFrame& frame, std::string_view unit) {
   const double up = frame.up + record_height + strip_gap;
+  constexpr double room = 1.1;
   double most = 0.0;
   for (std::size_t i = 0; i < curve.x.size(); ++i) most = std::max(most, std::abs(curve.measured[i] - curve.fitted[i]));
-  const auto height_of = [&](double left) { return up + strip_height - place(left, 0.0, strip_height, -most, most); };
+  const auto height_of = [&](double left) {
+    return up + strip_height - place(left, 0.0, strip_height, -room * most, room * most);
+  };
   std::string out =
       fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", frame.left,
                   up, record_width, strip_height);

@@ -119,9 +119,7 @@ void add_records(const Misfit& misfit, const Eigen::VectorXd& u, IdentifiedLaw& 
     // Below the error of the simulation nothing is noise.
     if (!record.motion || errors[r] > 0.5 * misfit.noise()[r]) result.whiteness = whiteness(left);
     const double n = static_cast<double>(record.compared.size()), noise = misfit.noise()[r];
-    const double squares = record.huber ? entries.segment(misfit.first_of(r), std::ssize(record.compared)).squaredNorm()
-                                        : n * std::pow(errors[r] / noise, 2);
-    into.bic += n * (2.0 * std::log(noise) - 1.0) + squares;
+    into.bic += n * (2.0 * std::log(noise) + std::pow(errors[r] / noise, 2) - 1.0);
     rows += n;
     into.records.push_back(std::move(result));
   }

@@ -88,8 +88,8 @@ struct IdentifyReport {
 /// are not fitted, with a note.
 ///
 /// Rows may have weights, each 1 over its variance as far as that differs within a record. With Huber's loss
-/// (huber_loss.hpp) rows far off pull no harder than those 1.345 deviations off; the intervals are then those of that
-/// estimate.
+/// (huber_loss.hpp) rows far off pull no harder than those 1.345 deviations off; the intervals are those of that
+/// estimate, and the mean square of the BIC is that of the deviation by the median.
 ///
 /// Free motions are simulated under each law, and the errors are those of position and velocity. Each is first fitted
 /// in several runs, then in one; all laws keep to several if no law leaves less than 1.3 times the error in one. Throws

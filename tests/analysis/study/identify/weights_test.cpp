@@ -150,6 +150,25 @@ TEST_CASE("Huber's loss: outliers move least squares far beyond its interval, an
   CHECK(inside >= 0.9 * all);
 }
 
+TEST_CASE(
+    "Huber's loss: the law that the rows have is chosen, and its BIC is the least, however far the outliers are") {
+  FrictionRecord record;
+  record.name = "curve";
+  RandomStream random(4, "curve");
+  for (int i = 0; i < 160; ++i) {
+    const double sign = i < 80 ? -1.0 : 1.0, v = sign * std::pow(10.0, -4.0 + 3.0 * (i % 80) / 80.0);
+    const double level = 2.0 + 1.2 * std::exp(-std::pow(v / 3e-3, 2)) + (i % 11 == 5 ? 1.5 : 0.0);
+    record.v.push_back(v);
+    record.F.push_back(sign * level + 4.0 * v + 0.03 * standard_normal(random));
+  }
+  record.huber = true;
+  const IdentifyReport report = identify({{kind_named("coulomb"), kind_named("stribeck")}, {record}, {}});
+  CHECK(report.chosen == 1U);
+  CHECK(report.laws[1].bic < report.laws[0].bic - 100.0);
+  for (const auto& [name, truth] : {std::pair("Fc", 2.0), std::pair("Fs", 3.2), std::pair("vs", 3e-3)})
+    CHECK(number_named(report.laws[1], name).value == Approx(truth).epsilon(0.05));
+}
+
 TEST_CASE("Huber's loss: the same law in other units of force, and refused for free motions") {
   FrictionRecord record = with_outliers(noisy_line(3, 80, [](int) { return 0.03; }));
   record.huber = true;
