@@ -9,8 +9,6 @@
 namespace limcycle {
 namespace {
 
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 /// A plant that is known by measured data, and the fit that stands for it in time.
 Json measured_json(const MeasuredPlantAt& plant) {
   const FrequencyData& data = plant.response->data();

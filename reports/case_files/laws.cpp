@@ -28,13 +28,9 @@ std::string shortened(const std::string& text, std::size_t width) {
   return text.substr(0, space) + "...";
 }
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 Json parameter_json(const ParameterEntry& parameter) {
   Json value = text_or_null(parameter.default_name);
-  if (parameter.default_value) value = number_or_null(*parameter.default_value);
+  if (parameter.default_value) value = number(*parameter.default_value);
   return {{"key", parameter.key},
           {"unit", parameter.unit},
           {"type", parameter.type},
@@ -42,8 +38,8 @@ Json parameter_json(const ParameterEntry& parameter) {
           {"default", value},
           {"default_from", text_or_null(parameter.default_from)},
           {"range",
-           {{"low", number_or_null(parameter.range.low)},
-            {"high", number_or_null(parameter.range.high)},
+           {{"low", number(parameter.range.low)},
+            {"high", number(parameter.range.high)},
             {"low_open", parameter.range.low_open},
             {"high_open", parameter.range.high_open}}},
           {"choices", parameter.choices},
@@ -82,7 +78,7 @@ Json features_json(const CatalogueEntry& entry) {
           {"evidence", text_or_null(std::string(features.evidence))}};
 }
 
-Json number_or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
+Json number(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
 
 }  // namespace
 
@@ -167,9 +163,9 @@ std::string laws_json(const Provenance& provenance, const std::vector<CatalogueE
     for (const auto& parameter : entry.parameters) parameters.push_back(parameter_json(parameter));
     laws.push_back({{"group", entry.group},
                     {"kind", entry.kind},
-                    {"states", number_or_null(entry.states)},
-                    {"most_states", number_or_null(entry.most_states)},
-                    {"states_per_entry", number_or_null(entry.states_per_entry)},
+                    {"states", number(entry.states)},
+                    {"most_states", number(entry.most_states)},
+                    {"states_per_entry", number(entry.states_per_entry)},
                     {"states_beside", entry.states_per_entry ? Json(entry.states_beside) : Json(nullptr)},
                     {"equation", entry.equation},
                     {"source", text_or_null(entry.source)},

@@ -34,6 +34,8 @@ inline Json rounded(double value) {
 /// directions) are written as equivalent escapes.
 std::string json_text(const Json& document);
 
+inline Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
 template <class T>
 Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);

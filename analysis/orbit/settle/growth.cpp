@@ -1,6 +1,7 @@
 #include "limcycle/analysis/orbit/settle/growth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "limcycle/analysis/golden_maximum.hpp"
@@ -105,13 +106,13 @@ std::optional<Growth> growth_from(const Loop& loop, const LoopState& far, double
 bool grows_from_afar(const Loop& loop, const LoopState& here, double swing, double rtol, long most_steps,
                      const std::function<bool()>& stop) {
   constexpr double farther = 30.0, still_far = 0.2;
-  for (const double factor : {farther, farther * farther, farther * farther * farther}) {
+  const std::array factors{farther, farther * farther, farther * farther * farther};
+  return std::ranges::all_of(factors, [&](double factor) {
     const auto growth = growth_from(loop, scaled(loop, here, factor), swing, rtol, most_steps, stop);
     // The farther out, the less the growth of a power is in a few swings; what bounds it is the stronger there.
     const double least = factor == farther ? 1.0 + 100.0 * rtol : 1.0 - 100.0 * rtol;
-    if (!growth || growth->factor <= least || growth->distance < still_far * factor) return false;
-  }
-  return true;
+    return growth && growth->factor > least && growth->distance >= still_far * factor;
+  });
 }
 
 }  // namespace limcycle

@@ -12,7 +12,7 @@ namespace {
 
 /// A velocity to which the law is not tuned: pieces of constant acceleration between speeds of all sizes, with
 /// occasional standstills.
-struct Motion {
+struct ShownMotion {
   Signal acceleration;
   double duration = 0.0;
 
@@ -27,7 +27,7 @@ struct Motion {
   }
 };
 
-Motion random_motion(RandomShares& random, const LawSetting& law, int pieces) {
+ShownMotion random_motion(RandomShares& random, const LawSetting& law, int pieces) {
   std::vector<double> times{0.0}, values;
   double v = 0.0;
   for (int i = 0; i < pieces; ++i) {
@@ -59,7 +59,7 @@ void over_laws(const ClaimOptions& options, int laws, ClaimChecks& checks, const
 
 /// Largest difference of the force between two steppers with different tolerances, at the instants where both end
 /// steps.
-void two_steppers(const Element& law, const Motion& motion, const std::string& where, double Fs,
+void two_steppers(const Element& law, const ShownMotion& motion, const std::string& where, double Fs,
                   const ClaimOptions& options, ClaimChecks& checks) {
   ForcedOptions how;
   how.duration = motion.duration;
@@ -101,7 +101,7 @@ ClaimResult uniqueness(const ClaimOptions& options) {
   ClaimChecks checks;
   over_laws(options, options.random_points, checks,
             [&](const LawSetting& setting, const std::string& where, RandomShares& random) {
-              const Motion motion = random_motion(random, setting, 12);
+              const ShownMotion motion = random_motion(random, setting, 12);
               two_steppers(make_law(setting), motion, where, setting.number("Fs"), options, checks);
               do_not_part(setting, where, random, checks);
             });
@@ -112,7 +112,7 @@ ClaimResult boundedness(const ClaimOptions& options) {
   ClaimChecks checks;
   over_laws(options, options.random_points, checks,
             [&](const LawSetting& setting, const std::string& where, auto& random) {
-              Motion motion = random_motion(random, setting, 25);
+              ShownMotion motion = random_motion(random, setting, 25);
               // After a rest, in which the level has returned to Fs, a jerk to a speed far beyond vs.
               auto& t = motion.acceleration.times;
               auto& u = motion.acceleration.values;
