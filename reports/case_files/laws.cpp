@@ -78,8 +78,6 @@ Json features_json(const CatalogueEntry& entry) {
           {"evidence", text_or_null(std::string(features.evidence))}};
 }
 
-Json number(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
-
 }  // namespace
 
 std::string states_text(const CatalogueEntry& entry) {
@@ -163,9 +161,9 @@ std::string laws_json(const Provenance& provenance, const std::vector<CatalogueE
     for (const auto& parameter : entry.parameters) parameters.push_back(parameter_json(parameter));
     laws.push_back({{"group", entry.group},
                     {"kind", entry.kind},
-                    {"states", number(entry.states)},
-                    {"most_states", number(entry.most_states)},
-                    {"states_per_entry", number(entry.states_per_entry)},
+                    {"states", or_null(entry.states)},
+                    {"most_states", or_null(entry.most_states)},
+                    {"states_per_entry", or_null(entry.states_per_entry)},
                     {"states_beside", entry.states_per_entry ? Json(entry.states_beside) : Json(nullptr)},
                     {"equation", entry.equation},
                     {"source", text_or_null(entry.source)},
