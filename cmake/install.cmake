@@ -35,7 +35,7 @@ install(FILES ${PROJECT_BINARY_DIR}/package/limcycle.pc DESTINATION ${CMAKE_INST
 set(entries models/friction/own_law.hpp models/diagram/assemble.hpp analysis/frequency/describing_function/df_table.hpp
   analysis/frequency/composite/composite_describing_function.hpp
   analysis/frequency/harmonic_balance/harmonic_balance.hpp analysis/orbit/simulate/ensemble.hpp analysis/orbit/cycle/floquet.hpp
-  analysis/study/dissipativity.hpp analysis/study/continuation/continue_cycles.hpp analysis/study/precision/precision.hpp analysis/study/adequacy/adequate.hpp)
+  analysis/study/dissipativity.hpp analysis/study/continuation/follow.hpp analysis/study/precision/precision.hpp analysis/study/adequacy/adequate.hpp)
 set(headers ${CMAKE_INSTALL_INCLUDEDIR}/limcycle)
 install(CODE "set(source [[${PROJECT_SOURCE_DIR}]])
 set(entries [[${entries}]])

@@ -6,16 +6,15 @@
 
 namespace limcycle {
 
-ContinueCyclesReport ask_continue(const Case& from, const CaseNumber& number, double low, double high,
-                                  const Asking& asking) {
-  ContinueCyclesOptions options;
+FollowReport ask_continue(const Case& from, const CaseNumber& number, double low, double high, const Asking& asking) {
+  FollowOptions options;
   options.continuation.from = low;
   options.continuation.to = high;
   options.predict = from.predict;
   options.predict.stop = asking.stop;
   options.predict.progress = asking.progress;
   if (std::isfinite(number.value)) options.own = number.value;
-  return continue_cycles(LoopVariation(from, "parameter", number.path), options);
+  return follow(LoopVariation(from, "parameter", number.path), options);
 }
 
 }  // namespace limcycle

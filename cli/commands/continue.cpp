@@ -21,7 +21,7 @@ struct ContinueFlags : CommonFlags {
   std::string picture;    ///< --svg
 };
 
-int exit_code(const ContinueCyclesReport& found) {
+int exit_code(const FollowReport& found) {
   const bool answered = found.status == Status::converged || found.status == Status::no_cycle;
   return found.status == Status::interrupted || (found.branches.empty() && !answered) ? exit_no_answer : exit_done;
 }

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "limcycle/analysis/study/continuation/continue_cycles.hpp"
+#include "limcycle/analysis/study/continuation/follow.hpp"
 #include "limcycle/reports/format/document.hpp"
 #include "limcycle/reports/format/table.hpp"
 #include "limcycle/reports/provenance.hpp"
@@ -13,7 +13,7 @@ namespace limcycle {
 struct ContinueReport {
   std::string path;  ///< "loop.controller.kd"
   std::string unit;  ///< of the parameter; empty or "1": none
-  ContinueCyclesReport found;
+  FollowReport found;
 };
 
 /// The answer in words: the ranges in which cycles exist, and their ends.

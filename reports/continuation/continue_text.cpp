@@ -90,7 +90,7 @@ Table event_table(const ContinueReport& report, const Units& units) {
 }
 
 std::string continue_answer(const ContinueReport& report, const Units&) {
-  const ContinueCyclesReport& found = report.found;
+  const FollowReport& found = report.found;
   const std::string range = fmt::format("{} from {} to {}", report.path, with_digits(found.from, 4),
                                         Units::attach(with_digits(found.to, 4), unit_of(report)));
   std::string out;

@@ -8,7 +8,7 @@
 #include "limcycle/analysis/orbit/cycle/shooting.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/orbit/simulate/simulate.hpp"
-#include "limcycle/analysis/study/continuation/continue_cycles.hpp"
+#include "limcycle/analysis/study/continuation/follow.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/dual.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
@@ -278,14 +278,14 @@ TEST_CASE("an own law that claims no symmetry has the same cycle, over the whole
 }
 
 TEST_CASE("a branch of cycles with an own law: followed as with the library's, differences labelled") {
-  ContinueCyclesOptions options;
+  FollowOptions options;
   options.continuation.from = 6.0;
   options.continuation.to = 7.0;
   options.own = 6.0;
   options.predict.starts = 1;
   options.predict.methods = {.describing_function = false, .composite = false, .harmonic_balance = false};
   const auto over_kd = [&](const Element& law) {
-    return continue_cycles(
+    return follow(
         [&](double kd) -> std::optional<Loop> {
           LoopParts parts = servo_parts(law);
           std::get<Pid>(parts.controller).kd = kd;

@@ -1,4 +1,4 @@
-#include "limcycle/analysis/study/continuation/continue_cycles.hpp"
+#include "limcycle/analysis/study/continuation/follow.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 class Following {
  public:
-  Following(const LoopFamily& family, const ContinueCyclesOptions& options)
+  Following(const LoopFamily& family, const FollowOptions& options)
       : family_(family), options_(options), scale_(options.continuation.from, options.continuation.to) {
     report_.from = options.continuation.from;
     report_.to = options.continuation.to;
@@ -22,7 +22,7 @@ class Following {
     if (s >= 0.0 && s <= ParameterScale::length) report_.start = *options.own;
   }
 
-  ContinueCyclesReport run() {
+  FollowReport run() {
     if (const auto loop = family_(report_.start)) report_.notes = derivative_notes(*loop);
     auto cycles = cycles_at(report_.start);
     if (cycles.empty() && !stopped()) cycles = look_elsewhere();
@@ -106,16 +106,14 @@ class Following {
   }
 
   const LoopFamily& family_;
-  const ContinueCyclesOptions& options_;
+  const FollowOptions& options_;
   ParameterScale scale_;
-  ContinueCyclesReport report_;
+  FollowReport report_;
 };
 
 }  // namespace
 
-ContinueCyclesReport continue_cycles(const LoopFamily& family, const ContinueCyclesOptions& options) {
-  return Following(family, options).run();
-}
+FollowReport follow(const LoopFamily& family, const FollowOptions& options) { return Following(family, options).run(); }
 
 bool passes(const Branch& branch, double parameter, const Cycle& cycle) {
   // Logarithms are interpolated linearly between two points; the error is a share of their difference.

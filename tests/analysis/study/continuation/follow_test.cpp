@@ -1,4 +1,4 @@
-#include "limcycle/analysis/study/continuation/continue_cycles.hpp"
+#include "limcycle/analysis/study/continuation/follow.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -11,8 +11,8 @@ namespace {
 
 std::optional<Loop> dead_zone_relay(double d) { return forward(relay(1.0, 0.0, d), {1.0}, {1.0, 3.0, 3.0, 1.0}); }
 
-ContinueCyclesOptions options(double from, double to, std::optional<double> own) {
-  ContinueCyclesOptions result;
+FollowOptions options(double from, double to, std::optional<double> own) {
+  FollowOptions result;
   result.continuation.from = from;
   result.continuation.to = to;
   result.own = own;
@@ -22,7 +22,7 @@ ContinueCyclesOptions options(double from, double to, std::optional<double> own)
 }  // namespace
 
 TEST_CASE("follow: both cycles at the start lie on one branch, which is followed once") {
-  const auto report = continue_cycles(dead_zone_relay, options(0.02, 0.2, 0.05));
+  const auto report = follow(dead_zone_relay, options(0.02, 0.2, 0.05));
   CHECK(report.status == Status::converged);
   CHECK(report.start == 0.05);
   REQUIRE(report.branches.size() == 1);
@@ -30,27 +30,27 @@ TEST_CASE("follow: both cycles at the start lie on one branch, which is followed
 }
 
 TEST_CASE("follow: without a cycle at the start the range is scanned, and it is said") {
-  const auto report = continue_cycles(dead_zone_relay, options(0.01, 0.2, 0.15));
+  const auto report = follow(dead_zone_relay, options(0.01, 0.2, 0.15));
   CHECK(report.status == Status::converged);
   CHECK(report.start < 0.0819);
   REQUIRE(report.branches.size() == 1);
   REQUIRE(report.notes.size() == 1);
   CHECK_THAT(report.notes[0], Catch::Matchers::Contains("no limit cycle was found at 0.15"));
   // An own value outside the range does not count: the range begins with a cycle.
-  CHECK(continue_cycles(dead_zone_relay, options(0.01, 0.05, 7.0)).start == 0.01);
+  CHECK(follow(dead_zone_relay, options(0.01, 0.05, 7.0)).start == 0.01);
 }
 
 TEST_CASE("follow: no cycle anywhere is an answer") {
   auto wanted = options(0.1, 0.2, std::nullopt);
   wanted.scan = 2;
-  const auto report = continue_cycles(dead_zone_relay, wanted);
+  const auto report = follow(dead_zone_relay, wanted);
   CHECK(report.status == Status::no_cycle);
   CHECK(report.branches.empty());
-  CHECK_THROWS_AS(continue_cycles(dead_zone_relay, options(0.1, 0.1, std::nullopt)), std::invalid_argument);
+  CHECK_THROWS_AS(follow(dead_zone_relay, options(0.1, 0.1, std::nullopt)), std::invalid_argument);
 }
 
 TEST_CASE("follow: does a branch pass through a cycle?") {
-  const auto report = continue_cycles(dead_zone_relay, options(0.02, 0.2, 0.05));
+  const auto report = follow(dead_zone_relay, options(0.02, 0.2, 0.05));
   REQUIRE(report.branches.size() == 1);
   const Branch& branch = report.branches[0];
   const BranchPoint& point = branch.points[branch.points.size() / 2];

@@ -9,7 +9,7 @@
 namespace limcycle {
 
 /// Options of follow_cycles().
-struct ContinueCyclesOptions {
+struct FollowOptions {
   ContinuationOptions continuation;  ///< from, to; its stop and progress are set from those of `predict`
   PredictOptions predict;            ///< search for cycles at the start; its search box is for the case's own value
   std::optional<double> own;         ///< the case's own value, if it has one
@@ -17,7 +17,7 @@ struct ContinueCyclesOptions {
 };
 
 /// Every branch of limit cycles that passes through one value of a parameter.
-struct ContinueCyclesReport {
+struct FollowReport {
   double from = 0.0, to = 0.0;
   double start = 0.0;  ///< the value at which the search for cycles was made
   std::vector<Branch> branches;
@@ -29,7 +29,7 @@ struct ContinueCyclesReport {
 /// Finds the limit cycles at the case's own value (or at `from`, if that lies outside the range; or, if there are none,
 /// at the first of `scan` values over the range that has one) by predict(), and follows each of them that is not on a
 /// branch already. Throws std::invalid_argument for a bad range.
-ContinueCyclesReport continue_cycles(const LoopFamily& family, const ContinueCyclesOptions& options);
+FollowReport follow(const LoopFamily& family, const FollowOptions& options);
 
 /// True if the branch passes through this cycle at this value of the parameter (by its points).
 bool passes(const Branch& branch, double parameter, const Cycle& cycle);
