@@ -3,16 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/models/median.hpp"
+
 namespace limcycle {
-namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-}  // namespace
 
 std::vector<std::size_t> gaps_in(const std::vector<double>& frequency) {
   std::vector<double> ratios;

@@ -9,6 +9,7 @@
 #include "limcycle/analysis/study/identify/huber_loss.hpp"
 #include "limcycle/analysis/study/identify/intervals.hpp"
 #include "limcycle/analysis/study/identify/starts.hpp"
+#include "limcycle/models/median.hpp"
 
 namespace limcycle {
 namespace {
@@ -18,9 +19,7 @@ double deviation_by_median(const Eigen::VectorXd& left) {
   constexpr double of_normal = 0.6744897501960817;
   std::vector<double> sizes(static_cast<std::size_t>(left.size()));
   std::ranges::transform(left, sizes.begin(), [](double one) { return std::abs(one); });
-  const auto middle = sizes.begin() + std::ssize(sizes) / 2;
-  std::ranges::nth_element(sizes, middle);
-  return *middle / of_normal;
+  return median(std::move(sizes)) / of_normal;
 }
 
 /// Root mean square of the entries of each record, in the unit of what was measured; by the median for Huber's loss.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/short_number.hpp"
+#include "limcycle/models/median.hpp"
 
 namespace limcycle {
 
@@ -161,12 +162,6 @@ BreakAwayEvent extrapolated(const FrictionRecord& record, std::size_t last, std:
   }
   const double ahead = record.t[last] - mt;
   return {mF + tF / tt * ahead, forward, 1.0 / std::sqrt(1.0 / n + ahead * ahead / tt)};
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// Speed that a body at rest is measured to have at most: five standard deviations of the noise of the velocity, which
