@@ -42,17 +42,28 @@ struct SampledSizes {
   }
 };
 
-/// Which entries of X belong to the plant and what follows it, and which, with their names, to controllers.
+/// Which states of Loop::continuous belong to the plant and what follows it, and which, with their names, to
+/// controllers.
 struct Shares {
-  State plant;
-  std::vector<std::pair<std::string, double>> controllers;
+  std::vector<std::size_t> plant;
+  std::vector<std::pair<std::string, std::size_t>> controllers;
 
-  /// The next `count` values of the controller at a path, which they leave: of a diagram those whose names begin with
+  explicit Shares(const Loop& loop) {
+    for (std::size_t i = 0; i < loop.continuous->state_names.size(); ++i) {
+      const std::string& name = loop.continuous->state_names[i];
+      if (std::ranges::find(loop.state_names, name) != loop.state_names.end())
+        plant.push_back(i);
+      else
+        controllers.emplace_back(name, i);
+    }
+  }
+
+  /// The next `count` states of the controller at a path, which they leave: of a diagram those whose names begin with
   /// that of the block.
-  State take(const std::string& path, std::size_t count) {
+  std::vector<std::size_t> take(const std::string& path, std::size_t count) {
     constexpr std::string_view diagram = "diagram.";
     const std::string block = path.starts_with(diagram) ? path.substr(diagram.size()) + "." : "";
-    State some;
+    std::vector<std::size_t> some;
     std::erase_if(controllers, [&](const auto& one) {
       const bool own = some.size() < count && one.first.starts_with(block);
       if (own) some.push_back(one.second);
@@ -61,18 +72,12 @@ struct Shares {
     return some;
   }
 };
+
 template <class Values>
-Shares shares_of(const Loop& loop, const Values& X) {
-  Shares shares;
-  for (std::size_t i = 0; i < loop.continuous->state_names.size(); ++i) {
-    const std::string& name = loop.continuous->state_names[i];
-    const double value = X[static_cast<decltype(X.size())>(i)];
-    if (std::ranges::find(loop.state_names, name) != loop.state_names.end())
-      shares.plant.push_back(value);
-    else
-      shares.controllers.emplace_back(name, value);
-  }
-  return shares;
+State those(const std::vector<std::size_t>& places, const Values& X) {
+  State some;
+  for (const std::size_t i : places) some.push_back(X[static_cast<decltype(X.size())>(i)]);
+  return some;
 }
 
 /// The sizes of the linear states, and behind them those of what approximates a dead time: the state of each delayed
@@ -107,8 +112,8 @@ double repetition_time(const Loop& loop) {
 }
 
 State sampled_sizes(const Loop& loop, const State& continuous) {
-  Shares shares = shares_of(loop, continuous);
-  State result = with_delayed_sizes(loop, shares.plant);
+  Shares shares(loop);
+  State result = with_delayed_sizes(loop, those(shares.plant, continuous));
   const Eigen::VectorXd X = Eigen::Map<const Eigen::VectorXd>(result.data(), loop.states());
   Eigen::VectorXd outputs = Eigen::VectorXd::Zero(std::ssize(loop.elements));
   for (std::size_t k = 0; k < loop.elements.size(); ++k) {
@@ -120,7 +125,7 @@ State sampled_sizes(const Loop& loop, const State& continuous) {
     output = sizes.input;
     const auto* sampled = sampled_at(loop, k);
     if (sampled) {
-      sizes.states = shares.take(port.path, states_of_controller(*sampled));
+      sizes.states = those(shares.take(port.path, states_of_controller(*sampled)), continuous);
       output = sizes.output(loop, k);
     }
     for (int i = 0; i < element.states(); ++i) {
@@ -137,8 +142,9 @@ State sampled_sizes(const Loop& loop, const State& continuous) {
 }
 
 LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X) {
-  Shares shares = shares_of(loop, X);
-  const Eigen::Map<const Eigen::VectorXd> plant(shares.plant.data(), std::ssize(shares.plant));
+  Shares shares(loop);
+  const State of_plant = those(shares.plant, X);
+  const Eigen::Map<const Eigen::VectorXd> plant(of_plant.data(), std::ssize(of_plant));
   LoopState state = without_history(loop, with_constant_history(loop, plant));
   LoopField field(loop);
   field.modes() = state.modes;
@@ -154,11 +160,26 @@ LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X) {
     if (sampled) {
       const auto own = z.subspan(Sampled<double>::first_own, static_cast<std::size_t>(sampled->order()));
       std::ranges::fill(own, sampled->reading(field.input(k).x));
-      std::ranges::copy(shares.take(loop.ports[k].path, states_of_controller(*sampled)), own.begin());
+      std::ranges::copy(those(shares.take(loop.ports[k].path, states_of_controller(*sampled)), X), own.begin());
     }
     field.modes()[k] = state.modes[k] = element.start(field.input(k), z);
   }
   return state;
+}
+
+Eigen::VectorXd continuous_state(const Loop& loop, const LoopState& here) {
+  Shares shares(loop);
+  const LoopField field(loop);
+  Eigen::VectorXd X = Eigen::VectorXd::Zero(loop.continuous->states());
+  const auto put = [&](const std::vector<std::size_t>& places, std::size_t first) {
+    for (std::size_t i = 0; i < places.size(); ++i) X(static_cast<Eigen::Index>(places[i])) = here.x[first + i];
+  };
+  put(shares.plant, 0);
+  for (std::size_t k = 0; k < loop.elements.size(); ++k)
+    if (const auto* sampled = sampled_at(loop, k))
+      put(shares.take(loop.ports[k].path, states_of_controller(*sampled)),
+          field.first_state(k) + Sampled<double>::first_own);
+  return X;
 }
 
 }  // namespace limcycle

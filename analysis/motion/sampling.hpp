@@ -26,4 +26,7 @@ State sampled_sizes(const Loop& loop, const State& continuous);
 /// them for a while; the controller reads its input now, other elements are without history.
 LoopState sampled_state(const Loop& loop, const Eigen::VectorXd& X);
 
+/// The states of Loop::continuous at which its plant and its controller have those of the loop.
+Eigen::VectorXd continuous_state(const Loop& loop, const LoopState& here);
+
 }  // namespace limcycle

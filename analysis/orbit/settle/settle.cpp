@@ -15,6 +15,7 @@
 #include "limcycle/analysis/orbit/settle/irregular.hpp"
 #include "limcycle/analysis/orbit/settle/to_cycle/cycle_tries.hpp"
 #include "limcycle/analysis/orbit/settle/to_cycle/locked_cycle.hpp"
+#include "limcycle/analysis/orbit/settle/wait_on_bristles.hpp"
 #include "limcycle/analysis/orbit/settle/watch/swings.hpp"
 #include "limcycle/analysis/orbit/settle/watch/switching_watch.hpp"
 #include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"
@@ -68,7 +69,7 @@ class Settling {
  private:
   void decide(Outcome outcome, std::string why) {
     result_.outcome = outcome;
-    result_.why = std::move(why);
+    result_.why = std::move(why) + waited_;
     decided_ = true;
   }
 
@@ -137,17 +138,29 @@ class Settling {
   void read() {
     ++readings_;
     if (auto still = stillness_.read(march_.t(), march_.x(), field_)) return come_to(*still);
-    if (const auto forecast = wind_up_.read(march_.t(), field_)) {
-      const double horizon = march_.t() * static_cast<double>(options_.max_readings) / static_cast<double>(readings_);
-      if (forecast->half > horizon)
-        return decide(Outcome::undecided, "held while the controller winds up, at a rate that takes about " +
-                                              short_number(forecast->whole, 2) +
-                                              " s to break it away: more samples than are followed");
-    }
+    if (const auto end = wind_up_.read(march_.t(), field_); end && *end > 2.0 * march_.t() && wait()) return;
     if (readings_ <= options_.max_readings) return;
     look_for_irregular();
     if (!decided_)
       decide(Outcome::undecided, "undecided after " + std::to_string(options_.max_readings) + " clock switches");
+  }
+
+  /// True if a long wait on bristles was followed without its samples.
+  bool wait() {
+    const auto waited = wait_on_bristles(loop_, {march_.x(), field_.modes()}, wind_up_.rubs(), options_.rtol,
+                                         options_.max_steps, options_.stop);
+    if (!waited) return false;
+    tried_ += waited->steps;
+    const std::string with = " with the continuous controller";
+    if (waited->still) {
+      decide(waited->still->outcome, "held while the controller winds up, and " + waited->still->why + with);
+      return true;
+    }
+    waited_ = ", after a wait of " + short_number(waited->time, 2) + " s that was followed" + with;
+    field_.modes() = waited->resume->modes;
+    march_.begin(waited->resume->x, march_.t() + waited->time);
+    note();
+    return true;
   }
 
   /// Readings of a sampled controller in that time.
@@ -395,12 +408,13 @@ class Settling {
   std::size_t large_turns_ = 0;
   std::size_t next_growth_ = 64, next_lock_ = 24;
   std::size_t next_irregular_ = 128;  ///< turns, and samples, of a sampled loop: see time_for_irregular()
-  long next_readings_ = 1'000'000;
+  long next_readings_ = 100'000;
   std::size_t next_known_ = 16;         ///< turns at which it is compared with the permanent motions of other starts
   long tried_ = 0;                      ///< steps of drifts that could not be followed
   long leapt_ = 0, steps_at_leap_ = 0;  ///< steps of return maps that made leaps, and of the march at the last
   long readings_ = 0;
   int restarts_ = 0;
+  std::string waited_;  ///< clause about a wait without samples
   bool decided_ = false;
 };
 

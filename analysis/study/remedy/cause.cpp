@@ -106,6 +106,7 @@ class CauseStudy {
                        "The controller reads, or commands, in steps: with exact numbers " + calm() + ".");
       return decided(CauseKind::delay, "The loop reacts too late: without dead time and sampling " + calm() + ".");
     }
+    leave_samples();
     const bool integral = ends(no_integral, without_integral_action(parts_));
     const std::string level = friction_is_measured(parts_) ? "with a friction curve that is level at its least force"
                                                            : "with Fs lowered to Fc";
@@ -141,7 +142,17 @@ class CauseStudy {
   Cause decided(CauseKind kind, std::string why) {
     cause_.kind = kind;
     cause_.why = std::move(why);
+    if (left_samples_)
+      cause_.why += " (Without dead time and sampling the loop hunts as well; the other changes were tried there.)";
     return std::move(cause_);
+  }
+
+  /// A loop that hunts without its samples too does so for a reason that shows there, where it is judged a hundred
+  /// times as fast.
+  void leave_samples() {
+    if (cause_.tests.empty() || cause_.tests.back().hunts != Hunts::yes || !build_loop(parts_).sampled) return;
+    parts_ = *without_delay(parts_);
+    left_samples_ = true;
   }
 
   bool ends(const std::string& without, const std::optional<LoopParts>& parts, bool limits_are_far = false) {
@@ -201,10 +212,11 @@ class CauseStudy {
     return range->for_ever ? ", 99 % of the fall below " + speed : " up to " + speed;
   }
 
-  const LoopParts& parts_;
+  LoopParts parts_;
   Judging judging_;  ///< that ends with the first start that does not come to rest
   const std::vector<Cycle>& cycles_;
   Cause cause_;
+  bool left_samples_ = false;
   bool neutral_ = false;  ///< in one of the tests nothing fed or damped the swings
 };
 

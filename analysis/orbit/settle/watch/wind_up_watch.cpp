@@ -11,7 +11,7 @@ WindUpWatch::WindUpWatch(const Loop& loop) {
   if (rubs_) size_ = loop.elements[*rubs_].scales().output;
 }
 
-std::optional<WindUpWatch::Forecast> WindUpWatch::read(double t, const LoopField& field) {
+std::optional<double> WindUpWatch::read(double t, const LoopField& field) {
   if (!rubs_ || ++readings_ % window != 0) return std::nullopt;
   constexpr double steady = 0.01;
   const double force = field.output(*rubs_);
@@ -22,8 +22,7 @@ std::optional<WindUpWatch::Forecast> WindUpWatch::read(double t, const LoopField
   const auto last_rate = std::exchange(slope_, rate);
   const bool grows = force * rate > 0.0 && std::abs(force) < size_;
   if (!grows || !last_rate || std::abs(rate - *last_rate) > steady * std::abs(rate)) return std::nullopt;
-  const auto reaches = [&](double level) { return t + (level - std::abs(force)) / std::abs(rate); };
-  return Forecast{reaches(0.5 * size_), reaches(size_)};
+  return t + (size_ - std::abs(force)) / std::abs(rate);
 }
 
 }  // namespace limcycle

@@ -12,12 +12,11 @@ class WindUpWatch {
  public:
   explicit WindUpWatch(const Loop& loop);
 
-  /// Times at which the force reaches half of its typical size, and all of it, at the rate that it has, s.
-  struct Forecast {
-    double half, whole;
-  };
-  /// After a switch of a clock; empty unless the body winds up.
-  std::optional<Forecast> read(double t, const LoopField& field);
+  /// After a switch of a clock: the time at which the force reaches its typical size, at the rate that it has, s; empty
+  /// unless the body winds up.
+  std::optional<double> read(double t, const LoopField& field);
+  /// The element on whose bristles the body stays.
+  std::size_t rubs() const { return *rubs_; }
 
  private:
   static constexpr long window = 20'000;
