@@ -14,6 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t loops_kept = 6;  // a corrector step and its differences use three
+constexpr double much_longer = 100.0;  // than its neighbour a return does not last, but one that never comes
 
 std::size_t states_of(const Loop& loop) {
   auto count = static_cast<std::size_t>(loop.states());
@@ -80,6 +81,7 @@ BranchMap::Value BranchMap::at(const VectorXd& u, double s, With with, double rt
   here.map->set_derivative(with == With::derivatives);
   here.map->set_extremes(with != With::nothing);
   here.map->set_trace(with == With::trace);
+  here.map->set_longest(longest_return_);
   value.start = {frame_.chart.lift(frame_.origin.x, u), frame_.origin.modes};
   const long before = here.map->steps();
   value.motion = (*here.map)(value.start);
@@ -87,6 +89,7 @@ BranchMap::Value BranchMap::at(const VectorXd& u, double s, With with, double rt
   ++maps_;
   value.status = value.motion.status;
   if (value.status != Status::converged) return value;
+  longest_return_ = much_longer * value.motion.time;
   value.r = frame_.chart.coordinates(value.motion.state.x, value.start.x);
   value.time = value.motion.time;
   if (with == With::nothing) return value;

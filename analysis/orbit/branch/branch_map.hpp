@@ -95,6 +95,7 @@ class BranchMap {
   std::function<bool()> stop_;
   Frame frame_;
   std::vector<Prepared> recent_;
+  double longest_return_ = infinite;  ///< s, a multiple of the last one
   long maps_ = 0, steps_ = 0;
 };
 

@@ -83,6 +83,7 @@ class ReturnMap {
   void set_derivative(bool derivative) { options_.derivative = derivative; }
   void set_extremes(bool extremes) { options_.extremes = extremes; }
   void set_trace(bool trace) { options_.trace = trace; }
+  void set_longest(double longest) { options_.longest = longest; }
 
  private:
   bool rests(const Step& last) const;

@@ -100,8 +100,8 @@ TEST_CASE("a page's command has the flags that were given, but those that say wh
         "limcycle remedy " + servo +
             " --only gain-kp --only dither --weight noise_gain=1 --samples 3 --set "
             "loop.controller.kd=5.0");
-  CHECK(command_of({"margin", servo, "--parameter", "loop.controller.kp", "--factor", "3"}) ==
-        "limcycle margin " + servo + " --factor 3 --parameter loop.controller.kp");
+  CHECK(command_of({"margin", servo, "--parameter", "loop.friction.Fc", "--factor", "1.5"}) ==
+        "limcycle margin " + servo + " --factor 1.5 --parameter loop.friction.Fc");
   CHECK(command_of({"predict", servo, "--seed", "7", "--quiet"}) == "limcycle predict " + servo + " --seed 7");
   CHECK(command_of({"predict", servo}) == "limcycle predict " + servo);
 }
