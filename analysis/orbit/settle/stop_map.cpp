@@ -1,5 +1,6 @@
 #include "limcycle/analysis/orbit/settle/stop_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "limcycle/analysis/motion/march.hpp"
@@ -18,36 +19,61 @@ constexpr long switches_held = 100;  ///< of a body that has not broken away
 constexpr double broken = 20.0;    ///< in lengths over which a bristle yields: a body that moved so far has broken away
 constexpr double for_ever = 1e15;  ///< s: a body that the controller does not push waits so long
 
-/// The linear states, from the rest point, of a loop that has held its body at y = 1 for long and winds up steadily, at
-/// the moment at which no force acts on the body: A X = X', A X' = 0 with A as far as the body stays at rest, C_v X =
-/// C_v A X = 0 and C_y X = 1, the smallest such X and X' in their typical sizes. Empty if there is none, as without
-/// integral action, or if the loop does not wind up.
-Eigen::VectorXd steady_hold(const Loop& loop) {
-  const Port& port = loop.ports.back();
-  const Eigen::Index n = loop.states();
-  const State typical = typical_sizes(loop);
-  const Eigen::VectorXd sizes = Eigen::Map<const Eigen::VectorXd>(typical.data(), n);
-  const Eigen::MatrixXd A = working_loop(loop);
-  const Eigen::VectorXd push = loop.B.rightCols<1>();
-  const Eigen::RowVectorXd force = port.C_v * A;
-  const Eigen::MatrixXd held = A - push * force / port.C_v.dot(push.transpose());
-  const Eigen::MatrixXd scaled = sizes.cwiseInverse().asDiagonal() * held * sizes.asDiagonal();
+/// The loop with its body held, as far as it is linear.
+struct HeldLoop {
+  const Loop& loop;
+  Eigen::VectorXd sizes;               ///< of the linear states
+  Eigen::MatrixXd scaled;              ///< the matrix of their rates, in these sizes
+  Eigen::RowVectorXd velocity, force;  ///< of the body, and on it
 
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * n + 3, 2 * n);
-  rows.topLeftCorner(n, n) = scaled;
-  rows.topRightCorner(n, n) = -Eigen::MatrixXd::Identity(n, n);
-  rows.block(n, n, n, n) = scaled;
-  rows.bottomLeftCorner(3, n) << loop.C_y, port.C_v, force;
-  rows.bottomLeftCorner(3, n) *= sizes.asDiagonal();
-  Eigen::VectorXd wanted = Eigen::VectorXd::Zero(2 * n + 3);
-  wanted(2 * n) = 1.0;
-  equilibrate(rows, wanted);
-  const Eigen::VectorXd found = least_squares(rows, wanted);
-  if (!found.allFinite() || (rows * found - wanted).norm() > 1e-6 * wanted.norm()) return {};
-  Eigen::VectorXd X = sizes.cwiseProduct(found.head(n));
-  const Eigen::VectorXd rising = sizes.cwiseProduct(found.tail(n));
-  if (std::abs(force.dot(rising.transpose())) <= 1e-9 * force.cwiseAbs().dot(rising.cwiseAbs().transpose())) return {};
-  return X;
+  explicit HeldLoop(const Loop& of) : loop(of) {
+    const State typical = typical_sizes(loop);
+    sizes = Eigen::Map<const Eigen::VectorXd>(typical.data(), loop.states());
+    const Eigen::MatrixXd A = working_loop(loop);
+    const Eigen::VectorXd push = loop.B.rightCols<1>();
+    velocity = loop.ports.back().C_v;
+    force = velocity * A;
+    const Eigen::MatrixXd held = A - push * force / velocity.dot(push.transpose());
+    scaled = sizes.cwiseInverse().asDiagonal() * held * sizes.asDiagonal();
+  }
+
+  /// The states, from the rest point, at which the body has been held at y = 1 for long and all that still moves does
+  /// so with exp(-leak t), at the moment at which no force acts on it: H X = X', H X' = -leak X', C_v X = C_v A X = 0
+  /// and C_y X = 1, the smallest such X and X' in their typical sizes. With leak = 0 the loop winds up steadily. Empty
+  /// if there is none, or if the force stays.
+  Eigen::VectorXd winding_up(double leak) const {
+    const Eigen::Index n = loop.states();
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * n + 3, 2 * n);
+    rows.topLeftCorner(n, n) = scaled;
+    rows.topRightCorner(n, n) = -one;
+    rows.block(n, n, n, n) = scaled + leak * one;
+    rows.bottomLeftCorner(3, n) << loop.C_y, velocity, force;
+    rows.bottomLeftCorner(3, n) *= sizes.asDiagonal();
+    Eigen::VectorXd wanted = Eigen::VectorXd::Zero(2 * n + 3);
+    wanted(2 * n) = 1.0;
+    equilibrate(rows, wanted);
+    const Eigen::VectorXd found = least_squares(rows, wanted);
+    if (!found.allFinite() || (rows * found - wanted).norm() > 1e-6 * wanted.norm()) return {};
+    const Eigen::VectorXd X = sizes.cwiseProduct(found.head(n)), rising = sizes.cwiseProduct(found.tail(n));
+    if (std::abs(force.dot(rising.transpose())) <= 1e-9 * force.cwiseAbs().dot(rising.cwiseAbs().transpose()))
+      return {};
+    return X;
+  }
+};
+
+/// Those states for a loop with integral action, or with one that leaks: then with the slowest of its rates.
+Eigen::VectorXd steady_hold(const Loop& loop) {
+  const HeldLoop held(loop);
+  if (Eigen::VectorXd X = held.winding_up(0.0); X.size() > 0) return X;
+  constexpr double is_real = 1e-9;
+  std::vector<double> leaks;
+  for (const auto& pole : eigenvalues(held.scaled))
+    if (pole.real() < 0.0 && std::abs(pole.imag()) <= is_real * std::abs(pole.real())) leaks.push_back(-pole.real());
+  std::ranges::sort(leaks);
+  for (const double leak : leaks)
+    if (Eigen::VectorXd X = held.winding_up(leak); X.size() > 0) return X;
+  return {};
 }
 
 }  // namespace
@@ -146,6 +172,29 @@ std::optional<double> StopMap::growing_above_jump(double low, double high, doubl
   return std::nullopt;
 }
 
+/// A displacement between one from which the swings grow and one from which the body does not break away, where the
+/// integral has no effect: if there is one, from which they shrink, else the last from which it does. By bisection.
+double StopMap::growing_below_jump(double low, double high) {
+  for (int i = 0; i < refinements; ++i) {
+    const double p = std::sqrt(low * high), now = ratio(p).value_or(0.0);
+    if (now > 0.0 && now <= 1.0) return p;
+    (now > 0.0 ? low : high) = p;
+  }
+  return low;
+}
+
+/// A displacement hardly above the one at which the swings repeat themselves, which lies between one from which they
+/// grow and one from which they shrink: by bisection. Where the next swing is followed by none, the range of attraction
+/// is narrow.
+double StopMap::shrinking_above(double low, double high) {
+  constexpr int halvings = 6;
+  for (int i = 0; i < halvings; ++i) {
+    const double p = std::sqrt(low * high), now = ratio(p).value_or(0.0);
+    (now > 0.0 && now <= 1.0 ? high : low) = p;
+  }
+  return high;
+}
+
 std::vector<double> StopMap::growing(double least, double most) {
   std::vector<double> places, ratios, found;
   for (double p = most; p >= least && !(stop_ && stop_()); p /= between) {
@@ -153,10 +202,12 @@ std::vector<double> StopMap::growing(double least, double most) {
     ratios.push_back(ratio(p).value_or(0.0));
   }
   for (std::size_t i = 1; i < places.size(); ++i) {  // from the largest down
-    if (ratios[i] > 1.0 && ratios[i - 1] > 0.0 && ratios[i - 1] < 1.0) found.push_back(places[i]);
+    if (ratios[i] > 1.0 && ratios[i - 1] > 0.0 && ratios[i - 1] < 1.0)
+      found.insert(found.end(), {places[i], shrinking_above(places[i], places[i - 1])});
+    if (ratios[i] > 1.0 && ratios[i - 1] == 0.0) found.push_back(growing_below_jump(places[i], places[i - 1]));
     if (ratios[i] > 1.0) continue;
     const double rise = i > 1 && ratios[i - 2] > 0.0 && ratios[i - 1] < 1.0 ? ratios[i - 1] - ratios[i - 2] : 0.0;
-    if (rise > 0.0 && ratios[i - 1] + rise > 1.0)
+    if (rise > 0.0 && ratios[i - 1] + 2.0 * rise > 1.0)
       if (const auto p =
               growing_above_jump(places[i], places[i - 1], ratios[i - 1], rise / std::log(between), ratios[i]))
         found.push_back(*p);

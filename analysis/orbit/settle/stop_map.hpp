@@ -16,7 +16,8 @@ namespace limcycle {
 /// PID). One flight takes some tens of steps, so that the map finds ranges of attraction that no few starts fall into.
 class StopMap {
  public:
-  /// Empty if no body sticks, or if the loop with the body held does not wind up until no force is left for it to hold.
+  /// Empty if no body sticks, or if nothing winds up in the loop with the body held, steadily or towards a limit (a
+  /// leak), from where no force acts on it.
   static std::optional<StopMap> of(const Loop& loop, double rtol, std::function<bool()> stop);
   static std::optional<StopMap> of(Loop&& temporary, double rtol, std::function<bool()> stop) = delete;
 
@@ -25,15 +26,17 @@ class StopMap {
   /// |p'|/p, p' the displacement at which the body that breaks away from p next sticks; empty if it does not within
   /// some thousand steps. `p` > 0.
   std::optional<double> ratio(double p);
-  /// Displacements between `least` and `most` from which the swings grow while they shrink from a larger one close by:
-  /// a stable cycle lies just above each. Cost: about ten flights a decade and ten for each maximum close to 1
-  /// and each jump.
+  /// Displacements between `least` and `most` from which the swings grow while they shrink from a larger one close by,
+  /// or do not follow from it at all, and one hardly above the stable cycle that lies between the two. Cost: about ten
+  /// flights a decade and ten for each maximum close to 1 and each jump.
   std::vector<double> growing(double least, double most);
   long steps() const { return steps_; }
 
  private:
   StopMap(const Loop& loop, double rtol, std::function<bool()> stop);
   std::optional<double> growing_between(double low, double high);
+  double growing_below_jump(double low, double high);
+  double shrinking_above(double low, double high);
   std::optional<double> growing_above_jump(double low, double high, double upper, double rise, double lower);
   /// True at the end of a step at which the body that has broken away is held again: a body on bristles where its
   /// velocity changes sign.

@@ -58,17 +58,16 @@ class Margins {
     report_.balance = balance_distance(loop_, box, options_.predict.stop);
   }
 
-  /// Of a loop whose cycles cannot be followed: from where it hunts, or else from the two largest displacements.
+  /// Of a loop whose cycles cannot be followed: by what it does from the displacements of predict.
   void look_at_outcomes(const std::vector<OutcomeOfStart>& outcomes) {
     const auto places =
         start_displacements(output_per_input(loop_in_time(loop_, 0.0).treated.loop), box_, options_.predict.starts);
     const auto moves = [](const OutcomeOfStart& one) { return one.outcome == Outcome::irregular; };
     report_.hunts = report_.hunts || std::ranges::any_of(outcomes, moves);
-    by_outcome_ =
-        OutcomeSide::Starts{{places.begin(), places.begin() + std::min<std::ptrdiff_t>(2, std::ssize(places))}, box_};
+    by_outcome_ = OutcomeSide::Starts{places, box_};
     report_.notes.emplace_back(
         "with a sampled controller cycles cannot be followed over a parameter: each side is found by simulations from "
-        "two displacements, and by bisection of what they show; near an edge that may depend on the start");
+        "the displacements of predict, and by bisection of what they show; near an edge that may depend on the start");
   }
 
   MarginSide side_of(const MarginParameter& parameter, bool up, const std::function<void(double)>& progress) const {

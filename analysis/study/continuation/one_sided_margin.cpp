@@ -111,7 +111,7 @@ MarginSide OneSidedMargin::beyond(const Lost& lost, std::optional<Cycle>& other,
     if (std::abs(std::log(next / parameter_.value)) > std::abs(std::log(limit_ / parameter_.value))) next = limit_;
     const bool first = reach == beyond_lost[0];
     if (!parameter_.family(next)) {
-      if (first) return found(What::ends, lost, lost.why);
+      if (first) return at_validity(lost);
       break;
     }
     Reached reached = reached_at(next, starts);
@@ -148,14 +148,30 @@ MarginSide OneSidedMargin::beyond(const Lost& lost, std::optional<Cycle>& other,
               "; whether the loop hunts beyond it was not determined"};
 }
 
+/// What a simulation at p from this state comes to; undecided if the case is not valid there.
+Outcome OneSidedMargin::outcome_from(const LoopState& state, double p) const {
+  const auto loop = parameter_.family(p);
+  if (!loop) return Outcome::undecided;
+  return settle(*loop, state, cycle_search(*loop, default_search_box(*loop), options_.accuracy, options_.predict.stop))
+      .outcome;
+}
+
 /// True unless a simulation from this state at the limit is known to end elsewhere than in a cycle.
 bool OneSidedMargin::stays(const LoopState& state) const {
-  const auto loop = parameter_.family(limit_);
-  if (!loop) return true;
-  const Outcome outcome =
-      settle(*loop, state, cycle_search(*loop, default_search_box(*loop), options_.accuracy, options_.predict.stop))
-          .outcome;
+  const Outcome outcome = outcome_from(state, limit_);
   return outcome != Outcome::rest && outcome != Outcome::sliding && outcome != Outcome::divergence;
+}
+
+/// The side of a branch beyond whose end the case is not valid: the cycle ends there (as where Fs comes down to Fc), or
+/// it is there to the last.
+MarginSide OneSidedMargin::at_validity(const Lost& lost) const {
+  constexpr double hair = 1e-6;
+  const double inwards = lost.value + hair * (parameter_.value - lost.value);
+  const double last = parameter_.family(lost.value) ? lost.value : inwards;
+  const Outcome outcome = outcome_from(lost.last, last);
+  if (outcome != Outcome::cycle && outcome != Outcome::irregular) return found(MarginSide::What::ends, lost, lost.why);
+  return {MarginSide::What::none, lost.value, 0.0,
+          "it hunts all the way to " + short_number(lost.value, 5) + ", beyond which the case is not valid"};
 }
 
 /// Where simulations cease to come to a cycle or to a motion without a period, between one value at which they do and

@@ -44,7 +44,9 @@ class OneSidedMargin {
   std::optional<Cycle> before(const Lost& lost, double& at, bool& decided);
   /// Follows a cycle found at p, and its successors, back to the beginning of hunting.
   MarginSide back_from(Cycle cycle, double p);
+  Outcome outcome_from(const LoopState& state, double p) const;
   bool stays(const LoopState& state) const;
+  MarginSide at_validity(const Lost& lost) const;
   MarginSide by_bisection(MarginSide::What what, double hunts, double rests, const std::vector<LoopState>& from);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
 

@@ -108,6 +108,25 @@ MarginSide OutcomeSide::located(bool hunts, Change change) {
   return side;
 }
 
+/// Between the last value that was tried and one at which the case is not valid: at the last that is, from which the
+/// loop may have changed.
+MarginSide OutcomeSide::to_validity(bool hunts, double last, double invalid) {
+  constexpr int halvings = 50;
+  double valid = last;
+  for (int i = 0; i < halvings && valid != invalid; ++i) {
+    const double middle = 0.5 * (valid + invalid);
+    (parameter_.family(middle) ? valid : invalid) = middle;
+  }
+  const Does there = does(valid);
+  if (there != Does::undecided && (there == Does::hunts) != hunts) return located(hunts, {last, valid, there});
+  const std::string end = ", beyond which the case is not valid";
+  if (there == Does::undecided)
+    return {MarginSide::What::unknown, hunts ? last : 0.0, std::numeric_limits<double>::quiet_NaN(),
+            "simulations at " + short_number(valid, 5) + end + ", did not decide"};
+  return {MarginSide::What::none, valid, 0.0,
+          (hunts ? "it hunts all the way to " : "it does not hunt up to ") + short_number(valid, 5) + end};
+}
+
 MarginSide OutcomeSide::where_it_changes(bool hunts) {
   using What = MarginSide::What;
   const int steps = std::max(1, static_cast<int>(std::ceil(options_.scan_per_decade * std::log10(options_.factor))));
@@ -119,9 +138,7 @@ MarginSide OutcomeSide::where_it_changes(bool hunts) {
     if (here == Does::undecided)
       return {What::unknown, hunts ? last : 0.0, std::numeric_limits<double>::quiet_NaN(),
               "simulations at " + short_number(p, 5) + " did not decide"};
-    if (here == Does::invalid)
-      return {What::none, last, 0.0,
-              "none up to " + short_number(last, 5) + "; the case is not valid at " + short_number(p, 5)};
+    if (here == Does::invalid) return to_validity(hunts, last, p);
     if ((here == Does::hunts) != hunts) return located(hunts, {last, p, here});
     last = p;
   }

@@ -37,6 +37,7 @@ class OutcomeSide {
   void bisect(bool hunts, Change& change);
   std::optional<double> as_now_beyond(bool hunts, const Change& change, double far);
   MarginSide located(bool hunts, Change change);
+  MarginSide to_validity(bool hunts, double last, double invalid);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
 
   const MarginParameter& parameter_;

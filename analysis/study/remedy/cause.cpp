@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "limcycle/analysis/energy/passivity/steady_slide.hpp"
@@ -157,12 +158,19 @@ class CauseStudy {
 
   bool ends(const std::string& without, const std::optional<LoopParts>& parts, bool limits_are_far = false) {
     if (!parts || (judging_.predict.stop && judging_.predict.stop())) return false;
-    const Loop loop = build_loop(*parts);
-    const auto linear = limits_are_far ? linear_answer(loop) : std::nullopt;
-    const Hunts answer = linear ? *linear : hunts(loop, judging_).hunts;
+    const Hunts answer = answer_of(*parts, limits_are_far);
     cause_.tests.push_back({without, answer});
     neutral_ = neutral_ || answer == Hunts::neutral;
     return answer == Hunts::no || answer == Hunts::neutral;  // nothing feeds a centre
+  }
+
+  /// Undecided for a change that cannot be made: measured data without their dead time may have no fit.
+  Hunts answer_of(const LoopParts& parts, bool limits_are_far) const try {
+    const Loop loop = build_loop(parts);
+    const auto linear = limits_are_far ? linear_answer(loop) : std::nullopt;
+    return linear ? *linear : hunts(loop, judging_).hunts;
+  } catch (const std::invalid_argument&) {
+    return Hunts::undecided;
   }
 
   /// What the loop does without its cause.

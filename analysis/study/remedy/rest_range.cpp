@@ -152,7 +152,7 @@ class RestRange {
   std::optional<Extent> run() {
     if (ne_ == 0) return std::nullopt;
     for (Index i = 0; i < in_path_; ++i) {
-      pieces_.push_back(straight_pieces(element(i)));
+      pieces_.push_back(shares_selection(i) ? shared_pieces(i) : straight_pieces(element(i)));
       if (pieces_.back().empty()) return std::nullopt;
     }
     Extent all{infinite, -infinite};
@@ -186,6 +186,20 @@ class RestRange {
     return {scaled(c, port(i).D), port(i).c.dot(loop_.external.transpose())};
   }
 
+  /// True for what follows the friction force that holds the body: see Port::selection_of.
+  bool shares_selection(Index i) const {
+    const auto leader = port(i).selection_of;
+    return leader && loop_.elements[*leader].facts().stuck && element(i).kind() == "friction-compensation";
+  }
+
+  /// Over the force of the friction law: a share of the level, which may differ for both signs.
+  std::vector<StraightPiece> shared_pieces(Index i) const {
+    const Element& law = loop_.elements[*port(i).selection_of];
+    const double level = (port(i).reversed ? -1.0 : 1.0) * element(i).number("level").value();
+    const auto slope = [&](double sign) { return sign * level * law.selection(*law.facts().stuck, sign); };
+    return {{.slope = slope(1.0), .low = 0.0}, {.slope = slope(-1.0), .high = 0.0}};
+  }
+
   RowVectorXd unit(Index i) const {
     RowVectorXd of_outputs = RowVectorXd::Zero(ne_);
     of_outputs(i) = 1.0;
@@ -206,7 +220,8 @@ class RestRange {
     }
     for (Index i = 0; i < in_path_; ++i) {
       const StraightPiece& piece = pieces_[static_cast<std::size_t>(i)][choice[static_cast<std::size_t>(i)]];
-      const auto [row, shift] = input(i);
+      const auto [row, shift] =
+          shares_selection(i) ? std::pair{unit(static_cast<Index>(*port(i).selection_of)), 0.0} : input(i);
       if (piece.still) all.add_equal(row, -shift);
       if (piece.free) {
         all.add_between(unit(i), piece.low, piece.high);
