@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "limcycle/tests/cli/program.hpp"
 
@@ -87,4 +88,30 @@ TEST_CASE("measured axis: every text states what it rests on, and no document re
   const auto none = run({"check", shipped("pid-lugre.toml"), "--fit", scratch.file("none.svg")});
   CHECK(none.code == 2);
   CHECK(none.err.find("no measured plant") != std::string::npos);
+}
+
+TEST_CASE("measured plant: its dead time is a number of its own, and a cause that cannot be tried ends no prediction") {
+  const Scratch scratch;
+  std::ostringstream rows;
+  rows.precision(17);
+  for (int i = 0; i < 80; ++i) {
+    const double w = 1e-3 * std::pow(2e4, i / 79.0);
+    const std::complex<double> s(0.0, w);
+    const auto G = 2.0 * std::exp(-1.5 * s) / ((5.0 * s + 1.0) * (2.0 * s + 1.0));
+    rows << w << ',' << G.real() << ',' << G.imag() << '\n';
+  }
+  scratch.put("d.csv", rows.str());
+  const std::string relay = "[loop.element]\nkind = \"relay\"\nlevel = 1.0\nhysteresis = 0.1\n";
+  const std::string measured = scratch.put(
+      "a.toml",
+      "[loop.plant]\nkind = \"frf\"\nfile = \"d.csv\"\nfrequency = \"rad/s\"\nformat = \"re-im\"\ndelay = 1.5\n" +
+          relay);
+  const std::string known = scratch.put(
+      "b.toml", "[loop.plant]\nkind = \"zpk\"\nzeros = []\npoles = [-0.2, -0.5]\ngain = 0.2\ndelay = 1.5\n" + relay);
+  const auto of_data = run({"predict", measured, "--json", "-"}), of_poles = run({"predict", known, "--json", "-"});
+  REQUIRE(of_data.code == 0);
+  REQUIRE(of_poles.code == 0);
+  const Json data = Json::parse(of_data.out)["cycles"].at(0), poles = Json::parse(of_poles.out)["cycles"].at(0);
+  CHECK(data["period"].get<double>() == Approx(poles["period"].get<double>()).epsilon(1e-6));
+  CHECK(data["amplitude"].get<double>() == Approx(poles["amplitude"].get<double>()).epsilon(1e-6));
 }

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tuple>
 
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
@@ -33,9 +34,11 @@ TEST_CASE("map of stops: its fixed point is the amplitude of the servo's cycle, 
   CHECK(map->ratio(0.8 * amplitude).value() > 1.0);
   CHECK(map->ratio(1.2 * amplitude).value() < 1.0);
   const auto growing = map->growing(1e-4, 10.0);
-  REQUIRE(growing.size() == 1);
+  REQUIRE(growing.size() == 2);
   CHECK(growing.front() < amplitude);
   CHECK(growing.front() > amplitude / 1.3);
+  CHECK(growing.back() > amplitude);
+  CHECK(growing.back() < 1.01 * amplitude);
   CHECK(map->steps() > 0);
 }
 
@@ -134,6 +137,45 @@ TEST_CASE("predict: a hunting cycle into which no displaced start falls is found
   CHECK(report.cycles.front().stable == true);
   CHECK(report.cycles.front().period == Approx(18.3754788).epsilon(1e-6));  // along a branch, from Fs where it hunts
   CHECK(report.cycles.front().amplitude == Approx(9.228709).epsilon(1e-6));
+}
+
+TEST_CASE(
+    "predict: hunting under an integral that leaks, or acts in a band, is found from its break-away, in any unit") {
+  const double finer = GENERATE(1.0, 1000.0);  // of lengths
+  const auto found_with = [&](double leak, double band) {
+    LoopParts parts;
+    parts.plant = Mass{5.0 / finer, 2.0 / finer, 0.0};
+    Pid controller = pid(2000.0 / finer, 8000.0 / finer, 150.0 / finer);
+    controller.tf = 0.001;
+    controller.leak = leak;
+    controller.integral_band = band * finer;
+    parts.controller = controller;
+    parts.friction = coulomb(12.0, 8.0);
+    PredictOptions options;
+    options.search = SearchBox{1e-6 * finer, 0.1 * finer, 0.01, 1000.0};
+    options.methods = {false, false, false};
+    return predict(build_loop(parts), options);
+  };
+  const auto stable = [](const PredictReport& report) {
+    const auto one = std::ranges::find(report.cycles, std::optional<bool>(true), &Cycle::stable);
+    return one == report.cycles.end() ? std::optional<Cycle>() : *one;
+  };
+  // Of simulations in steps of 0.5 ms from break-away, to their digits.
+  for (const auto& [leak, period, amplitude] : {std::tuple{0.63, 11.34, 0.8587e-3}, {0.65, 14.2, 0.854e-3}}) {
+    CAPTURE(finer, leak);
+    const auto cycle = stable(found_with(leak, infinite));
+    REQUIRE(cycle);
+    CHECK(cycle->period == Approx(period).epsilon(2e-3));
+    CHECK(cycle->amplitude == Approx(amplitude * finer).epsilon(1e-3));
+  }
+  CHECK_FALSE(stable(found_with(0.67, infinite)));
+  // A cycle that lies within the band does not notice it.
+  const auto everywhere = stable(found_with(0.0, infinite)), within = stable(found_with(0.0, 1.05e-3));
+  REQUIRE(everywhere);
+  REQUIRE(within);
+  CHECK(within->period == Approx(everywhere->period).epsilon(1e-7));
+  CHECK(within->amplitude == Approx(everywhere->amplitude).epsilon(1e-7));
+  CHECK_FALSE(stable(found_with(0.0, 1.03e-3)));
 }
 
 TEST_CASE("predict: a hunting cycle just above a jump of the map from stop to stop is found, behind a lagging drive") {

@@ -256,6 +256,61 @@ TEST_CASE("margin: of a sampled servo by bisection of the outcome, towards that 
   CHECK(coarse / fine == Approx(2.0).margin(0.6));  // of first order, as far as an edge is one
 }
 
+TEST_CASE("margin: hunting does not end where a number of asymmetric friction may go no farther") {
+  const auto with = [](double Fs_minus) -> std::optional<Loop> {
+    if (Fs_minus < 7.5) return std::nullopt;
+    Coulomb<double> law;
+    law.Fs = 12.0;
+    law.Fc = 8.0;
+    law.Fs_minus = Fs_minus;
+    law.Fc_minus = 7.5;
+    LoopParts parts;
+    parts.plant = Mass{3.0, 4.0, 0.0};
+    parts.controller = pid(1500.0, 9000.0, 100.0);
+    parts.friction = law;
+    parts.load = 2.0;
+    return build_loop(parts);
+  };
+  MarginOptions options;
+  options.factor = 2.0;
+  options.predict.search = SearchBox{1e-6, 0.1, 0.01, 1000.0};
+  const MarginReport report = margin(*with(9.0), {{"loop.friction.Fs_minus", "N", 9.0, false, with}}, options);
+  REQUIRE(report.hunts);
+  const MarginSide& down = named(report, "loop.friction.Fs_minus").down;
+  CHECK(down.what == MarginSide::What::none);
+  CHECK(down.value == Approx(7.5));
+  // Of a simulation of its own: there it still hunts, with a period of 69.2 s.
+  PredictOptions there;
+  there.search = options.predict.search;
+  there.methods = {false, false, false};
+  const auto found = predict(*with(7.5), there);
+  REQUIRE_FALSE(found.cycles.empty());
+  CHECK(found.cycles.front().period == Approx(69.2).epsilon(2e-3));
+}
+
+TEST_CASE("margin: of a sampled servo to the last value at which the case is valid") {
+  const auto with = [](double Fs) -> std::optional<Loop> {
+    if (Fs < 1.0) return std::nullopt;
+    LoopParts parts = servo_parts(coulomb(Fs, 1.0));
+    std::get<Pid>(parts.controller).sample_time = 0.05;
+    return build_loop(parts);
+  };
+  MarginOptions options;
+  options.factor = 4.0;
+  options.predict.starts = 2;
+  const MarginReport report = margin(*with(1.5), {{"loop.friction.Fs", "N", 1.5, false, with}}, options);
+  REQUIRE(report.hunts);
+  const MarginSide& down = named(report, "loop.friction.Fs").down;
+  CAPTURE(down.why);
+  if (down.what == MarginSide::What::ends) {
+    CHECK(down.value >= 1.0);
+    CHECK(down.value < 1.1);
+  } else {
+    CHECK(down.what == MarginSide::What::none);
+    CHECK(down.value == Approx(1.0).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("margin: a sampled servo that rests, with the range that was tried") {
   const auto gained = [](double kp) -> std::optional<Loop> {
     LoopParts parts = servo_parts(coulomb(1.5, 1.0));

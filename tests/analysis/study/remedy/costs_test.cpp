@@ -42,6 +42,17 @@ void check_range(const LoopParts& parts, double low, double high) {
 
 }  // namespace
 
+TEST_CASE("rest range: a friction compensation holds its share of the level with the friction, and no more") {
+  LoopParts parts = position_loop(100.0, 0.0, 10.0);
+  Pid& controller = std::get<Pid>(parts.controller);
+  for (const double compensation : {0.6, 1.2, 1.95}) {  // of Fc; at break-away the friction holds with Fs
+    controller.friction_compensation = compensation;
+    const double most = std::abs(1.5 - compensation * 1.0) / 100.0;
+    CAPTURE(compensation);
+    check_range(parts, -most, most);
+  }
+}
+
 TEST_CASE("rest range: the stuck states of a linear loop, as stuck_set finds them") {
   check_range(position_loop(3.0, 0.0, 6.0), -0.5, 0.5);       // Fs/kp
   check_range(position_loop(3.0, 0.0, 6.0, 0.3), -0.4, 0.6);  // (load -+ Fs)/kp
@@ -56,7 +67,7 @@ TEST_CASE("rest range: the stuck states of a linear loop, as stuck_set finds the
   }
 }
 
-TEST_CASE("rest range: a dead zone, a limit and a compensation widen it by what they hide") {
+TEST_CASE("rest range: a dead zone and a limit widen it by what they hide") {
   LoopParts parts = position_loop(3.0, 4.0, 6.0);
   parts.error = dead_zone(0.1);
   check_range(parts, -0.1, 0.1);  // wherever the integral sees nothing
@@ -70,9 +81,6 @@ TEST_CASE("rest range: a dead zone, a limit and a compensation widen it by what 
   REQUIRE(anywhere);
   CHECK(std::isinf(anywhere->low));
   CHECK(std::isinf(anywhere->high));
-  parts = position_loop(3.0, 0.0, 6.0);
-  std::get<Pid>(parts.controller).friction_compensation = 0.6;
-  check_range(parts, -0.7, 0.7);  // at most (Fs + level)/kp
 }
 
 TEST_CASE("rest range: an integral that is limited, or frozen outside a band, leaves an error") {
