@@ -75,7 +75,7 @@ std::string sensitivity_answer(const SensitivityReport& report) {
   if (!report.global) return out;
   const Probability& hunting = report.global->hunting;
   if (hunting.among_decided.known) {
-    out += fmt::format(" Over the given spread it hunts with probability {} ({} to {})",
+    out += fmt::format(" Over the given spread it hunts from one of two starts with probability {} ({} to {})",
                        as_percent(hunting.among_decided.value), as_percent(hunting.among_decided.low),
                        as_percent(hunting.among_decided.high));
     if (hunting.undecided > 0)
