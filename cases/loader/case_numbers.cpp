@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <variant>
 
 #include "limcycle/cases/loader/owned_parts.hpp"
+#include "limcycle/models/linear/plant_signals.hpp"
 
 namespace limcycle {
 namespace {
@@ -18,6 +20,20 @@ void append(std::vector<CaseNumber>& list, const std::string& section, const std
     one.follows = !row.default_from.empty() && number_of(rows, values, row.default_from) == value;
     list.push_back(std::move(one));
   }
+}
+
+/// That of y; "1" where it is not known.
+std::string unit_of_reference(const LoopParts& parts) {
+  if (parts.diagram) return "1";
+  switch (std::visit([]<class Kind>(const Kind&) { return Kind::signals; }, parts.plant)) {
+    case PlantSignals::lengths_and_forces:
+      return "m";
+    case PlantSignals::angles_and_torques:
+      return "rad";
+    case PlantSignals::unknown:
+      break;
+  }
+  return "1";
 }
 
 }  // namespace
@@ -35,11 +51,11 @@ std::vector<CaseNumber> numbers_of(const Case& from) {
       return one.path.starts_with(part.section + ".") && is_elsewhere(part, one.path.substr(part.section.size() + 1));
     });
   }
-  const std::string reference = parts.diagram ? "diagram.reference" : "loop.reference";
+  const std::string reference = parts.diagram ? "diagram.reference" : "loop.reference", unit = unit_of_reference(parts);
   if (parts.reference_rate != 0.0)
-    list.push_back({reference + ".rate", "1/s", "slope of the reference", parts.reference_rate, false});
+    list.push_back({reference + ".rate", unit + "/s", "slope of the reference", parts.reference_rate, false});
   else
-    list.push_back({reference, "1", "set-point", parts.reference, false});
+    list.push_back({reference, unit, "set-point", parts.reference, false});
   if (!parts.diagram) list.push_back({"loop.load", "N", "constant force", parts.load, false});
   return list;
 }

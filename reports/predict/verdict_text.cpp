@@ -118,6 +118,11 @@ std::string with_cycles(const PredictReport& report, const Units& units) {
                        size_of(first, units),
                        report.cycles.size() > 1 ? fmt::format(" (as are {} more)", report.cycles.size() - 1) : "");
   }
+  if (stable.empty() && count(report, Outcome::irregular) > 0) {
+    out = fmt::format("{} {} limit cycle of {} is not reached", without_cycle(report, units),
+                      others.front()->stable.has_value() ? "An unstable" : "A", size_of(*others.front(), units));
+    return out + (others.size() > 1 ? fmt::format(" (nor are {} more).", others.size() - 1) : ".");
+  }
   if (stable.empty()) {
     const bool unstable = others.front()->stable.has_value();
     out = fmt::format("This loop has a limit cycle of {}, {}", size_of(*others.front(), units),

@@ -403,6 +403,7 @@ class Settling {
   bool rubs_elsewhere_;
   CycleTries tries_;
   Settled result_;
+  std::string waited_;  ///< clause about a wait without samples
   State dx_;
   double low_ = infinite, high_ = -infinite;  ///< of y
   std::size_t large_turns_ = 0;
@@ -414,7 +415,6 @@ class Settling {
   long leapt_ = 0, steps_at_leap_ = 0;  ///< steps of return maps that made leaps, and of the march at the last
   long readings_ = 0;
   int restarts_ = 0;
-  std::string waited_;  ///< clause about a wait without samples
   bool decided_ = false;
 };
 

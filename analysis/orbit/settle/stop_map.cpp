@@ -55,21 +55,25 @@ struct HeldLoop {
     equilibrate(rows, wanted);
     const Eigen::VectorXd found = least_squares(rows, wanted);
     if (!found.allFinite() || (rows * found - wanted).norm() > 1e-6 * wanted.norm()) return {};
-    const Eigen::VectorXd X = sizes.cwiseProduct(found.head(n)), rising = sizes.cwiseProduct(found.tail(n));
+    Eigen::VectorXd X = sizes.cwiseProduct(found.head(n));
+    const Eigen::VectorXd rising = sizes.cwiseProduct(found.tail(n));
     if (std::abs(force.dot(rising.transpose())) <= 1e-9 * force.cwiseAbs().dot(rising.cwiseAbs().transpose()))
       return {};
     return X;
   }
 };
 
-/// Those states for a loop with integral action, or with one that leaks: then with the slowest of its rates.
+/// Those states for a loop with integral action, or with one that leaks: then with the slowest of its rates, which is
+/// slower than the closed loop. (A lag or a filter, which leaks too, is a part of the motion and winds nothing up.)
 Eigen::VectorXd steady_hold(const Loop& loop) {
   const HeldLoop held(loop);
   if (Eigen::VectorXd X = held.winding_up(0.0); X.size() > 0) return X;
   constexpr double is_real = 1e-9;
+  const double closed_loop = 1.0 / slow_time(loop);
   std::vector<double> leaks;
   for (const auto& pole : eigenvalues(held.scaled))
-    if (pole.real() < 0.0 && std::abs(pole.imag()) <= is_real * std::abs(pole.real())) leaks.push_back(-pole.real());
+    if (pole.real() < 0.0 && -pole.real() < closed_loop && std::abs(pole.imag()) <= -is_real * pole.real())
+      leaks.push_back(-pole.real());
   std::ranges::sort(leaks);
   for (const double leak : leaks)
     if (Eigen::VectorXd X = held.winding_up(leak); X.size() > 0) return X;

@@ -83,8 +83,8 @@ std::optional<Hunts> linear_answer(const Loop& loop) {
 class CauseStudy {
  public:
   /// A loop without its cause comes to rest soon, or is no answer: a sampled one is not followed for long.
-  CauseStudy(const LoopParts& parts, Judging judging, const std::vector<Cycle>& cycles)
-      : parts_(parts), judging_(std::move(judging)), cycles_(cycles) {
+  CauseStudy(LoopParts parts, Judging judging, const std::vector<Cycle>& cycles)
+      : parts_(std::move(parts)), judging_(std::move(judging)), cycles_(cycles) {
     constexpr long enough_readings = 1'000'000;
     judging_.predict.max_readings = std::min(judging_.predict.max_readings, enough_readings);
     judging_.predict.enough = [](const OutcomeOfStart& one) {

@@ -54,3 +54,16 @@ TEST_CASE("where nothing oscillates, an incomplete search that found nothing doe
   report.incomplete.emplace_back("describing-function");
   CHECK_THAT(worth(report), Contains("found no limit cycle, but its search was incomplete."));
 }
+
+TEST_CASE("a loop that moves for ever without a period says so first, whatever unstable cycles it has") {
+  auto report = hunting_unseen();
+  report.cycles.front().stable = false;
+  report.search = {1e-3, 10.0, 0.1, 100.0};
+  OutcomeOfStart one{"y(0) = 1", Outcome::irregular, "", {}, {}};
+  one.irregular = {0.868, 0.595, 0.593, 0.597, 200.0, 0.86, 0.85, 0.868};
+  report.outcomes.push_back(one);
+  const std::string verdict = answer(report, {}).what_happens;
+  CHECK_THAT(verdict, Contains("This loop moves irregularly, without a period: from its only start"));
+  CHECK_THAT(verdict, Contains("half-range 0.868 m, mean period 0.5950 s"));
+  CHECK_THAT(verdict, Contains("An unstable limit cycle of period 2.000 s and amplitude 0.1000 m is not reached."));
+}

@@ -99,20 +99,70 @@ double gravity_of(const PlantModel& plant, const Eigen::Vector2d& state) {
   return plant.gravity->output({plant.C_gravity.dot(state), 0.0, 0.0}, {}, {});
 }
 
-/// Root mean square of the friction force that the equation of motion leaves.
-double friction_size(const FreeRig& rig, const FrictionRecord& record, const Reading& reading) {
+/// The friction force that the equation of motion leaves at each row, and the velocity of rubbing.
+struct LeftOver {
+  std::vector<double> force, speed;
+};
+
+LeftOver left_over(const FreeRig& rig, const FrictionRecord& record, const Reading& reading) {
   const auto& plant = rig.plant;
   const Eigen::Matrix2d to_state = reading_of(plant).inverse();
-  double sum = 0.0;
+  LeftOver found;
   for (std::size_t i = 0; i < reading.y.size(); ++i) {
     const Eigen::Vector2d x = to_state * Eigen::Vector2d(reading.y[i], reading.rate[i]);
     const Eigen::Vector2d rate = to_state * Eigen::Vector2d(reading.rate[i], reading.acceleration[i]);
     const double u = rig.load + (record.F.empty() ? 0.0 : record.F[i]);
     Eigen::Vector2d own = plant.A * x + plant.B_u * u;
     if (plant.gravity) own -= plant.B_gravity * gravity_of(plant, x);
-    sum += std::pow(plant.C_v.dot(own - rate) / plant.C_v.dot(plant.B_F), 2);
+    found.force.push_back(plant.C_v.dot(own - rate) / plant.C_v.dot(plant.B_F));
+    found.speed.push_back(plant.C_v.dot(x) + plant.v0);
   }
+  return found;
+}
+
+/// Root mean square of the friction force.
+double friction_size(const FreeRig& rig, const FrictionRecord& record, const Reading& reading) {
+  double sum = 0.0;
+  for (const double force : left_over(rig, record, reading).force) sum += force * force;
   return std::sqrt(sum / static_cast<double>(reading.y.size()));
+}
+
+/// What is left of a friction force at rest: the constant part of its least-squares fit by that, a level in the
+/// direction of motion and a slope, over the rows at which the body moves.
+double force_at_rest(const LeftOver& all) {
+  constexpr double moves = 0.05;
+  double fastest = 0.0;
+  for (const double v : all.speed) fastest = std::max(fastest, std::abs(v));
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < all.force.size(); ++i) {
+    const double v = all.speed[i] / fastest;
+    if (!(std::abs(v) > moves)) continue;
+    const Eigen::Vector3d terms(1.0, v < 0.0 ? -1.0 : 1.0, v);
+    normal += terms * terms.transpose();
+    right += terms * all.force[i];
+  }
+  return normal.fullPivLu().solve(right)(0);
+}
+
+/// Positions that were only integrated from velocities begin anywhere: moves them to where no friction force is left at
+/// rest. A body without a spring or a weight has no such place, and needs none.
+void place(Reading& reading, const FreeRig& rig, const FrictionRecord& record) {
+  constexpr int iterations = 4;  // a weight bends the force
+  constexpr double nothing = 1e-9;
+  const auto moved_by = [&](double shift) {
+    Reading moved = reading;
+    for (double& y : moved.y) y += shift;
+    return moved;
+  };
+  const auto [low, high] = std::ranges::minmax(reading.y);
+  double step = high - low;
+  for (int i = 0; i < iterations && step > 0.0; ++i, step *= 0.1) {
+    const double here = force_at_rest(left_over(rig, record, reading)),
+                 there = force_at_rest(left_over(rig, record, moved_by(step)));
+    if (!(std::abs(there - here) > nothing * friction_size(rig, record, reading))) return;
+    reading = moved_by(-here * step / (there - here));
+  }
 }
 
 /// Cuts the motion into windows of about that many samples, each of which begins at the fastest stop near the equal
@@ -227,7 +277,8 @@ std::vector<PreparedRecord> prepare_free(const FrictionRecord& record, const Fre
     refuse_record(record, "has " + std::to_string(record.t.size()) +
                               " rows; a free motion, which is simulated many times, may have 100000: keep every n-th");
   if (record.kind == RecordKind::free && record.F.empty()) refuse_record(record, "needs a force column");
-  const Reading reading = reading_off(record);
+  Reading reading = reading_off(record);
+  if (record.x.empty()) place(reading, rig, record);
   std::size_t skipped = 0;
   for (const double t : record.t) skipped += t - record.t.front() < record.skip ? 1 : 0;
   const std::size_t usable = record.t.size() - skipped, every = (usable + most_compared - 1) / most_compared;

@@ -79,6 +79,17 @@ TEST_CASE("identify free: a decay on a spring gives Fc, and says that it does no
   CHECK_FALSE(number_named(law, "Fs").identifiable);
 }
 
+TEST_CASE("identify free: a decay from rest of which only the velocity was measured") {
+  const Element truth = law_with("coulomb", {{"Fc", 1.0}, {"Fs", 1.0}, {"sigma2", 0.5}});
+  const FreeRig rig = mass_rig(1.0, 100.0);
+  auto decay = only(synthesize_free(truth, rig, {.noise = 0.0}, 3, 301), RecordKind::free_decay);
+  decay.x.clear();
+  const auto report = fitted_to({decay}, rig, {"coulomb"});
+  REQUIRE(report.chosen);
+  CHECK(number_named(report.laws.front(), "Fc").value == Approx(1.0).epsilon(1e-3));
+  CHECK(number_named(report.laws.front(), "sigma2").value == Approx(0.5).epsilon(1e-2));
+}
+
 TEST_CASE("identify free: the same numbers in other units, and for the mirrored motion") {
   const Element truth = stribeck_rig();
   const auto record = only(synthesize_free(truth, mass_rig(), {}, 2, 151), RecordKind::free);
