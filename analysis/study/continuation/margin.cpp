@@ -17,6 +17,20 @@
 namespace limcycle {
 namespace {
 
+/// The same displacements, the largest first, and behind them some between neighbours, at ratios of about five as those
+/// of predict(): a motion may begin from there alone.
+std::vector<double> with_places_between(const std::vector<double>& places) {
+  constexpr double ratio_of_starts = 5.0;
+  std::vector<double> all = places;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const double ratio = places[i] / places[i - 1];
+    const auto parts = std::lround(std::abs(std::log(ratio)) / std::log(ratio_of_starts));
+    for (long part = 1; part < parts; ++part)
+      all.push_back(places[i - 1] * std::pow(ratio, static_cast<double>(part) / static_cast<double>(parts)));
+  }
+  return all;
+}
+
 class Margins {
  public:
   Margins(const Loop& loop, const std::vector<MarginParameter>& parameters, const MarginOptions& options)
@@ -64,10 +78,12 @@ class Margins {
         start_displacements(output_per_input(loop_in_time(loop_, 0.0).treated.loop), box_, options_.predict.starts);
     const auto moves = [](const OutcomeOfStart& one) { return one.outcome == Outcome::irregular; };
     report_.hunts = report_.hunts || std::ranges::any_of(outcomes, moves);
-    by_outcome_ = OutcomeSide::Starts{places, box_};
+    by_outcome_ = OutcomeSide::Starts{with_places_between(places), box_};
     report_.notes.emplace_back(
         "with a sampled controller cycles cannot be followed over a parameter: each side is found by simulations from "
-        "the displacements of predict, and by bisection of what they show; near an edge that may depend on the start");
+        "the displacements of predict and between them, and by bisection of what they show; near an edge that may "
+        "depend "
+        "on the start");
   }
 
   MarginSide side_of(const MarginParameter& parameter, bool up, const std::function<void(double)>& progress) const {
