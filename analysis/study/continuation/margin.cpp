@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 
 #include "limcycle/analysis/derivative_notes.hpp"
@@ -11,23 +12,18 @@
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/continuation/one_sided_margin.hpp"
 #include "limcycle/analysis/study/continuation/outcome_side.hpp"
+#include "limcycle/analysis/study/predict/between_starts.hpp"
 #include "limcycle/analysis/study/predict/in_exact_time.hpp"
 #include "limcycle/analysis/study/predict/loop_in_time.hpp"
 
 namespace limcycle {
 namespace {
 
-/// The same displacements, the largest first, and behind them some between neighbours, at ratios of about five as those
-/// of predict(): a motion may begin from there alone.
+/// The displacements of predict(), which fall, and behind them those between neighbours.
 std::vector<double> with_places_between(const std::vector<double>& places) {
-  constexpr double ratio_of_starts = 5.0;
   std::vector<double> all = places;
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const double ratio = places[i] / places[i - 1];
-    const auto parts = std::lround(std::abs(std::log(ratio)) / std::log(ratio_of_starts));
-    for (long part = 1; part < parts; ++part)
-      all.push_back(places[i - 1] * std::pow(ratio, static_cast<double>(part) / static_cast<double>(parts)));
-  }
+  for (std::size_t i = 1; i < places.size(); ++i)
+    std::ranges::copy(places_between(places[i], places[i - 1]), std::back_inserter(all));
   return all;
 }
 
@@ -82,8 +78,7 @@ class Margins {
     report_.notes.emplace_back(
         "with a sampled controller cycles cannot be followed over a parameter: each side is found by simulations from "
         "the displacements of predict and between them, and by bisection of what they show; near an edge that may "
-        "depend "
-        "on the start");
+        "depend on the start");
   }
 
   MarginSide side_of(const MarginParameter& parameter, bool up, const std::function<void(double)>& progress) const {

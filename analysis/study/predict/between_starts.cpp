@@ -26,6 +26,15 @@ std::optional<double> first_period(const Trace& trace) {
 
 }  // namespace
 
+std::vector<double> places_between(double low, double high) {
+  const double ratio = high / low;
+  const int parts = std::max(1, static_cast<int>(std::lround(std::log(ratio) / std::log(ratio_of_starts))));
+  std::vector<double> places;
+  for (int part = parts - 1; part > 0; --part)
+    places.push_back(low * std::pow(ratio, static_cast<double>(part) / parts));
+  return places;
+}
+
 BetweenStarts::BetweenStarts(const Loop& loop, CycleHunt& hunt, long max_steps, const std::function<bool()>& stop)
     : loop_(loop), hunt_(hunt), left_(max_steps), stop_(stop) {}
 
@@ -92,10 +101,8 @@ void BetweenStarts::look_between(std::vector<Start> starts, const Ray& ray) {
     const Start &low = starts[i], &high = starts[i + 1];
     if (diverges(low) != diverges(high) && !knows_border(low, high)) bisect_divergence(low, high, ray);
     if (!calm(low) || !calm(high)) continue;
-    const double ratio = high.place / low.place;
-    const int parts = std::max(1, static_cast<int>(std::lround(std::log(ratio) / std::log(ratio_of_starts))));
-    for (int part = parts - 1; part > 0 && !over(); --part) {
-      const double place = low.place * std::pow(ratio, static_cast<double>(part) / parts);
+    for (const double place : places_between(low.place, high.place)) {
+      if (over()) break;
       probe(ray.state(place), ray.name(place), low.place);
     }
   }

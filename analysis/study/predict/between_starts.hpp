@@ -6,6 +6,9 @@
 
 namespace limcycle {
 
+/// Places between two displacements, the larger first, at ratios of about five: a motion may begin from there alone.
+std::vector<double> places_between(double low, double high);
+
 /// Searches for cycles between the starts of a hunt, if it is known that the starts of a loop end differently. Keeps
 /// references to its arguments. Cost: some simulations for each border.
 class BetweenStarts {

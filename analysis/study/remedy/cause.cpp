@@ -101,7 +101,7 @@ class CauseStudy {
                      "The controller reads, or commands, in steps, and everything else in the loop is linear: with "
                      "exact numbers " +
                          calm() + ".");
-    if (ends("without dead time and sampling", without_delay(parts_))) {
+    if (ends(no_samples, without_delay(parts_))) {
       if (ends("without quanta", without_quanta(parts_)))  // which end with the sampling
         return decided(CauseKind::quantization,
                        "The controller reads, or commands, in steps: with exact numbers " + calm() + ".");
@@ -118,7 +118,7 @@ class CauseStudy {
                      "far: without integral action, or " +
                          level + ", " + calm() + ".");
     // Falling friction alone would be the cause only if the loop hunted without integral action too.
-    if (falling && is_open(no_integral)) return decided(CauseKind::undecided, no_single_cause());
+    if (falling && came_out(no_integral, Hunts::undecided)) return decided(CauseKind::undecided, no_single_cause());
     if (falling)
       return decided(CauseKind::negative_slope, "Friction falls as the speed rises" + falling_range() +
                                                     ", which feeds the oscillation: " + level + " " + calm() + ".");
@@ -138,7 +138,7 @@ class CauseStudy {
   }
 
  private:
-  static constexpr const char* no_integral = "without integral action";
+  static constexpr const char *no_integral = "without integral action", *no_samples = "without dead time and sampling";
 
   Cause decided(CauseKind kind, std::string why) {
     cause_.kind = kind;
@@ -151,7 +151,7 @@ class CauseStudy {
   /// A loop that hunts without its samples too does so for a reason that shows there, where it is judged a hundred
   /// times as fast.
   void leave_samples() {
-    if (cause_.tests.empty() || cause_.tests.back().hunts != Hunts::yes || !build_loop(parts_).sampled) return;
+    if (!came_out(no_samples, Hunts::yes) || !build_loop(parts_).sampled) return;
     parts_ = *without_delay(parts_);
     left_samples_ = true;
   }
@@ -179,10 +179,9 @@ class CauseStudy {
                     : "the loop does not hunt";
   }
 
-  bool is_open(const std::string& without) const {
-    return std::ranges::any_of(cause_.tests, [&](const Counterfactual& test) {
-      return test.without == without && test.hunts == Hunts::undecided;
-    });
+  bool came_out(const std::string& without, Hunts as) const {
+    return std::ranges::any_of(cause_.tests,
+                               [&](const Counterfactual& test) { return test.without == without && test.hunts == as; });
   }
 
   /// From the tests, as they came out.
