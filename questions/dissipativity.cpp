@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <stdexcept>
 
+#include "limcycle/cases/loader/case_numbers.hpp"
 #include "limcycle/questions/asking/argument_error.hpp"
 #include "limcycle/reports/format/number.hpp"
 
@@ -26,7 +28,12 @@ PassivityRange range_of(const Case& from, const DissipativityWishes& range) {
   } catch (const std::invalid_argument& no_such_number) {
     throw refuse(no_such_number.what());
   }
-  return {key, range.from, range.to};
+  // As --set would: what follows the number by default follows it here.
+  const auto with = [&from, path = range.path](double value) -> std::optional<Element> {
+    const auto changed = case_with(from, std::array{std::pair(path, value)});
+    return changed ? std::optional(df_element(*changed)) : std::nullopt;
+  };
+  return {key, range.from, range.to, with};
 }
 
 }  // namespace

@@ -105,6 +105,12 @@ std::string design_text(const GlobalPlan& plan, const EnsembleQuestion& question
   return text;
 }
 
+LoopVariation variation_of(const Case& from, const GlobalPlan& plan) {
+  std::vector<std::string> paths;
+  for (const auto& one : plan.spread().parameters) paths.push_back(one.path);
+  return {from, "[sensitivity]", paths};
+}
+
 /// The loops of a plan, each predicted from the same starts.
 SweptRows sweep_plan(const Case& from, const Loop& loop, const GlobalPlan& plan, const Asking& asking,
                      const SweepRunner& sweep) {
@@ -112,9 +118,7 @@ SweptRows sweep_plan(const Case& from, const Loop& loop, const GlobalPlan& plan,
   question.isa = asking.isa;
   question.stop = asking.stop;
   const std::vector<std::string> columns(std::begin(EnsembleOutcome::names), std::end(EnsembleOutcome::names));
-  std::vector<std::string> paths;
-  for (const auto& one : plan.spread().parameters) paths.push_back(one.path);
-  const LoopVariation variation(from, "[sensitivity]", paths);
+  const LoopVariation variation = variation_of(from, plan);
   SweepTask task{plan.size(), columns.size(), loops_a_block, {}};
   task.compute = [&](std::span<const std::size_t> points, std::span<double> rows) {
     std::vector<std::optional<Loop>> loops;
@@ -153,7 +157,9 @@ Status look_everywhere(const Case& from, const Loop& loop, const SensitivityWish
   for (std::size_t k = 0; k < plan.size(); ++k)
     if (swept.known[k]) answers[k] = {swept.rows[3 * k], swept.rows[3 * k + 1], swept.rows[3 * k + 2]};
   if (std::ranges::none_of(swept.known, [](bool known) { return known; })) return swept.status;
-  report.global = global_sensitivity(plan, answers, ensemble_question(loop).accuracy);
+  const LoopVariation variation = variation_of(from, plan);
+  report.global = global_sensitivity(plan, answers, ensemble_question(loop).accuracy,
+                                     [&](std::size_t row) { return variation.loop(plan.values(row)).has_value(); });
   report.sample = fair_sample(plan, answers);
   return swept.status;
 }

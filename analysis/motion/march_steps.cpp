@@ -4,6 +4,7 @@
 
 #include "limcycle/analysis/motion/march_stepper.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 
 /// @file
 /// Single steps of a march: the stepper in use, ever shorter tries, and repeats with other lengths.

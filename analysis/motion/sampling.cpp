@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "limcycle/analysis/motion/field/loop_field.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/models/delay.hpp"
 #include "limcycle/models/element/of_controllers/sampled.hpp"
 

@@ -130,8 +130,9 @@ DissipativityReport dissipativity(const Element& element, const std::string& pat
     }
     scan.logarithmic = options.range->from > 0.0 && options.range->to > 10.0 * options.range->from;
     report.asked = options.range;
+    const PassivityRange& asked = *options.range;
     report.range =
-        passivity_threshold(family_of(element, options.range->key), options.range->from, options.range->to, scan);
+        passivity_threshold(asked.family ? asked.family : family_of(element, asked.key), asked.from, asked.to, scan);
   }
   if (stopped() || report.passivity.status == Status::interrupted) report.status = Status::interrupted;
   return report;

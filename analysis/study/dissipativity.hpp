@@ -17,6 +17,7 @@ namespace limcycle {
 struct PassivityRange {
   std::string key;  ///< "vd"
   double from = 0.0, to = 0.0;
+  LawFamily family = {};  ///< the element with that number; empty: family_of()
 };
 
 /// Options of dissipativity().

@@ -195,7 +195,9 @@ Stated stated_by(const py::object& law) {
   Stated made;
   made.count = py::getattr(law, "states", py::int_(0)).cast<int>();
   made.is_odd = py::bool_(py::getattr(law, "odd", py::bool_(false)));
-  if (made.count < 0) refuse("states must be 0 or more");
+  constexpr int most_states = 1000;
+  if (made.count < 0 || made.count > most_states)
+    refuse("states must be 0 to " + std::to_string(most_states) + ", not " + std::to_string(made.count));
   if (made.count > 0 && !py::hasattr(law, "rate")) refuse("has states and must have rate(v, z), their rates");
   const auto scales = law.attr("scales").cast<std::vector<double>>();
   if (scales.size() != 3) refuse("scales must be three numbers: displacement, velocity, output");

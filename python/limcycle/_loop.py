@@ -73,7 +73,7 @@ class Loop:
 
     @property
     def file(self) -> str:
-        """The case file; empty for a loop that was made here."""
+        """The case file, with its full name; empty for a loop that was made here."""
         return self._case.file
 
     @property
@@ -127,8 +127,8 @@ def _with_full_names(value: Any) -> Any:
 
 
 def load(path: Union[str, "os.PathLike[str]"], overrides: Optional[Mapping[str, Any]] = None) -> Loop:
-    """Reads a case file; `overrides` as Loop.set(). Raises CaseError with file, line and key."""
+    """Reads a case file; `overrides` as Loop.set(). The loop knows the file by its full name. Raises CaseError with file, line and key."""
     if not isinstance(path, (str, os.PathLike)):
         raise CaseError("path", repr(path), "must be the name of a case file")
     changes = [f"{key}={text_of(value, key)}" for key, value in (overrides or {}).items()]
-    return Loop._of(_core.load_case(os.fspath(path), changes))
+    return Loop._of(_core.load_case(os.path.abspath(path), changes))

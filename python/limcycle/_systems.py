@@ -22,11 +22,11 @@ def table_of(system: Any, path: str) -> Any:
         if len(system) == 4:
             return _state_space(system[0], system[1], system[2], system[3], path)
         raise CaseError(path, "", f"must be (num, den), (zeros, poles, gain) or (A, B, C, D), found {len(system)} parts")
-    if hasattr(system, "frdata") or hasattr(system, "fresp"):
-        return _frequency_response(system, path)
     if getattr(system, "dt", None) not in (None, 0, 0.0, False):
         raise CaseError(path, f"{type(system).__name__}(dt={system.dt})", "must be a continuous-time system",
                         "a sampled controller is a continuous one with the key sample_time")
+    if hasattr(system, "frdata") or hasattr(system, "fresp"):
+        return _frequency_response(system, path)
     if all(hasattr(system, name) for name in "ABCD"):
         return _state_space(system.A, system.B, system.C, system.D, path)
     if hasattr(system, "num") and hasattr(system, "den"):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import os
 from types import MappingProxyType
 from typing import Any, Callable, Dict, List, Mapping
 
@@ -29,8 +30,13 @@ class Law:
 
     def __init__(self, kind: str, **parameters: Any) -> None:
         given = {key_of_attribute(name): _frozen(value) for name, value in parameters.items() if value is not None}
+        if isinstance(given.get("file"), str):
+            given["file"] = os.path.abspath(given["file"])  # as it is found from the present folder
         self.__dict__.update(kind=kind, parameters=MappingProxyType(given))
-        text = lines_of({"title": kind, "loop": {self.section: self.to_table()}})
+        parts: Dict[str, Any] = {self.section: self.to_table()}
+        if self.section == "error":  # which needs a loop around it
+            parts = {"plant": {"kind": "mass", "mass": 1.0}, "controller": {"kind": "pid", "kp": 1.0}, **parts}
+        text = lines_of({"title": kind, "loop": parts})
         self.__dict__.update(_case=_core.read_case(text, "", [], None))
 
     @property

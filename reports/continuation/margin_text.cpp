@@ -151,8 +151,12 @@ std::string margin_answer(const MarginReport& report, const Units& units) {
   if (design)
     out += fmt::format(" The smallest change of {} that {}: {}.", where, verb, in_words(*design));
   else if (std::ranges::any_of(report.parameters, [](const auto& one) { return !one.parameter.friction; }))
-    out += fmt::format(" No single change of {} within a factor of {:g} {}{}.", where, report.factor, verb,
-                       has_unknown_side(report) ? " (some directions are undetermined)" : "");
+    out += has_unknown_side(report)
+               ? fmt::format(
+                     " No single change of {} within a factor of {:g} was found that {}, but some directions are "
+                     "undetermined.",
+                     where, report.factor, verb)
+               : fmt::format(" No single change of {} within a factor of {:g} {}.", where, report.factor, verb);
   if (law) out += fmt::format(" The smallest change of the friction: {}.", in_words(*law));
   return out + of_balance(report);
 }

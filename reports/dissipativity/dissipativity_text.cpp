@@ -102,6 +102,18 @@ Table bound_table(const DissipativityReport& report) {
   return table;
 }
 
+/// A wide interval without a verdict is shown by its ends.
+std::string change_in_words(const ThresholdChange& change) {
+  constexpr double narrow = 1e-4;
+  const double error = std::abs(change.error / change.value);
+  if (error <= narrow)
+    return fmt::format("passive: {} below, {} above {}", to_string(change.below), to_string(change.above),
+                       with_error(change.value, std::max(1e-6, error)));
+  return fmt::format("passive: {} up to {}, {} from {}, undecided between", to_string(change.below),
+                     with_digits(change.value - change.error, 5), to_string(change.above),
+                     with_digits(change.value + change.error, 5));
+}
+
 std::vector<std::vector<std::string>> passivity_facts(const DissipativityReport& report) {
   const Passivity& passivity = report.passivity;
   std::vector<std::vector<std::string>> facts{{"passive", std::string(to_string(passivity.passive))},
@@ -120,10 +132,7 @@ std::vector<std::vector<std::string>> passivity_facts(const DissipativityReport&
                                                    report.passive_speed->error / report.passive_speed->value) +
                                         " m/s"});
   if (report.range)
-    for (const auto& change : report.range->changes)
-      facts.push_back({report.asked->key,
-                       fmt::format("passive: {} below, {} above {}", to_string(change.below), to_string(change.above),
-                                   with_error(change.value, std::max(1e-6, std::abs(change.error / change.value))))});
+    for (const auto& change : report.range->changes) facts.push_back({report.asked->key, change_in_words(change)});
   if (report.range && report.range->changes.empty())
     facts.push_back(
         {report.asked->key, fmt::format("no change from {} to {}: passive: {}", with_digits(report.asked->from, 4),

@@ -164,6 +164,7 @@ Json robustness_json(const SensitivityReport& report) {
           {"hunting", hunting.yes},
           {"not_hunting", hunting.no},
           {"undecided", hunting.undecided},
+          {"not_valid", report.global->not_valid},
           {"bounds", Json::array({number(hunting.low), number(hunting.high)})},
           {"matters_most", most ? Json(report.spread.parameters[*most].path) : Json(nullptr)}};
 }

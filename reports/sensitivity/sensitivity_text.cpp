@@ -80,6 +80,8 @@ std::string sensitivity_answer(const SensitivityReport& report) {
                        as_percent(hunting.among_decided.high));
     if (hunting.undecided > 0)
       out += fmt::format(", {} of {} loops undecided", hunting.undecided, hunting.yes + hunting.no + hunting.undecided);
+    if (const std::size_t not_valid = report.global->not_valid; not_valid > 0)
+      out += fmt::format(", {} other points of the spread being no valid case", not_valid);
     out += report.global->matters_most
                ? "; the most influential number is " + report.spread.parameters[*report.global->matters_most].path + "."
                : ".";

@@ -215,6 +215,10 @@ class SystemsOfOthers(unittest.TestCase):
         short.fresp = short.fresp[:70]
         with self.assertRaisesRegex(limcycle.CaseError, "70 values at 80 frequencies.*a value at each"):
             relay_loop(plant=short)
+        discrete = FrequencyResponseData((80,))
+        discrete.dt = 0.01
+        with self.assertRaisesRegex(limcycle.CaseError, "loop.plant.*continuous"):
+            relay_loop(plant=discrete)
 
     def test_delay(self):
         loop = relay_loop(plant=([1.0], [1.0, 1.0]), delay=0.5)
@@ -259,6 +263,28 @@ class Loops(unittest.TestCase):
         self.assertEqual(pickle.loads(pickle.dumps(loop)).text, loop.text)
         with self.assertRaisesRegex(limcycle.CaseError, str(source / "records/nothing.csv")):
             limcycle.identify(records)
+
+    def test_a_law_and_a_case_keep_their_files_when_the_folder_changes(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        with tempfile.TemporaryDirectory() as folder:
+            for name, force in (("here", 1.0), ("there", 5.0)):
+                os.makedirs(os.path.join(folder, name))
+                with open(os.path.join(folder, name, "curve.csv"), "w", encoding="utf-8") as file:
+                    file.write(f"velocity,force\n0.001,{1.2 * force}\n0.01,{force}\n0.1,{1.1 * force}\n")
+            os.chdir(os.path.join(folder, "here"))
+            law = limcycle.laws.stribeck(curve="table", file="curve.csv", Fs=1.5)
+            with open("law.toml", "w", encoding="utf-8") as file:
+                file.write(servo(friction=law).text.replace(os.path.join(os.getcwd(), "curve.csv"), "curve.csv"))
+            loop, read = servo(friction=law), limcycle.load("law.toml")
+            before = [limcycle.df(one, amplitude=[0.01], frequency=[1.0]).gain[0, 0, 0] for one in (law, loop, read)]
+            os.chdir(os.path.join(folder, "there"))
+            for one, gain in zip((law, loop.set({"loop.controller.kd": 6.5}), read.set({"loop.controller.kd": 6.5})), before):
+                self.assertEqual(limcycle.df(one, amplitude=[0.01], frequency=[1.0]).gain[0, 0, 0], gain)
+            os.chdir("/")
+
+    def test_a_law_of_every_kind_that_a_loop_may_have(self):
+        self.assertEqual(limcycle.laws.quantizer(step=0.1).to_table(), {"kind": "quantizer", "step": 0.1})
+        servo(controller={"kind": "pid", "kp": 3.0}, error=limcycle.laws.quantizer(step=1e-4))
 
     def test_text_is_a_case_file(self):
         text = servo(title='a "quoted"\\ name\n\x7f', friction={"kind": "maxwell-slip", "k": np.array([1.0, 2.0]),

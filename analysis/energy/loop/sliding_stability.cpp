@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "limcycle/analysis/motion/field/loop_field.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/transfer.hpp"

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/linear/dense.hpp"
 #include "limcycle/models/linear/transfer.hpp"

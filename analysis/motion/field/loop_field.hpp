@@ -88,6 +88,8 @@ class LoopField {
   bool holds(std::size_t i) const { return held(i) != Held::nothing; }
   /// Modes of elements without history at this state, whose own states are set too.
   void start(State& x, double t);
+  /// Changes the linear states by an impulse; a body that was held moves on with its velocity.
+  void kick(State& x, double t, const Eigen::VectorXd& change);
 
   /// Inputs and output of element i at the last evaluated point.
   const Input<double>& input(std::size_t i) const { return inputs_[i]; }

@@ -183,6 +183,18 @@ void LoopField::start(State& x, double t) {
   }
 }
 
+void LoopField::kick(State& x, double t, const Eigen::VectorXd& change) {
+  for (Eigen::Index i = 0; i < change.size(); ++i) x[static_cast<std::size_t>(i)] += change(i);
+  evaluated_.known = false;
+  for (std::size_t i = 0; i < ne_; ++i) {
+    if (!has_own_guards(i) || !holds(i) || !loop_->elements[i].may_stick()) continue;
+    evaluate(x, t);
+    find_inputs(x);
+    modes_[i] = loop_->elements[i].start(inputs_[i], own_states(x, i));
+    if (has_follower_[i]) follow_modes();
+  }
+}
+
 LoopState without_history(const Loop& loop, const Eigen::VectorXd& X) {
   LoopField field(loop);
   LoopState state{State(field.size(), 0.0), std::vector<Mode>(loop.elements.size())};

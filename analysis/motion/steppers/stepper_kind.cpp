@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "limcycle/analysis/motion/field/affine_flow.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 
 namespace limcycle {
 namespace {

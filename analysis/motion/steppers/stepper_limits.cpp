@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <numbers>
 
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {

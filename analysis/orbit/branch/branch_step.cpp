@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/orbit/cycle/shooting.hpp"
 #include "limcycle/analysis/orbit/settle/two_tolerances.hpp"
@@ -56,6 +56,10 @@ void learn(BranchJacobian& jacobian, const VectorXd& step, const VectorXd& befor
   jacobian.slope += missed * step(m);
 }
 
+/// True if the motion returns in the modes in which it is begun. Begun in others, it switches at once instead of
+/// before.
+bool keeps_modes(const BranchSpot& spot) { return spot.value.motion.state.modes == spot.value.start.modes; }
+
 bool nearly_neutral(const BranchSpot& spot) {
   return std::ranges::any_of(spot.multipliers, [](auto value) { return std::abs(std::abs(value) - 1.0) < 3e-3; });
 }
@@ -83,7 +87,12 @@ std::optional<BranchSpot> BranchSolver::solve(const VectorXd& w, const VectorXd&
   spot.w = w;
   BranchJacobian jacobian = near;
   while (true) {
-    if (!converge(spot, normal, jacobian) || !complete(spot, normal, jacobian, derivatives)) return std::nullopt;
+    if (!converge(spot, normal, jacobian)) return std::nullopt;
+    if (!keeps_modes(spot)) {  // a switch has passed the section: the frame does not fit there
+      failure_ = Status::stalled;
+      return std::nullopt;
+    }
+    if (!complete(spot, normal, jacobian, derivatives)) return std::nullopt;
     if (spot.orbit_error <= accuracy_ || map_.rtol() <= tightest_point) break;
     map_.set_rtol(std::max(tightening(accuracy_, spot.orbit_error) * map_.rtol(), tightest_point));
     jacobian = spot.jacobian;
@@ -299,6 +308,10 @@ std::optional<BranchSpot> BranchSolver::reframe(const BranchSpot& spot, const Br
   }
   auto moved = solve(joined(VectorXd::Zero(m), spot.s()), normal, {});
   if (!moved) return give_up();
+  // Away from a fold the branch goes on to the same side, whatever states that hardly matter did on the new section.
+  constexpr double far_from_fold = 0.02;
+  const double ds = spot.tangent(spot.tangent.size() - 1);
+  if (std::abs(ds) > far_from_fold && moved->tangent(m) * ds < 0.0) moved->tangent = -moved->tangent;
   moved->cycle = spot.cycle;
   return moved;
 }

@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "limcycle/analysis/orbit/branch/branch_end.hpp"
+#include "limcycle/analysis/short_number.hpp"
 
 namespace limcycle {
 namespace {
@@ -16,6 +17,8 @@ constexpr double smallest_share = 1e-5;  ///< of the largest amplitude: below, t
 constexpr double longest_share = 1e5;    ///< of the shortest period: above, the period is going to infinity
 constexpr double largest_share = 1e5;    ///< of the first amplitude: above, the amplitude is going to infinity
 constexpr double sharpest_turn = 0.96;   ///< cosine of the angle that the tangent may turn by in a step
+constexpr double longest_jump = 10.0;    ///< of the shortest steps, relative to them, at a corner
+constexpr double upright = 1e-7;         ///< change of s along a branch at one value of the parameter
 constexpr std::size_t most_passed = 6;   ///< points that predict the next one
 constexpr int longest_crawl = 10;        ///< points in tiny steps along a very unstable cycle
 
@@ -100,6 +103,7 @@ class Walk {
     const double moved = (next->w - now_.w).norm();
     const double turn = next->tangent.dot(now_.tangent);
     if ((turn < sharpest_turn || moved > 1.5 * h) && h > 100.0 * options_.min_step) return false;
+    if (moved > longest_jump * h) return false;  // onto another branch
     if (next->s() < 0.0 || next->s() > ParameterScale::length) return false;
     const int iterations = next->iterations;
     if (!accept(std::move(*next), h)) return ended_;
@@ -187,6 +191,8 @@ class Walk {
 
   /// False if there is an event that could not be located.
   bool find_events(const BranchSpot& a, const BranchSpot& b) {
+    // A branch along which the parameter stays is a family of cycles, which turns back and forth by rounding.
+    if (std::min(std::abs(ds(a)), std::abs(ds(b))) < upright) return true;
     if (ds(a) * ds(b) < 0.0) return fold(a, b);  // it explains one multiplier that crosses 1
     const std::size_t before = outside(a), after = outside(b);
     return before == after || stability(a, b, std::max(before, after));
@@ -258,6 +264,8 @@ class Walk {
     const std::size_t before = outside(a), after = outside(b);
     const std::string side = before < after ? "; the cycle is less stable beyond it" : "";
     // Off the extremum by d sigma, the parameter is off by ds * d sigma / 2, of which the first factor is left over.
+    const double rise = std::max(std::abs(spot->s() - a.s()), std::abs(spot->s() - b.s()));
+    if (rise < 1e2 * std::max({spot->s_error, a.s_error, b.s_error, 1e-10})) return true;  // upright but for rounding
     const double left = ds(*spot) * (b.w - a.w).norm() * std::abs(ds(*spot)) / std::max(std::abs(ds(a) - ds(b)), 1e-12);
     add(*spot,
         event_at(*spot, BranchEvent::Type::fold,
@@ -290,8 +298,25 @@ class Walk {
 
   // --- ends -------------------------------------------------------------------------------------------------------
 
+  /// Clause about cycles of many sizes at the last value.
+  std::string family_at_end() const {
+    constexpr double same = 1e-8;
+    constexpr int many = 5;
+    const auto& points = branch_.points;
+    int count = 0;
+    double low = infinite, high = 0.0;
+    for (auto point = points.rbegin(); point != points.rend(); ++point, ++count) {
+      if (std::abs(point->parameter / points.back().parameter - 1.0) > same) break;
+      low = std::min(low, point->cycle.amplitude);
+      high = std::max(high, point->cycle.amplitude);
+    }
+    if (count < many || high < 1.001 * low) return "";
+    return "; at this value there are cycles of any amplitude from " + short_number(low, 4) + " to " +
+           short_number(high, 4);
+  }
+
   void end_here(std::string why) {
-    BranchEvent event = event_at(now_, BranchEvent::Type::end, std::move(why));
+    BranchEvent event = event_at(now_, BranchEvent::Type::end, std::move(why) + family_at_end());
     event.point = branch_.points.size() - 1;
     branch_.events.push_back(std::move(event));
     ended_ = true;

@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/motion/steppers/transition.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 
 namespace limcycle {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/cycle/floquet.hpp"
 #include "limcycle/analysis/orbit/settle/two_tolerances.hpp"
 #include "limcycle/models/linear/dense.hpp"
@@ -83,9 +83,19 @@ Status FixedPoint::solve(double rtol, double tolerance, int most_maps) {
   residual_ = r.norm();
   time_ = image.time;
   largest_ = image.largest;
+  image_ = image.state.x;
   amplitude_ = map_.amplitude(image);
   trace_ = std::move(image.trace);
   return Status::converged;
+}
+
+bool FixedPoint::repeats_small_states() const {
+  constexpr double part = 1e-6, rounding = 1e-14;
+  for (std::size_t i = 0; i < image_.size(); ++i) {
+    const double change = std::abs(image_[i] - state_.x[i]);
+    if (change > part * std::abs(largest_[i]) && change > rounding * typical_[i]) return false;
+  }
+  return true;
 }
 
 Status FixedPoint::compare(double loose, double& difference) {

@@ -44,6 +44,10 @@ class FixedPoint {
   /// find_kept). The trivial one is removed; its deviation from 1 gives their error.
   std::vector<std::complex<double>> multipliers(double& trivial_error) const;
 
+  /// False if the map of a march without error changes a state by a good part of all that it does on the orbit: far
+  /// below the typical sizes, where the residual is blind, every state of a motion that decays may be as small as that.
+  bool repeats_small_states() const;
+
   const LoopState& state() const { return state_; }
   double period() const { return map_.half() ? 2.0 * time_ : time_; }
   double amplitude() const { return amplitude_; }
@@ -75,7 +79,7 @@ class FixedPoint {
   Eigen::Index first_;    ///< index of the first element state
   Eigen::MatrixXd kept_;  ///< see find_kept: by columns, orthonormal, in units of the chart
   Eigen::Index turned_ = 0;
-  State typical_, largest_;
+  State typical_, largest_, image_;
   std::optional<SectionChart> chart_;
   LoopState state_;
   ReturnMap::Result linear_;

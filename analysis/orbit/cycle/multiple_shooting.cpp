@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/models/linear/dense.hpp"
 

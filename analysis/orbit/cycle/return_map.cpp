@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 
 namespace limcycle {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/cycle/fixed_point.hpp"
 #include "limcycle/analysis/orbit/cycle/measure.hpp"
 #include "limcycle/analysis/orbit/settle/two_tolerances.hpp"
@@ -142,6 +143,8 @@ ShootingResult shoot(const Loop& loop, const LoopState& guess, const Section& se
   status = exact ? point.solve(rtol, 1e-13) : refine(point, options, rtol, cycle.error);
   if (exact) cycle.error = std::max(point.residual_size(), 1e-13);
   if (status != Status::converged) return failed(status, point, "the fixed point was lost at the tight tolerance");
+  if (exact && !point.repeats_small_states())
+    return failed(Status::no_cycle, point, "its smallest states do not repeat themselves");
   if (!describe(loop, point, rtol, options.resolution, cycle))
     return failed(Status::stalled, point, "the cycle could not be followed");
   if (!moves(loop, cycle)) return failed(Status::no_cycle, point, "the fixed point is an equilibrium, not a cycle");

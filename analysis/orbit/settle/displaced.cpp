@@ -5,7 +5,9 @@
 #include <complex>
 
 #include "limcycle/analysis/motion/sampling.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
+#include "limcycle/analysis/motion/working_loop.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
@@ -62,11 +64,13 @@ LoopState displaced(const Loop& loop, double displacement) {
   const State typical = typical_sizes(loop);
   const Eigen::VectorXd sizes = Eigen::Map<const Eigen::VectorXd>(typical.data(), loop.states());
   const double slow = 1.0 / slow_time(loop);
+  // The same place with a limit of the command that is not reached as without one.
+  const Loop within = with_gains(loop, loop.elements.size(), within_limit);
   for (const Eigen::VectorXd& input :
-       {Eigen::VectorXd(loop.E.col(reference_value)), Eigen::VectorXd(loop.E.col(external_force)),
-        Eigen::VectorXd(loop.B.rightCols(1))}) {
-    Eigen::VectorXd direction = turning_state(loop, input, slowly * slow, sizes);
-    const Eigen::VectorXd faster = turning_state(loop, input, slow, sizes);
+       {Eigen::VectorXd(within.E.col(reference_value)), Eigen::VectorXd(within.E.col(external_force)),
+        Eigen::VectorXd(within.B.rightCols(1))}) {
+    Eigen::VectorXd direction = turning_state(within, input, slowly * slow, sizes);
+    const Eigen::VectorXd faster = turning_state(within, input, slow, sizes);
     const auto reach = [&](const Eigen::VectorXd& state) { return state.cwiseQuotient(sizes).cwiseAbs().maxCoeff(); };
     if (faster.size() > 0 && (direction.size() == 0 || reach(direction) > far_reach * reach(faster)))
       direction = faster;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
+#include "limcycle/analysis/motion/working_loop.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 
 namespace limcycle {

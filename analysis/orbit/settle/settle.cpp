@@ -8,7 +8,9 @@
 
 #include "limcycle/analysis/motion/parallel.hpp"
 #include "limcycle/analysis/motion/sampling.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/settle/displaced.hpp"
 #include "limcycle/analysis/orbit/settle/drift.hpp"
 #include "limcycle/analysis/orbit/settle/growth.hpp"

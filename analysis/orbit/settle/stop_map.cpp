@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/march.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
+#include "limcycle/analysis/motion/working_loop.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/models/linear/dense.hpp"
 

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "limcycle/analysis/motion/lane_march/lane_loop.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/simulate/ensemble.hpp"
 
 namespace limcycle {

@@ -6,7 +6,10 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/steppers/stepper_limits.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
+#include "limcycle/analysis/motion/working_loop.hpp"
 #include "limcycle/analysis/orbit/settle/watch/outcome_watch.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/delay.hpp"
@@ -139,6 +142,7 @@ class Running {
     March march(field_, stepper_kind(options_.stepper), loop_weights(loop_, options_.rtol));
     run_.stepper = to_string(march.kind());
     run_.notes = stepper_notes(loop_, march.kind(), options_.rtol);
+    if (jumps_at(0.0)) kick(x, 0.0);
     march.begin(x, 0.0);
     begin(x);
     for (const auto& [until, is_sample] : times_) {
@@ -148,7 +152,9 @@ class Running {
         add_row(march.x(), march.t());
       } else {
         next_break_ = break_after(until);
-        march.begin(march.x(), march.t());
+        State at = march.x();
+        if (jumps_at(until)) kick(at, until);
+        march.begin(at, until);
       }
       if (options_.progress) options_.progress(march.t() / options_.duration);
     }
@@ -160,6 +166,23 @@ class Running {
   double break_after(double t) const {
     const auto next = std::ranges::find_if(times_, [t](const auto& stop) { return !stop.second && stop.first > t; });
     return next == times_.end() ? infinite : next->first;
+  }
+
+  bool jumps_at(double t) const {
+    return options_.reference && options_.reference->kind == Signal::Kind::step &&
+           std::abs(options_.reference->start - begins_.lead - t) <= 1e-12 * t;
+  }
+
+  /// By the derivative of a jump of the reference.
+  void kick(State& x, double t) {
+    const double height = options_.reference->value;
+    if (const Eigen::VectorXd change = height * loop_.E.col(reference_slope); !change.isZero(0.0))
+      field_.kick(x, t, change);
+    for (std::size_t i = 0; i < loop_.elements.size(); ++i)
+      if (loop_.ports[i].c(reference_slope) != 0.0 && command_limit(loop_.elements[i]) == 0.0 &&
+          loop_.elements[i].kind() != "relay")
+        run_.notes.push_back("the derivative of the reference's jump is an impulse, which " + loop_.ports[i].path +
+                             " is taken not to pass on");
   }
 
   void begin(const State& x) {

@@ -69,9 +69,10 @@ struct Simulation {
 /// Share by which the swings and the period of a run's cycle may still change.
 inline constexpr double cycle_accuracy = 1e-4;
 
-/// Time-domain run with located events. A dead time is exact behind a relay, else a Pade approximation (see
-/// in_time_domain); before t = 0 the loop stood as it starts. Throws std::invalid_argument for an unknown state or
-/// stepper name.
+/// Time-domain run with located events. Where a reference jumps by h, an ideal derivative (kd without a filter) makes
+/// an impulse of it, which changes the states by h times the column of dr/dt; a limited command passes none of it on. A
+/// dead time is exact behind a relay, else a Pade approximation (see in_time_domain); before t = 0 the loop stood as it
+/// starts. Throws std::invalid_argument for an unknown state or stepper name.
 Simulation simulate(const Loop& loop, const SimulateOptions& options);
 
 /// Names of all states in the order of LoopState: linear states, then "z" of the friction law (z1, z2, ... if it has

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/orbit/settle/watch/turning_points.hpp"

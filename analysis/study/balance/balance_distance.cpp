@@ -65,7 +65,8 @@ class Search {
 }  // namespace
 
 std::optional<BalanceDistance> balance_distance(const Loop& loop, const SearchBox& box,
-                                                const std::function<bool()>& stop) {
+                                                const std::function<bool()>& stop,
+                                                const std::vector<BalanceDistance>& roots) {
   if (FirstHarmonicBalance::not_applicable(loop)) return std::nullopt;
   const Search search(loop, box, stop);
   const double a0 = std::log(box.amplitude_min), w0 = std::log(box.frequency_min);
@@ -76,6 +77,9 @@ std::optional<BalanceDistance> balance_distance(const Loop& loop, const SearchBo
       if (search.stopped()) return std::nullopt;
       places.push_back(search.place(a0 + da * i, w0 + dw * k, 1e-4));
     }
+  for (const BalanceDistance& root : roots)
+    if (const double a = std::log(root.amplitude), w = std::log(root.frequency); search.inside(a, w))
+      places.push_back(search.place(a, w, tight));
   std::ranges::sort(places, {}, &Place::value);
   if (!std::isfinite(places.front().value)) return std::nullopt;
   Place best = places.front();

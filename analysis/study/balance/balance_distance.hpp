@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 
@@ -16,8 +17,9 @@ struct BalanceDistance {
 /// The least distance over the box: a grid over (ln A, ln w), then a pattern search from its best points (R. Hooke, T.
 /// A. Jeeves, 1961), to 1e-6 in ln A and ln w. Empty if the plain describing function does not apply to the loop, or if
 /// `stop` returns true. Cost: some 2000 describing functions. A minimum much narrower than the grid (a lightly damped
-/// resonance) may be missed: the distance is then an upper bound.
+/// resonance) may be missed, unless it is near one of the `roots` that are known: the distance is then an upper bound.
 std::optional<BalanceDistance> balance_distance(const Loop& loop, const SearchBox& box,
-                                                const std::function<bool()>& stop = {});
+                                                const std::function<bool()>& stop = {},
+                                                const std::vector<BalanceDistance>& roots = {});
 
 }  // namespace limcycle

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/models/linear/balance.hpp"
 #include "limcycle/models/linear/dense.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "limcycle/analysis/frequency/describing_function/df_undefined.hpp"
 #include "limcycle/analysis/motion/field/loop_field.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/study/balance/quasi_linear.hpp"
 #include "limcycle/models/linear/dense.hpp"
 

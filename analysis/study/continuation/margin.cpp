@@ -39,7 +39,7 @@ class Margins {
     if (!in_exact_time(loop_) && !loop_.sampled) {
       report_.refused = why_not_followed(loop_);
       report_.status = Status::incomplete;
-      measure_balance();
+      measure_balance({});
       return std::move(report_);
     }
     PredictOptions predicting = options_.predict;
@@ -49,7 +49,7 @@ class Margins {
     report_.cycles = std::move(found.cycles);
     report_.hunts = std::ranges::any_of(report_.cycles, [](const Cycle& cycle) { return cycle.stable == true; });
     if (loop_.sampled) look_at_outcomes(found.outcomes);
-    measure_balance();
+    measure_balance(found.predictions);
     follow_all();
     std::ranges::stable_sort(report_.parameters, {}, &ParameterMargin::distance);
     if (stopped()) report_.status = Status::interrupted;
@@ -62,10 +62,13 @@ class Margins {
     if (options_.predict.progress) options_.predict.progress(fraction, what);
   }
 
-  void measure_balance() {
+  void measure_balance(const std::vector<Prediction>& predictions) {
     tell(0.1, "distance from the Nyquist curve");
     const SearchBox box = options_.predict.search.value_or(default_search_box(loop_));
-    report_.balance = balance_distance(loop_, box, options_.predict.stop);
+    std::vector<BalanceDistance> roots;
+    for (const Prediction& one : predictions)
+      if (one.method == "describing-function") roots.push_back({0.0, one.input_amplitude, one.frequency});
+    report_.balance = balance_distance(loop_, box, options_.predict.stop, roots);
   }
 
   /// Of a loop whose cycles cannot be followed: by what it does from the displacements of predict.

@@ -130,6 +130,7 @@ MarginSide OneSidedMargin::beyond(const Lost& lost, std::optional<Cycle>& other,
       side.diverges = diverges;
       if (diverges) side.diverges_at = next;
       // Where the branch turns back there is no such cycle beyond.
+      if (first && std::isnan(lost.error)) return with_error(std::move(side), next, starts);
       if (first || lost.event == BranchEvent::Type::fold) return side;
       side.why = "the cycle is lost at " + short_number(lost.value, 5) + ": " + lost.why + "; at " +
                  short_number(next, 5) + after + "; the motion between the two was not determined";
@@ -146,6 +147,18 @@ MarginSide OneSidedMargin::beyond(const Lost& lost, std::optional<Cycle>& other,
   return {What::unknown, lost.value, unknown,
           "the cycle is lost at " + short_number(lost.value, 5) + ": " + lost.why +
               "; whether the loop hunts beyond it was not determined"};
+}
+
+/// An end that no equation locates, beyond which at `ended` the loop hunts no more: where simulations show it at a
+/// thousandth beyond it, that bounds its error; else by bisection.
+MarginSide OneSidedMargin::with_error(MarginSide side, double ended, const std::vector<LoopState>& from) {
+  constexpr double close = 1e-3;
+  const double next = side.value * std::pow(ended / side.value, close / std::abs(std::log(ended / side.value)));
+  const Reached reached = reached_at(next, from);
+  if (stopped()) return {};
+  if (reached.cycle || reached.irregular) return by_bisection(side.what, next, ended, from);
+  if (reached.outcome != Outcome::undecided) side.error = close;
+  return side;
 }
 
 /// What a simulation at p from this state comes to; undecided if the case is not valid there.

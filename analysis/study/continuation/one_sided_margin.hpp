@@ -47,6 +47,7 @@ class OneSidedMargin {
   Outcome outcome_from(const LoopState& state, double p) const;
   bool stays(const LoopState& state) const;
   MarginSide at_validity(const Lost& lost) const;
+  MarginSide with_error(MarginSide side, double ended, const std::vector<LoopState>& from);
   MarginSide by_bisection(MarginSide::What what, double hunts, double rests, const std::vector<LoopState>& from);
   bool stopped() const { return options_.predict.stop && options_.predict.stop(); }
 

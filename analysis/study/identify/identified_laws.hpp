@@ -22,7 +22,7 @@ namespace limcycle {
 using IdentifiedLaws = KindList<Coulomb, Stribeck, Dahl, LuGre, ElastoPlastic, Gms>;
 
 /// The law on dual numbers D, with `numbers` as its variables. Rows of the table that follow another one by default
-/// follow it, unless they are among `own_rows`.
+/// follow it, unless they are among `own_rows` or have a value of their own.
 template <template <class> class Law, class D>
 Law<D> seeded(const Law<double>& law, std::span<const LawNumber> numbers, const std::vector<std::size_t>& own_rows) {
   auto result = recast<Law, D>(law);
@@ -41,7 +41,7 @@ Law<D> seeded(const Law<double>& law, std::span<const LawNumber> numbers, const 
     if (table[i].default_from.empty() || std::ranges::find(own_rows, i) != own_rows.end()) continue;
     const auto from = std::ranges::find(table, table[i].default_from, &ParameterRow::key);
     if (const auto* to = std::get_if<Number>(&table[i].member), *of = std::get_if<Number>(&from->member); to && of)
-      result.*(*to) = result.*(*of);
+      if ((result.*(*to)).value == (result.*(*of)).value) result.*(*to) = result.*(*of);
   }
   return result;
 }

@@ -5,7 +5,8 @@
 #include <numbers>
 
 #include "limcycle/analysis/motion/field/affine_flow.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/precision/cycle_reference.hpp"

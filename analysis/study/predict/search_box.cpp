@@ -3,12 +3,12 @@
 #include <numbers>
 
 #include "limcycle/analysis/motion/sampling.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
+#include "limcycle/analysis/motion/working_loop.hpp"
 #include "limcycle/analysis/study/balance/output_per_input.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"
 #include "limcycle/models/element/memoryless/quantizer.hpp"
-#include "limcycle/models/element/memoryless/saturation.hpp"
-#include "limcycle/models/element/of_controllers/clamped_pi.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {
@@ -21,33 +21,12 @@ double widest_swing(const Loop& loop) {
   return gravity ? 2.0 / output_per_input(loop) : infinite;
 }
 
-/// Largest output of an element that limits the command; 0 for another.
-double limit_of(const Element& element) {
-  const bool limits = element.as<Saturation<double>>() != nullptr || element.as<ClampedPi<double>>() != nullptr;
-  return limits ? element.scales().output : 0.0;
+/// Gains of an element for swings far beyond its own size, or within its limit.
+Gains gains_beyond(const Element& element) {
+  return element.as<Quantizer<double>>() != nullptr ? element.working_gain() : Gains{0.0, 0.0};
 }
-
-/// Gain of an element for swings far beyond its own size, or within its limit; 0: it has none.
-double gain_beyond(const Element& element) { return element.as<Quantizer<double>>() != nullptr ? 1.0 : 0.0; }
-double gain_within(const Element& element) {
-  if (limit_of(element) > 0.0) return element.working_gain().first;
-  return gain_beyond(element);
-}
-
-/// The loop with elements before the main one replaced by their gain.
-Loop with_gains(Loop loop, double (*gain_of)(const Element&)) {
-  Port& main = loop.ports.back();
-  for (std::size_t k = 0; k + 1 < loop.elements.size(); ++k) {
-    const double gain = gain_of(loop.elements[k]);
-    if (gain == 0.0) continue;
-    const Port& port = loop.ports[k];
-    const auto column = static_cast<Eigen::Index>(k);
-    loop.A += gain * loop.B.col(column) * port.C;
-    if (loop.A_delayed.size() > 0 && port.C_delayed.size() > 0)
-      loop.A_delayed += gain * loop.B.col(column) * port.C_delayed;
-    main.C += gain * main.D(column) * port.C;
-  }
-  return loop;
+Gains gains_within(const Element& element) {
+  return command_limit(element) > 0.0 ? within_limit(element) : gains_beyond(element);
 }
 
 /// Largest modulus of the poles with a damping ratio below 0.5; 0: there are none.
@@ -71,18 +50,25 @@ double largest_response(const Loop& loop, double level, double from, double fast
   return largest;
 }
 
-/// Largest amplitude that the main element's input may reach: within the limits of the command by the response of the
-/// closed loop; beyond them the loop is open, and the response to the limited command counts, at the open loop's own
-/// frequencies.
-double reach(const Loop& loop, double slow, double fast) {
-  const double level = output_level(loop, loop.elements.size() - 1);
-  const Loop beyond_limits = with_gains(loop, gain_beyond);
+/// Largest amplitudes that the main element's input may reach.
+struct Reach {
+  double at_all = 0.0;
+  double within_limits = infinite;  ///< of the command, if it has any
+};
+
+/// Within the limits of the command by the response of the closed loop; beyond them the loop is open, and the response
+/// to the limited command counts, at the open loop's own frequencies.
+Reach reach(const Loop& loop, double slow, double fast) {
+  const std::size_t main = loop.elements.size() - 1;
+  const double level = output_level(loop, main);
+  const Loop beyond_limits = with_gains(loop, main, gains_beyond);
   const double open = largest_response(beyond_limits, level, 0.1 * slow, fast);
   double limit = 0.0;
-  for (std::size_t k = 0; k + 1 < loop.elements.size(); ++k) limit = std::max(limit, limit_of(loop.elements[k]));
-  if (limit == 0.0 || !loop.ports.back().rubs) return open;
+  for (std::size_t k = 0; k < main; ++k) limit = std::max(limit, command_limit(loop.elements[k]));
+  if (limit == 0.0 || !loop.ports.back().rubs) return {open};
   const double beyond = largest_response(beyond_limits, std::max(level, limit), slow, fast);
-  return std::min(open, std::max(beyond, largest_response(with_gains(loop, gain_within), level, 0.1 * slow, fast)));
+  const double within = largest_response(with_gains(loop, main, gains_within), level, 0.1 * slow, fast);
+  return {std::min(open, std::max(beyond, within)), within > 0.0 ? within : infinite};
 }
 
 /// Largest amplitude of interest in a loop of which quantizers are all that is not linear: far above their steps it is
@@ -101,7 +87,8 @@ double where_steps_count(const Loop& loop) {
 }  // namespace
 
 /// Two decades around the loop's poles; amplitudes up to three times the largest response to the element's level there,
-/// six decades down. Of a loop with a sampled controller those of the continuous one, up to half of the sampling rate.
+/// six decades down, from what the loop does within the limits of its command. Of a loop with a sampled controller
+/// those of the continuous one, up to half of the sampling rate.
 SearchBox default_search_box(const Loop& loop) {
   if (loop.sampled) {  // hold and computation make poles of their own
     SearchBox box = default_search_box(*loop.sampled->continuous);
@@ -116,10 +103,10 @@ SearchBox default_search_box(const Loop& loop) {
   if (loop.delay > 0.0)
     box.frequency_max = std::clamp(box.frequency_max, 2.0 * std::numbers::pi / loop.delay,
                                    std::max(3.0 * fastest_resonance(loop), 30.0 / loop.delay));
-  double largest = reach(loop, slow, fast);
+  auto [largest, within_limits] = reach(loop, slow, fast);
   if (!(largest > 0.0)) largest = 1.0;
   box.amplitude_max = std::min({3.0 * largest, widest_swing(loop), where_steps_count(loop)});
-  box.amplitude_min = 1e-6 * box.amplitude_max;
+  box.amplitude_min = 1e-6 * std::min(box.amplitude_max, 3.0 * within_limits);
   return box;
 }
 

@@ -8,7 +8,7 @@
 
 #include "limcycle/analysis/energy/passivity/steady_slide.hpp"
 #include "limcycle/analysis/golden_maximum.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/working_loop.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/remedy/without.hpp"
 #include "limcycle/models/diagram/quanta.hpp"

@@ -8,6 +8,7 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/analysis/study/remedy/linear_costs.hpp"

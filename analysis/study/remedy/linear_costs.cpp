@@ -5,8 +5,9 @@
 #include <numbers>
 
 #include "limcycle/analysis/golden_maximum.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
+#include "limcycle/analysis/orbit/settle/watch/outcome_watch.hpp"
 #include "limcycle/analysis/study/remedy/without.hpp"
 #include "limcycle/models/delay.hpp"
 #include "limcycle/models/linear/dense.hpp"
@@ -144,13 +145,15 @@ void add_step(const Loop& loop, double step, LinearCosts& costs) {
   const Eigen::MatrixXd flow = exponential(loop.A * h);
   const LoopState from = displaced(loop, step);
   Eigen::VectorXd X = Eigen::Map<const Eigen::VectorXd>(from.x.data(), loop.states());
-  std::vector<double> t, y;
+  const Eigen::RowVectorXd rate = loop.C_y * loop.A;
+  Trace run;
   for (int i = 0; i <= points; ++i) {
-    t.push_back(i * h);
-    y.push_back((loop.C_y * X).value());
+    run.t.push_back(i * h);
+    run.y.push_back((loop.C_y * X).value());
+    run.rate.push_back((rate * X).value());
     X = flow * X;
   }
-  const StepNumbers numbers = step_numbers(t, y, step);
+  const StepNumbers numbers = step_numbers(run, step);
   costs.settling_time = numbers.settling_time;
   costs.overshoot = numbers.overshoot;
 }
@@ -221,13 +224,32 @@ LinearCosts linear_costs(const LoopParts& parts, double step) {
   return costs;
 }
 
-StepNumbers step_numbers(const std::vector<double>& t, const std::vector<double>& y, double step) {
+StepNumbers step_numbers(const Trace& run, double step) {
   constexpr double near = 0.02;
   StepNumbers numbers;
-  if (t.empty() || step == 0.0) return numbers;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    numbers.overshoot = std::max(numbers.overshoot, -y[i] / step);
-    if (std::abs(y[i] - y.back()) > near * std::abs(step)) numbers.settling_time = t[i] - t.front();
+  if (run.t.empty() || step == 0.0) return numbers;
+  const double band = near * std::abs(step), end = run.y.back();
+  for (std::size_t i = 0; i + 1 < run.t.size(); ++i) {
+    const double h = run.t[i + 1] - run.t[i];
+    if (!(h > 0.0)) continue;  // y does not jump
+    const OutputStep y =
+        OutputStep::through(run.t[i], run.t[i + 1], run.y[i], run.y[i + 1], run.rate[i], run.rate[i + 1]);
+    double out = std::abs(y.y0 - end) > band ? 0.0 : -1.0;  // the last place outside
+    const auto pass = [&](double theta) {
+      const double value = y.value(theta);
+      numbers.overshoot = std::max(numbers.overshoot, -value / step);
+      if (std::abs(value - end) > band) out = theta;
+    };
+    pass(0.0);
+    if (run.rate[i] * run.rate[i + 1] < 0.0) pass((y.turning().t - y.t) / h);
+    pass(1.0);
+    if (out < 0.0) continue;
+    double inside = 1.0;
+    for (int k = 0; out < 1.0 && k < 50; ++k) {
+      const double middle = 0.5 * (out + inside);
+      (std::abs(y.value(middle) - end) > band ? out : inside) = middle;
+    }
+    numbers.settling_time = run.t[i] + out * h - run.t.front();
   }
   return numbers;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "limcycle/analysis/cycle.hpp"
 #include "limcycle/models/loop.hpp"
 
 namespace limcycle {
@@ -43,12 +44,12 @@ struct LinearCosts {
 /// left empty. Cost: some thousand evaluations of L, O(n^3) each.
 LinearCosts linear_costs(const LoopParts& parts, double step);
 
-/// Settling and overshoot of a run of y that begins `step` away from zero at t[0] and ends at its last value: the last
-/// time at which y differs from that by more than 2 % of the step, and the farthest it goes beyond zero, as a share of
-/// the step.
+/// Settling and overshoot of a run of y that begins `step` away from zero and ends at its last value: the last time at
+/// which y differs from that by more than 2 % of the step, since the first sample, and the farthest it goes beyond
+/// zero, as a share of the step. Between two samples y is the cubic with their values and rates; without rates, a line.
 struct StepNumbers {
   double settling_time = 0.0, overshoot = 0.0;
 };
-StepNumbers step_numbers(const std::vector<double>& t, const std::vector<double>& y, double step);
+StepNumbers step_numbers(const Trace& run, double step);
 
 }  // namespace limcycle

@@ -21,7 +21,7 @@ RemedyCosts loop_costs(const LoopParts& parts, double step, const Trace& respons
     if (const auto range = rest_range(build_loop(parts)))
       costs.steady_state_error = Extent{parts.reference - range->high, parts.reference - range->low};
   if (rests && !response.y.empty()) {
-    const StepNumbers real = step_numbers(response.t, response.y, response.y.front());
+    const StepNumbers real = step_numbers(response, response.y.front());
     costs.settling_time = real.settling_time;
     costs.overshoot = real.overshoot;
     costs.actuator_travel = actuator_travel(parts, step, response.t.back() - response.t.front());

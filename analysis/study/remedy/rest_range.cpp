@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/models/linear/dense.hpp"
 
 namespace limcycle {

@@ -73,7 +73,7 @@ Probability look_at_fair_rows(const GlobalPlan& plan, const std::vector<std::opt
 }  // namespace
 
 GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std::optional<EnsembleOutcome>> answers,
-                                     double noise) {
+                                     double noise, const std::function<bool(std::size_t row)>& is_valid) {
   if (answers.size() != plan.size()) throw std::invalid_argument("as many answers as the plan has rows are needed");
   GlobalSensitivity result;
   for (std::size_t output = 0; output < EnsembleOutcome::numbers; ++output) {
@@ -82,7 +82,11 @@ GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std
     OutputSensitivity one;
     one.output = EnsembleOutcome::names[output];
     const Probability fair = look_at_fair_rows(plan, numbers, one);
-    if (output == 0) result.hunting = fair;
+    if (output == 0) {
+      for (std::size_t k = 0; k < plan.fair_rows() && is_valid; ++k)
+        if (const std::size_t row = plan.fair_row(k); !numbers[row] && !is_valid(row)) ++result.not_valid;
+      result.hunting = probability(fair.yes, fair.no, fair.undecided - result.not_valid);
+    }
     if (plan.correlated()) {
       result.outputs.push_back(std::move(one));
       continue;

@@ -120,14 +120,15 @@ class GlobalPlan {
 /// Results of a study of the whole spread.
 struct GlobalSensitivity {
   std::vector<OutputSensitivity> outputs;   ///< in the order of EnsembleOutcome::names
-  Probability hunting;                      ///< that the loop hunts, from Sobol's points A and B
+  Probability hunting;                      ///< that the loop hunts, from Sobol's points A and B that are valid
+  std::size_t not_valid = 0;                ///< points A and B whose values are no valid case
   std::optional<std::size_t> matters_most;  ///< parameter with the largest total index for "hunts"
 };
 
 /// Indices from the answers to all rows of a plan, empty where not computed. `noise`: relative error of amplitudes and
-/// periods.
+/// periods. `is_valid`: tells a row without an answer whose values are a valid case; empty: all are.
 GlobalSensitivity global_sensitivity(const GlobalPlan& plan, std::span<const std::optional<EnsembleOutcome>> answers,
-                                     double noise);
+                                     double noise, const std::function<bool(std::size_t row)>& is_valid = {});
 
 /// Results of `sensitivity`.
 struct SensitivityReport {

@@ -176,7 +176,7 @@ void look_at(TunePoint& point, const TuneQuestion& question) try {
   if (off > still_settled * question.step)  // friction that holds the body at the start settles nothing
     return conclude(point, TuneOutcome::above_limit,
                     "it comes to rest " + short_number(off) + " from the set-point, more than a tenth of the step");
-  set_cost(point, TuneCost::settling, step_numbers(run.trace.t, run.trace.y, run.trace.y.front()).settling_time);
+  set_cost(point, TuneCost::settling, step_numbers(run.trace, run.trace.y.front()).settling_time);
   is_above_limit(point, question);
 } catch (const std::invalid_argument& refused) {
   conclude(point, TuneOutcome::undecided, std::string("could not be simulated: ") + refused.what());

@@ -5,6 +5,7 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/models/element/of_controllers/stop_reset_integrator.hpp"
 #include "limcycle/tests/loops.hpp"

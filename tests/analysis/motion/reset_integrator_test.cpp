@@ -4,6 +4,7 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/models/element/of_controllers/reset_integrator.hpp"
 #include "limcycle/tests/loops.hpp"
 

@@ -1,4 +1,5 @@
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 
 #include <catch2/catch.hpp>
 

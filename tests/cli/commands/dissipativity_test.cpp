@@ -60,6 +60,18 @@ TEST_CASE("dissipativity: laws that are passive, and one that creeps its energy 
   CHECK(gms["counterexample"]["energy_per_cycle"].get<double>() > 0.0);
 }
 
+TEST_CASE("dissipativity: over a number that another one follows by default, the other one follows") {
+  const std::string damped = "loop.friction.sigma2=100.0";
+  // Passive for sigma2/sigma1 >= (Fs - Fc)/Fc, on either side.
+  const auto edge = [&](const std::string& range) {
+    const auto report = document({preset("lugre"), "--set", damped, "--parameter", range});
+    REQUIRE(report["changes"]["changes"].size() == 1);
+    return report["changes"]["changes"][0]["value"].get<double>();
+  };
+  CHECK(edge("loop.friction.Fs=1:3") == Approx(1.0 + 100.0 / std::sqrt(1e5)).epsilon(1e-5));
+  CHECK(edge("loop.friction.Fc=0.5:1.5") == Approx(1.5 / (1.0 + 100.0 / std::sqrt(1e5))).epsilon(1e-5));
+}
+
 TEST_CASE("dissipativity of a loop: where no question applies it says why") {
   const auto ran =
       run({"dissipativity", shipped("pid-lugre.toml"), "--set", "loop.controller.friction_compensation=0.5"});

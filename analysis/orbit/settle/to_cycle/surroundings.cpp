@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/cycle/return_map.hpp"
 
 namespace limcycle {

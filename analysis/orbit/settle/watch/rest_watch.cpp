@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 
 namespace limcycle {
 

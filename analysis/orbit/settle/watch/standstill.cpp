@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/field/affine_flow.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/settle/linear_motion.hpp"
 #include "limcycle/analysis/orbit/settle/watch/rest_watch.hpp"
 #include "limcycle/models/linear/dense.hpp"

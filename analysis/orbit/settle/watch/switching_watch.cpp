@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limcycle/analysis/motion/field/affine_flow.hpp"
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/orbit/settle/linear_motion.hpp"
 #include "limcycle/analysis/short_number.hpp"
 #include "limcycle/models/element/with_memory/relay.hpp"

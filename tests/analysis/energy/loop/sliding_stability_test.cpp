@@ -6,6 +6,7 @@
 
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/models/laws.hpp"
 #include "limcycle/tests/friction_samples.hpp"

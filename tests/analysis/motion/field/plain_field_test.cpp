@@ -7,6 +7,7 @@
 #include "limcycle/analysis/motion/field/loop_field.hpp"
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/models/friction/dry/karnopp.hpp"
 #include "limcycle/models/friction/sliders/gms.hpp"
 #include "limcycle/tests/loops.hpp"

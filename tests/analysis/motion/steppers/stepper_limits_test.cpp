@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "limcycle/analysis/motion/time_scales.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
 #include "limcycle/tests/loops.hpp"
 

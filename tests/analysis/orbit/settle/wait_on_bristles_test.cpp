@@ -7,6 +7,7 @@
 #include "limcycle/analysis/motion/march.hpp"
 #include "limcycle/analysis/motion/sampling.hpp"
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/models/delay.hpp"
 #include "limcycle/tests/loops.hpp"
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/models/friction/bristle/dahl.hpp"
 #include "limcycle/tests/loops.hpp"
 

@@ -59,6 +59,47 @@ TEST_CASE("forced mass with Coulomb friction under a step: sticks below break-aw
   CHECK(run.events[0].what == "loop.friction");
 }
 
+TEST_CASE("simulate: an ideal derivative makes a kick of a step of the reference, a limited command none") {
+  LoopParts parts;
+  parts.plant = Mass{2.0, 0.0, 0.0};
+  parts.friction = coulomb(0.6, 0.5);
+  Pid controller = pid(30.0, 0.0, 6.0);
+  parts.controller = controller;
+  SimulateOptions options;
+  options.rtol = 1e-9;
+  options.duration = 0.75;
+  options.sample = 0.25;
+  const auto velocity = [&](double start) {
+    options.reference = Signal{.kind = Signal::Kind::step, .value = 0.1, .start = start};
+    return column(simulate(build_loop(parts), options), "state.v");
+  };
+  // The body rests until then; v jumps by 6*0.1/2, and moves under 2 v' = 30 (0.1 - y) - 6 v - 0.5 from there.
+  double y = 0.0, v = 0.3;
+  constexpr int steps = 200'000;
+  for (int i = 0; i < steps; ++i) {
+    constexpr double h = 0.25 / steps;
+    const double middle = v + 0.5 * h * (1.25 - 15.0 * y - 3.0 * v);
+    v += h * (1.25 - 15.0 * (y + 0.5 * h * v) - 3.0 * middle);
+    y += h * middle;
+  }
+  for (const double start : {0.5, 0.25, 0.0}) {
+    const auto seen = velocity(start);
+    REQUIRE(seen.size() == 4);
+    CHECK(seen[static_cast<std::size_t>(start / 0.25) + 1] == Approx(v).epsilon(1e-6));
+  }
+  controller.tf = 1e-6;
+  parts.controller = controller;
+  CHECK(velocity(0.5).back() == Approx(v).epsilon(1e-4));
+  controller.tf = 0.0;
+  controller.saturation = 4.0;
+  parts.controller = controller;
+  const double limited = velocity(0.5).back();
+  controller.tf = 1e-6;
+  parts.controller = controller;
+  CHECK(velocity(0.5).back() == Approx(limited).epsilon(1e-4));
+  CHECK(limited < 0.8 * v);
+}
+
 TEST_CASE("signals: values, slopes and breaks") {
   const Signal zigzag{.kind = Signal::Kind::zigzag, .value = 2.0, .start = 1.0, .rate = 4.0};
   CHECK(zigzag.at(0.5) == 0.0);

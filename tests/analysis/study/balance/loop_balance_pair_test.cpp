@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/working_loop.hpp"
 #include "limcycle/analysis/study/balance/first_harmonic_balance.hpp"
 #include "limcycle/analysis/study/balance/roots/df_roots.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"

@@ -228,6 +228,17 @@ TEST_CASE("closest approach of -1/N: on a plane of equal distances it ends after
   CHECK(asked < 3000);
 }
 
+TEST_CASE("margin: a root of the describing function at a narrow resonance is not said to be none") {
+  LoopParts parts;  // the balance needs sqrt(k/m) to a few ten-thousandths
+  parts.plant = Belt{2.0, 800.0, 1.5, 0.02};
+  parts.friction = stribeck(12.0, 8.0, 0.01);
+  MarginOptions options;
+  const auto report = margin(build_loop(parts), {}, options);
+  REQUIRE(report.balance);
+  CHECK(report.balance->distance < 1e-6);
+  CHECK(report.balance->frequency == Approx(20.0).epsilon(1e-6));
+}
+
 TEST_CASE("margin: of a sampled servo by bisection of the outcome, towards that of the continuous one") {
   const auto leaking = [](double leak, double sample_time) -> std::optional<Loop> {
     LoopParts parts = servo_parts(coulomb(1.5, 1.0));

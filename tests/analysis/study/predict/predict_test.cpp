@@ -362,6 +362,19 @@ TEST_CASE("a balance that more harmonics still move is no prediction, and a note
   }));
 }
 
+TEST_CASE("a backlash in which every motion decays has no cycle, however slowly it decays") {
+  // The plant's motions within the gap shrink by 0.15 % in a half period at 1.093, and by 1 % at 1.085; the period
+  // grows.
+  for (const double gain : {1.085, 1.093, 1.0945}) {
+    Backlash<double> play;
+    play.half_gap = 0.5;
+    const auto report = predict(forward(play, {gain}, {1.0, 2.0, 1.0, 0.0}));
+    CAPTURE(gain);
+    CHECK(report.cycles.empty());
+    for (const auto& one : report.outcomes) CHECK((one.outcome == Outcome::rest || one.outcome == Outcome::undecided));
+  }
+}
+
 TEST_CASE("a law without a describing function leaves a note, not a failure: its cycle is found by simulation") {
   auto law = with_levels<Awrejcewicz<double>>(1.5, 1.0);
   law.vs = 0.01;

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/analysis/orbit/cycle/return_map.hpp"
 #include "limcycle/analysis/orbit/cycle/section_chart.hpp"
 #include "limcycle/analysis/study/predict/predict.hpp"

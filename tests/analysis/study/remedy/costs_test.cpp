@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "limcycle/analysis/energy/loop/stuck_set.hpp"
+#include "limcycle/analysis/orbit/settle/settle.hpp"
 #include "limcycle/analysis/orbit/simulate/simulate.hpp"
 #include "limcycle/analysis/study/remedy/actuator_travel.hpp"
 #include "limcycle/analysis/study/remedy/linear_costs.hpp"
@@ -189,10 +191,56 @@ TEST_CASE(
 }
 
 TEST_CASE("step numbers: the last time outside 2 % and the largest swing beyond zero") {
-  const StepNumbers numbers = step_numbers({5.0, 6.0, 7.0, 8.0, 9.0}, {2.0, -0.5, 0.1, 0.01, 0.0}, 2.0);
-  CHECK(numbers.settling_time == 2.0);
-  CHECK(numbers.overshoot == 0.25);
-  CHECK(step_numbers({}, {}, 1.0).overshoot == 0.0);
+  // y = 2 cos(t) e^(-t/2) with its rate, in steps of half a turn at most: its crossings and turns lie between samples.
+  Trace run;
+  for (int i = 0; i <= 400; ++i) {
+    const double t = 5.0 + 0.1 * i, since = t - 5.0, decay = 2.0 * std::exp(-0.5 * since);
+    run.t.push_back(t);
+    run.y.push_back(decay * std::cos(since));
+    run.rate.push_back(-decay * (0.5 * std::cos(since) + std::sin(since)));
+  }
+  const StepNumbers numbers = step_numbers(run, 2.0);
+  const auto share = [](double t) { return std::exp(-0.5 * t) * std::cos(t); };
+  const double turn = std::numbers::pi - std::atan(0.5);
+  CHECK(numbers.overshoot == Approx(-share(turn)).epsilon(1e-5));
+  CHECK(std::abs(share(numbers.settling_time)) == Approx(0.02).epsilon(1e-5));
+  for (int i = 0; i < 40'000; ++i) REQUIRE(std::abs(share(numbers.settling_time + 1e-6 + 1e-3 * i)) < 0.02);
+  CHECK(step_numbers({}, 1.0).overshoot == 0.0);
+}
+
+TEST_CASE("step numbers: of a servo that slews at the limit of its command, as counted step by step") {
+  // 1 kg with 2 N s/m under 400 e - 40 v, limited to 1 N: 0.4 m/s at most.
+  for (const double step : {0.5, 20.0}) {
+    Pid controller = pid(400.0, 0.0, 40.0);
+    controller.saturation = 1.0;
+    LoopParts parts;
+    parts.plant = Mass{1.0, 2.0, 0.0};
+    parts.controller = controller;
+    parts.friction = coulomb(0.4, 0.2, 0.0);
+    const Loop loop = build_loop(parts);
+    const Settled run = settle(loop, displaced(loop, step), {});
+    constexpr double h = 1e-4;
+    double y = step, v = 0.0, last = 0.0;
+    for (int i = 0; i < 800'000; ++i) {
+      const double u = std::clamp(-400.0 * y - 40.0 * v, -1.0, 1.0);
+      const double next = v + h * (u - 2.0 * v - (v == 0.0 ? std::clamp(u, -0.4, 0.4) : std::copysign(0.2, v)));
+      v = next * v < 0.0 ? 0.0 : next;
+      y += h * v;
+      if (std::abs(y) > 0.02 * step) last = h * i;
+    }
+    CHECK(step_numbers(run.trace, step).settling_time == Approx(last).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("step numbers: a limit of the command that is not reached changes no start, however the integral leaks") {
+  LoopParts parts = position_loop(400.0, 60.0, 40.0);
+  auto& controller = std::get<Pid>(parts.controller);
+  controller.leak = 0.05;
+  const LoopState free = displaced(build_loop(parts), 0.3);
+  controller.saturation = 1e6;
+  const LoopState limited = displaced(build_loop(parts), 0.3);
+  REQUIRE(limited.x.size() == free.x.size());
+  for (std::size_t i = 0; i < free.x.size(); ++i) CHECK(limited.x[i] == Approx(free.x[i]).margin(1e-9));
 }
 
 TEST_CASE("rest range: impulses leave the error within their band, a reset at a stop none") {

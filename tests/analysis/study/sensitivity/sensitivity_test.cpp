@@ -83,6 +83,18 @@ TEST_CASE("global sensitivity: where a loop hunts is shared out as it should be"
   CHECK(found.outputs[1].morris.parameters[1].mu_star.value == Approx(0.0).margin(1e-12));
   CHECK_THROWS_AS(global_sensitivity(plan, std::span(answers).first(3), 0.0), std::invalid_argument);
 
+  // A quarter of the points are no valid case, and are not undecided.
+  auto part = answers;
+  for (std::size_t k = 0; k < plan.size(); ++k)
+    if (plan.values(k)[1] < 12.5) part[k].reset();
+  const GlobalSensitivity valid =
+      global_sensitivity(plan, part, 0.0, [&](std::size_t row) { return plan.values(row)[1] >= 12.5; });
+  CHECK(valid.hunting.undecided == 0);
+  CHECK(valid.not_valid + valid.hunting.yes + valid.hunting.no == plan.fair_rows());
+  CHECK(static_cast<double>(valid.not_valid) == Approx(0.25 * static_cast<double>(plan.fair_rows())).epsilon(0.02));
+  CHECK(valid.hunting.high < 0.6);
+  CHECK(global_sensitivity(plan, part, 0.0).hunting.undecided == valid.not_valid);
+
   // Nothing computed yet: everything is unknown, and nothing is NaN.
   const GlobalSensitivity none =
       global_sensitivity(plan, std::vector<std::optional<EnsembleOutcome>>(plan.size()), 0.0);

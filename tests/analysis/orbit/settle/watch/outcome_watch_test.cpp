@@ -4,7 +4,8 @@
 #include <cmath>
 #include <functional>
 
-#include "limcycle/analysis/motion/tolerances.hpp"
+#include "limcycle/analysis/motion/time_scales.hpp"
+#include "limcycle/analysis/motion/typical_sizes.hpp"
 #include "limcycle/tests/loops.hpp"
 
 using namespace limcycle;

@@ -127,6 +127,24 @@ TEST_CASE("friction response: steady sliding is g(v) sgn v + sigma2 v for every 
   }
 }
 
+TEST_CASE("friction response: steady sliding of a synthesized rig that differs from side to side") {
+  const Element law = law_with("lugre", {{"Fs", 1.5},
+                                         {"Fc", 1.0},
+                                         {"vs", 1e-3},
+                                         {"sigma0", 1e5},
+                                         {"sigma1", 300.0},
+                                         {"sigma2", 20.0},
+                                         {"Fs_minus", 1.2},
+                                         {"Fc_minus", 0.7}});
+  const auto records = synthesize(law, {.noise = 0.0}, 0, {});
+  const FrictionRecord& steady = records.front();
+  for (std::size_t i = 0; i < steady.v.size(); ++i) {
+    const double v = steady.v[i], bump = std::exp(-std::pow(v / 1e-3, 2));
+    const double level = v > 0.0 ? 1.0 + 0.5 * bump : -0.7 - 0.5 * bump;
+    CHECK(steady.F[i] == Approx(level + 20.0 * v).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("friction response: a bristle far shorter than the way between two rows") {
   Element law = lugre_rig().with("sigma0", 1e10);
   FrictionRecord record{RecordKind::lag, "fast", {}, {}, {}, {}, 0.0};
