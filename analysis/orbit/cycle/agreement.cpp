@@ -27,6 +27,14 @@ class Curve {
     return step.value((t - step.t) / step.h);
   }
 
+  /// y at the turning point next to a sample, in a step before or after it; at the first and the last sample y itself.
+  double turn_near(std::size_t i) const {
+    if (i == 0 || i + 1 == trace_.t.size()) return trace_.y[i];
+    for (const std::size_t k : {i - 1, i})
+      if (trace_.rate[k] * trace_.rate[k + 1] < 0.0 && trace_.t[k + 1] > trace_.t[k]) return piece(k).turning().y;
+    return trace_.y[i];
+  }
+
   /// Time between samples `from` and `to` at which y first reaches `level`.
   double reaches(double level, std::size_t from, std::size_t to) const {
     for (std::size_t i = from; i < to; ++i)
@@ -61,9 +69,11 @@ std::vector<double> middles(const Trace& trace, double least) {
       high = i;
     }
   }
+  const Curve curve(trace);
   std::vector<double> times;
   for (std::size_t k = 0; k + 1 < turns.size(); ++k)
-    times.push_back(Curve(trace).reaches(0.5 * (trace.y[turns[k]] + trace.y[turns[k + 1]]), turns[k], turns[k + 1]));
+    times.push_back(
+        curve.reaches(0.5 * (curve.turn_near(turns[k]) + curve.turn_near(turns[k + 1])), turns[k], turns[k + 1]));
   return times;
 }
 

@@ -26,6 +26,9 @@ Signal slide_and_zigzag() {
 /// steps.
 bool drifts(double drift, double swing) { return std::abs(drift) > std::max(1e-3 * swing, 1e-11); }
 
+/// A drift goes on; the ringing of a law without damping changes the mean by as much one way as the other.
+bool goes_on(double drift, double earlier) { return std::abs(drift - earlier) < 0.3 * std::abs(drift); }
+
 LawPart zigzag_of_law(const LawSetting& printed) {
   const LawSetting setting = printed.with("vs", 0.01);
   const double end = first_peak + 2.0 * zigzag_cycles * zigzag_half_period, before = end - 2.0 * zigzag_half_period;
@@ -70,6 +73,9 @@ LawPart zigzag_of_law(const LawSetting& printed) {
   part.rows.push_back({"", "", {peak, drift, swing, mismatch, area(run.x, run.F, first, run.x.size() - 1)}});
   if (!drifts(drift, swing))
     part.finding = "does not drift: " + quantity(drift, "m") + " a cycle of " + quantity(swing, "m");
+  else if (!goes_on(drift, earlier) && !(drift * earlier > 0.0 && std::abs(drift) < std::abs(earlier)))
+    part.finding = "shows no drift beyond its ringing: " + quantity(drift, "m") + " a cycle of " +
+                   quantity(swing, "m") + " after " + quantity(earlier, "m") + " four cycles before";
   else if (std::abs(drift) < 0.9 * std::abs(earlier))
     part.finding = "still settles, by " + quantity(drift, "m") + " a cycle of " + quantity(swing, "m") + " after " +
                    quantity(earlier, "m") + " four cycles before";

@@ -74,6 +74,24 @@ TEST_CASE("agreement: two rough runs that err alike are not taken for two that a
   CHECK_FALSE(agreement(loop, options, run).agrees);
 }
 
+TEST_CASE("agreement: long steps do not count as a difference of the motions") {
+  LoopParts parts;
+  parts.plant = Belt{1.0, 100.0, 0.1, 0.05};
+  parts.friction = stribeck(1.0, 0.6, 0.1);
+  const Loop loop = build_loop(parts);
+  for (const double rtol : {1e-5, 1e-7, 1e-9}) {
+    SimulateOptions options;
+    options.duration = 2.0;
+    options.sample = 0.5;
+    options.rtol = rtol;
+    const auto second = agreement(loop, options, simulate(loop, options));
+    CAPTURE(rtol);
+    CHECK(second.agrees);
+    CHECK(second.position_difference < 1e-4);
+    CHECK(second.phase_drift < 2e-5);
+  }
+}
+
 TEST_CASE("agreement: a drift in phase is told, and is no disagreement") {
   const Loop loop = stiff_servo(1e3);  // approaches its cycle slowly: the phase drifts for long
   const auto options = from_one(400.0, 1e-2);
