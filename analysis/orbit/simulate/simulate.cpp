@@ -178,11 +178,15 @@ class Running {
     const double height = options_.reference->value;
     if (const Eigen::VectorXd change = height * loop_.E.col(reference_slope); !change.isZero(0.0))
       field_.kick(x, t, change);
-    for (std::size_t i = 0; i < loop_.elements.size(); ++i)
-      if (loop_.ports[i].c(reference_slope) != 0.0 && command_limit(loop_.elements[i]) == 0.0 &&
-          loop_.elements[i].kind() != "relay")
-        run_.notes.push_back("the derivative of the reference's jump is an impulse, which " + loop_.ports[i].path +
-                             " is taken not to pass on");
+    for (std::size_t i = 0; i < loop_.elements.size(); ++i) {
+      const Port& port = loop_.ports[i];
+      const bool differentiates = port.path.ends_with(".rate") && port.c_v(reference_slope) != 0.0;
+      if ((port.c(reference_slope) == 0.0 && !differentiates) || command_limit(loop_.elements[i]) > 0.0 ||
+          loop_.elements[i].kind() == "relay")
+        continue;
+      run_.notes.push_back("the derivative of the reference's jump is an impulse, which " + port.path +
+                           " is taken not to pass on");
+    }
   }
 
   void begin(const State& x) {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "limcycle/models/element/memoryless/dead_zone.hpp"
 #include "limcycle/models/element/with_memory/rate_limit.hpp"
 #include "limcycle/tests/loops.hpp"
 
@@ -98,6 +99,17 @@ TEST_CASE("simulate: an ideal derivative makes a kick of a step of the reference
   parts.controller = controller;
   CHECK(velocity(0.5).back() == Approx(limited).epsilon(1e-4));
   CHECK(limited < 0.8 * v);
+  CHECK(simulate(build_loop(parts), options).notes.empty());
+  // Of what an element passes on, nothing is computed, and it is said.
+  DeadZone<double> dead;
+  dead.half_width = 0.01;
+  controller.saturation = infinite;
+  controller.tf = 0.0;
+  parts.controller = controller;
+  parts.error = dead;
+  const auto notes = simulate(build_loop(parts), options).notes;
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("impulse") != std::string::npos);
 }
 
 TEST_CASE("signals: values, slopes and breaks") {
