@@ -29,7 +29,7 @@ PassivityRange range_of(const Case& from, const DissipativityWishes& range) {
     throw refuse(no_such_number.what());
   }
   // As --set would: what follows the number by default follows it here.
-  const auto with = [&from, path = range.path](double value) -> std::optional<Element> {
+  const auto with = [from, path = range.path](double value) -> std::optional<Element> {
     const auto changed = case_with(from, std::array{std::pair(path, value)});
     return changed ? std::optional(df_element(*changed)) : std::nullopt;
   };

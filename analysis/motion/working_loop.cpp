@@ -14,10 +14,10 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// w = P (R x + S w) with the gains R and S of those replaced, P w = w of those that stay.
+/// The outputs of all elements once some are gains: w = from_states X + from_delayed X(t - delay) + from_external ext +
+/// outputs w', with w' the outputs of those that stay.
 struct Replaced {
-  MatrixXd from_states, from_delayed, from_external;  ///< outputs of those replaced, by the states and from outside
-  MatrixXd outputs;                                   ///< all outputs, by those of the elements that stay
+  MatrixXd from_states, from_delayed, from_external, outputs;
 };
 
 /// Empty if none of them has a gain.

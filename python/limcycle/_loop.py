@@ -127,7 +127,8 @@ def _with_full_names(value: Any) -> Any:
 
 
 def load(path: Union[str, "os.PathLike[str]"], overrides: Optional[Mapping[str, Any]] = None) -> Loop:
-    """Reads a case file; `overrides` as Loop.set(). The loop knows the file by its full name. Raises CaseError with file, line and key."""
+    """Reads a case file; `overrides` as Loop.set(). The loop knows the file by its full name. Raises CaseError with
+    file, line and key."""
     if not isinstance(path, (str, os.PathLike)):
         raise CaseError("path", repr(path), "must be the name of a case file")
     changes = [f"{key}={text_of(value, key)}" for key, value in (overrides or {}).items()]

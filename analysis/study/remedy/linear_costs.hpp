@@ -46,7 +46,7 @@ LinearCosts linear_costs(const LoopParts& parts, double step);
 
 /// Settling and overshoot of a run of y that begins `step` away from zero and ends at its last value: the last time at
 /// which y differs from that by more than 2 % of the step, since the first sample, and the farthest it goes beyond
-/// zero, as a share of the step. Between two samples y is the cubic with their values and rates; without rates, a line.
+/// zero, as a share of the step. Between two samples y is the cubic with their values and rates.
 struct StepNumbers {
   double settling_time = 0.0, overshoot = 0.0;
 };
